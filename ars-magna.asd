@@ -378,7 +378,7 @@
                  (:file "palette") (:file "pictures") (:file "picture-margins")
                  (:file "picture-crowds") (:file "bundles") (:file "display-details")
                  (:file "display-drawing") (:file "films") (:file "run-pictures")
-                 (:file "overlapping-ways")
+                 (:file "overlapping-ways") (:file "run-picture-parts")
                  (:file "moments") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli") (:file "cli-telling")
                  (:file "text-maps") (:file "cli-quantities")

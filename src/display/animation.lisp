@@ -112,14 +112,22 @@ the lines of SVG MOVERS."
 " movers "</g>
 ")))))))
 
-(defun film-title (journal ticks)
+(defun title-of-journal (journal)
   (let ((header (journal-header journal)))
-    (format nil "~A, tick~P ~D~@[ to ~D~]"
-            (title-of (mapcar (lambda (robot) (drawn-name (blueprint-name (find-blueprint robot))))
-                              (getf header :robots))
-                      (map-name (find-map (getf header :map))))
-            (length ticks) (first ticks)
-            (and (rest ticks) (first (last ticks))))))
+    (title-of (mapcar (lambda (robot) (drawn-name (blueprint-name (find-blueprint robot))))
+                      (getf header :robots))
+              (map-name (find-map (getf header :map))))))
+
+(defun titled-anyway (title journal anyway)
+  "Return TITLE, or NIL; one that says so if JOURNAL is shown ANYWAY, with other definitions."
+  (let ((words (and anyway (typep title '(or null string)) (repeated-words journal))))
+    (if words
+        (format nil "~A~%~A" (or title (title-of-journal journal)) words)
+        title)))
+
+(defun film-title (journal ticks)
+  (format nil "~A, tick~P ~D~@[ to ~D~]" (title-of-journal journal)
+          (length ticks) (first ticks) (and (rest ticks) (first (last ticks)))))
 
 (defstruct (cast (:constructor make-cast (opening)) (:copier nil))
   "What is to be seen in a film that begins as the snapshot OPENING shows: the images of things, by
@@ -277,6 +285,7 @@ does."
          (journal (journal-meant journal 'save-animation))
          (moments (checked-moments 'save-animation moments
                                    (shown-end 'save-animation journal until)))
+         (title (titled-anyway title journal anyway))
          ;; The tick, which a title has that nobody gave, is told of by frames.
          (look (list :layers (if (or series title) layers (remove :title layers))
                      :in-color in-color :scale scale :title title :part part)))

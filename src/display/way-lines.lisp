@@ -192,6 +192,19 @@ go along a way."
                          x y to-x to-y +tile+))
     seen-p))
 
+(defun way-seen-p (pieces box)
+  "True if something of the way of PIECES is within BOX."
+  (some (lambda (piece)
+          (loop for (x y next-x next-y) on piece by #'cddr
+                thereis (and (overlap-p (list (1- x) (1- y) (1+ x) (1+ y)) box) t)
+                while next-y
+                thereis (block line
+                          (call-along (lambda (x y)
+                                        (when (overlap-p (list x y (1+ x) (1+ y)) box)
+                                          (return-from line t)))
+                                      x y next-x next-y +tile+))))
+        pieces))
+
 ;;; Where ways begin and end.
 
 (define-constant +mark-radius+ 4

@@ -48,7 +48,8 @@ takes part in it. Manual 2.3 and appendix A.")
   (:export #:simulator #:stop-simulator #:start-clock #:stop-clock #:await-idle #:call-as-owner
            #:*simulator-hooks*)
   ;; state, replay
-  (:export #:state-digest #:replay #:with-replay #:call-with-replay #:replaying #:journal-meant
+  (:export #:state-digest #:replay #:with-replay #:call-with-replay #:replaying #:repeated-words
+           #:journal-meant
            #:save-journal #:load-journal
            #:write-journal #:read-journal #:damaged-file #:damaged-journal
            #:different-definitions #:replay-anyway)

@@ -96,20 +96,28 @@ WRONG-ARGUMENT if these are of robots that are not there."
     (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (turn-ink position) position)))
 
 (defun robot-entries-with-ways (snapshot ways)
-  "Return the entries of the legend for the robots that have WAYS or are to be seen in SNAPSHOT."
-  (loop for way in ways
+  "Return the entries of the legend for the robots that are to be seen in SNAPSHOT, or whose WAYS
+are."
+  (loop with box = (pixels-of (shown-part snapshot))
+        for way in ways
         for position from 0
         for name = (first way)
-        if (moved-p way)
+        if (and (moved-p way) (way-seen-p (pieces-in-pixels (rest way)) box))
           collect (moved-robot-entry (drawn-name name) position)
         else if (find name (snapshot-robots snapshot) :key #'robot-image-name)
                collect (robot-entry (drawn-name name) position)))
+
+(defun start-seen-p (way snapshot)
+  "True if the ring is to be seen in SNAPSHOT with which WAY begins."
+  (and (moved-p way)
+       (destructuring-bind (x . y) (first (second way))
+         (way-seen-p (list (pixels-of (list x y))) (pixels-of (shown-part snapshot))))))
 
 (defun run-entries (snapshot ways spots)
   "Return the entries of the legend that a picture of a run that ended as SNAPSHOT shows, with WAYS
 and SPOTS, has besides that of a map and things."
   (append (robot-entries-with-ways snapshot ways)
-          (when (some #'moved-p ways)
+          (when (some (lambda (way) (start-seen-p way snapshot)) ways)
             (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
           (jump-entries-of (mapcar #'rest ways) snapshot)
           (and spots (list (sample-of (canvas x y) "see below"
@@ -146,27 +154,37 @@ pixels: where the rings around two places would be one."
 
 (defun moments-in (part moments)
   "Return those of MOMENTS that were in PART (left top right bottom) of the map, or nobody knows
-where; all if PART is NIL."
+where; all if PART is NIL. The second value is the others."
   (flet ((elsewhere-p (moment)
            (destructuring-bind (left top right bottom) part
              (and (moment-x moment)
                   (not (and (<= left (moment-x moment) right)
                             (<= top (moment-y moment) bottom)))))))
-    (if part (remove-if #'elsewhere-p moments) moments)))
+    (if part
+        (values (remove-if #'elsewhere-p moments) (remove-if-not #'elsewhere-p moments))
+        moments)))
 
-(defun run-picture-text (snapshot ways moments &key limit title layers in-color scale)
+(defun spots-and-notes-in (part moments limit several-p reach)
+  "Return what SPOTS-AND-NOTES does of those of MOMENTS that were in PART, and a note that counts
+the others."
+  (multiple-value-bind (moments others) (moments-in part moments)
+    (multiple-value-bind (spots notes) (spots-and-notes moments limit several-p reach)
+      (values spots
+              (append notes (not-shown-note "Not shown, outside of this part" others))))))
+
+(defun run-picture-text (snapshot ways moments &key limit title subtitle layers in-color scale)
   "Return an SVG document of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS."
   (multiple-value-bind (spots notes)
-      (spots-and-notes (moments-in (snapshot-part snapshot) moments) limit
-                       (and (rest (snapshot-robots snapshot)) t)
-                       (reach-of-spots (drawn-scale scale snapshot layers)))
+      (spots-and-notes-in (snapshot-part snapshot) (in-brief moments) limit
+                          (and (rest ways) t)
+                          (reach-of-spots (drawn-scale scale snapshot layers)))
     (let ((more (run-entries snapshot ways spots)))
       (with-output-to-string (out)
         (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
           (multiple-value-bind (width height left)
               (draw-framed canvas snapshot layers
                            (lambda () (draw-run canvas snapshot ways spots layers))
-                           :title title :more more :legend '(:robots ()))
+                           :title title :subtitle subtitle :more more :legend '(:robots ()))
             (let ((width (max width 480)))
               (values width
                       (draw-notes canvas notes (max 8 left) (+ height 16)
@@ -210,5 +228,6 @@ PNG needs, or where no journal is kept."
                   (run-picture-text (in-part snapshot part 'save-run-picture) ways
                                     (in-order (append (of-kinds kinds seen) own))
                                     :limit limit :title title :layers layers
+                                    :subtitle (and anyway (repeated-words journal))
                                     :in-color in-color :scale scale))
                 file kind))))
