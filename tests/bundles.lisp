@@ -77,9 +77,9 @@
 (test bundles.count-trials-that-broke-off-before-robots-were-seen
   (is (equal '("broke off with an error: 2 trials")
              (mapcar #'display::entry-text
-                     (trails::bundle-entries (append (trails:ways-along '() 1 "error")
-                                                     (trails:ways-along '() 2 "error"))
-                                             "trial")))))
+                     (trails::outcome-entries (append (trails:ways-along '() 1 "error")
+                                                      (trails:ways-along '() 2 "error"))
+                                              "trial")))))
 
 ;;; Robots that are put elsewhere.
 

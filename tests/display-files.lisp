@@ -224,7 +224,8 @@
                                     (display:make-moment 3 :note "there" 15 3))
                               options))))
       (is (= 2 (length (notes))))
-      (is (equal '("tick 2: here") (notes :part '(0 0 9 10)))))))
+      (is (equal '("tick 2: here" "Not shown, outside of this part: 1 note of yours.")
+                 (notes :part '(0 0 9 10)))))))
 
 (test pictures.that-end-too-late-name-themselves
   (in-studio (robot)

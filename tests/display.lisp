@@ -260,8 +260,8 @@
 
 (test world-display.shows-the-planned-way
   (in-studio (robot)
-    (let ((ink (web (display::layer-ink :planned-way))))
-      (flet ((shown-p (&rest layers) (mentions-p (plain-picture robot :layers layers) ink)))
+    (let ((dashes "stroke-dasharray=\"6,4\""))
+      (flet ((shown-p (&rest layers) (mentions-p (plain-picture robot :layers layers) dashes)))
         (is (not (shown-p :planned-way)))
         (let ((content (display:snapshot-content (display:snapshot-of robot))))
           (robot:publish-way robot '((6.5 6.5) (8.5 6.5) (8.5 2.5)))

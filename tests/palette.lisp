@@ -92,7 +92,7 @@ VISIONS."
   "Return what is drawn of a way without colours, but for where its dashes are."
   (drawing (canvas)
     (let ((canvas:in-color* nil))
-      (display:draw-way-line canvas '(0 0 100 0) (display:turn-ink position) position))))
+      (display:draw-way-sample canvas '(0 0 100 0) (display:turn-ink position) position))))
 
 (test palette.many-robots-and-ways-are-told-apart-by-all-eyes
   "The first forty by colour and dashes; ten robots and ways without colours as well."

@@ -174,3 +174,22 @@ of the lines that lead to names, x y x y each."
     (is (string= "ada in study" (display::title-of '("ada") 'study))))
   (in-studio (robot)
     (is (mentions-p (film-of robot #'ungrasp-nothing) "<title>studio-robot in studio, tick"))))
+
+(defun names-with-a-pile (&rest sizes)
+  "Return the texts in a picture of a world where things of SIZES, A, B ..., are in one place."
+  (in-studio (robot)
+    (loop for size in sizes for name in '(a b c d)
+          do (world:make-new-thing name (list (robot:robot-world robot) 9 8)
+                                   `((:size ,size) (:weight 1))))
+    (mapcar (lambda (text) (of-element text :text))
+            (drawn-with :text (display:svg-picture robot :layers '(:names))))))
+
+(test names.of-what-lies-on-another-are-written
+  (let ((names (names-with-a-pile 40 2)))
+    (is (member "a" names :test #'equal))
+    (is (member "b" names :test #'equal))))
+
+(test names.of-a-pile-say-what-is-seen-and-how-many-are-not
+  (let ((names (names-with-a-pile 2 2 2 2)))
+    (is (member "d and 3 more" names :test #'equal))
+    (is (not (member "a" names :test #'equal)))))

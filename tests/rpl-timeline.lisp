@@ -75,8 +75,8 @@
 (test timeline.shows-tasks-waits-ends-and-a-legend
   (let ((text (timeline-text (seen-until 30))))
     (is (eql 0 (search "<svg" text)))
-    (is-true (has-words-p text "1 seen-boss" "2 one" "valve arm" "cleans up" "is blocked"
-                          "command under way" "evaporated"))
+    (is-true (has-words-p text "1 seen-boss" "2 one" "valve arm" "runs its parts"
+                          "waits" "succeeded"))
     (is (search "ticks 0 to 22, succeeded" text))))
 
 (test timeline.of-hundreds-of-tasks-is-cut-where-asked
@@ -209,7 +209,19 @@ one points at it, it says in words what came of it."
   (let ((text (timeline-text (seen-until 30) :in-color nil)))
     (is (subsetp '("000000" "ffffff") (colors-in text) :test #'string=))
     (is (subsetp (colors-in text) '("000000" "ffffff") :test #'string=))
-    (is-true (has-words-p text "runs its parts" "command that failed"))))
+    (is-true (has-words-p text "runs its parts" "waits"))))
+
+(test timeline.legend-has-what-is-drawn
+  (is (not (has-words-p (timeline-text (seen-until 30)) "command that failed"))))
+
+(test timeline.is-as-wide-as-its-ticks-and-breaks-its-title
+  (let ((words (format nil "~{~A~^ ~}" (loop repeat 60 collect "word"))))
+    (flet ((width (text)
+             (of-element (first (elements text)) :width)))
+      (is (< 0 (width (timeline-text (seen-until 30))) 820))
+      (is (= (width (timeline-text (seen-until 30)))
+             (width (timeline-text (seen-until 30) :title words))))
+      (is (has-words-p (timeline-text (seen-until 30) :title words) "ticks")))))
 
 (test timeline.has-no-two-kinds-that-look-alike-without-colours
   "Neither as wide as in the legend nor as narrow as a tick may be."

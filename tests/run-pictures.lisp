@@ -105,8 +105,11 @@
         (define 12)
         (with-scratch-file (svg "svg")
           (signals run:different-definitions (ars:save-run-picture svg :journal journal))
-          (is-true (ars:save-run-picture svg :journal journal :anyway t))
-          (is-true (ars:save-animation journal svg :anyway t))
+          (dolist (save (list (lambda (journal)
+                                (ars:save-run-picture svg :journal journal :anyway t))
+                              (lambda (journal) (ars:save-animation journal svg :anyway t))))
+            (is-true (funcall save journal))
+            (is (mentions-p (uiop:read-file-string svg) "Repeated with other definitions")))
           (is (null (ars:journal-moments journal :anyway t)))
           (is-true (ars:save-trajectory svg :journal journal :anyway t)))))))
 

@@ -4,11 +4,13 @@
 
 (defconstant +label-width+ 480
   "How wide the column with the names of the tasks is at most, in pixels.")
-(defconstant +chart-width+ 900 "How wide all ticks together are, in pixels.")
+(defconstant +tick-width+ 8 "How wide a tick is, in pixels, where there are neither few nor many.")
+(defconstant +least-chart+ 280 "How wide all ticks together are at least, in pixels.")
+(defconstant +chart-width+ 900 "How wide all ticks together are at most, in pixels.")
 (defconstant +bar-height+ 14 "How high a bar is, in pixels.")
 (defconstant +lane-height+ 12 "How high commands below a bar are, in pixels.")
 (defconstant +gap+ 5 "How far rows are apart, in pixels.")
-(defconstant +top+ 74 "How much room there is above the rows, in pixels.")
+(defconstant +legend-line+ 18 "How far lines of the legend are apart, in pixels.")
 
 (defparameter *looks*
   '((:parts #x5A81C2 :hatching "runs its parts") (:call #xA6BDF7 :dots "commands in a call")

@@ -18,7 +18,7 @@ canvas.")
                 #:tree-image-tasks)
   (:import-from :ars-magna.rpl-robot #:call-with-plans-in-use)
   (:import-from :ars-magna.command #:trouble-p #:error-code-meaning)
-  (:import-from :ars-magna.display #:picture-kind #:save-svg)
+  (:import-from :ars-magna.display #:picture-kind #:save-svg #:lines-within)
   ;; bars, timeline
   (:export #:tick-at #:make-page #:page-end #:page-start #:scale-for #:draw-page)
   ;; task-tree

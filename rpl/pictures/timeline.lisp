@@ -15,26 +15,51 @@
            (write-at canvas left (- top 10) text #x606060)
            (write-at canvas left (+ bottom 15) text #x606060)))
 
-;;; The legend.
+;;; The legend. Entries are lists of a text and a function of a canvas and a place that draws it.
 
-(defun draw-legend (canvas &key (x 10) (y 27) width)
-  "Draw what colors and marks mean, from X, Y on, in as many lines as it takes if it is to be WIDTH
-pixels wide. Return where it ends: how far to the right, and how far down."
-  (let ((left x))
-    (flet ((entry (text painter)
-             (let ((end (+ x 46 (* +character-width+ (length text)))))
-               (when (and width (> end width) (> x left))
-                 (setf end (+ left (- end x)) x left)
-                 (incf y 18))
-               (funcall painter x y)
-               (write-at canvas (+ x 24) (+ y 11) text)
-               (setf x end))))
-      (loop for (kind nil nil text) in *looks*
-            do (let ((kind kind))
-                 (entry text (lambda (x y) (look-box canvas kind x y 18 +bar-height+)))))
-      (loop for (outcome nil text) in *end-looks*
-            do (entry text (lambda (x y) (draw-mark canvas outcome (+ x 12) y)))))
-    (values x (+ y 18))))
+(defparameter *legend*
+  (append (loop for (kind nil nil text) in *looks*
+                collect (let ((kind kind))
+                          (list kind text (lambda (canvas x y)
+                                            (look-box canvas kind x y 18 +bar-height+)))))
+          (loop for (outcome nil text) in *end-looks*
+                collect (let ((outcome outcome))
+                          (list outcome text (lambda (canvas x y)
+                                               (draw-mark canvas outcome (+ x 12) y))))))
+  "Lists (what text painter): what colours and marks mean.")
+
+(defun looks-of (bar)
+  "Return what is drawn of BAR, as *LEGEND* has it."
+  (append (list (if (bar-call-p bar) :call :parts) (bar-outcome bar))
+          (mapcar #'span-kind (bar-spans bar))
+          (loop for span in (bar-commands bar)
+                collect (if (trouble-p (span-error span)) :trouble :command))))
+
+(defun legend-for (rows)
+  "Return those entries of *LEGEND* that ROWS need."
+  (let ((drawn (loop for row in rows append (mapcan #'looks-of (row-bars row)))))
+    (remove-if-not (lambda (entry) (member (first entry) drawn)) *legend*)))
+
+(defun legend-places (legend width)
+  "Return lists (text painter x y) of where the entries of LEGEND stand, in as many lines as it
+takes for them to be WIDTH pixels wide; and how high these are together."
+  (let ((x 0) (y 0))
+    (values (loop for (nil text painter) in legend
+                  for wide = (+ 46 (* +character-width+ (length text)))
+                  do (when (and (plusp x) (> (+ x wide) width))
+                       (setf x 0)
+                       (incf y +legend-line+))
+                  collect (list text painter x y)
+                  do (incf x wide))
+            (+ y +legend-line+))))
+
+(defun draw-legend (canvas legend x y width)
+  "Draw LEGEND from X, Y on, WIDTH pixels wide. Return where it ends, how far down."
+  (multiple-value-bind (places height) (legend-places legend width)
+    (loop for (text painter right down) in places
+          do (funcall painter canvas (+ x right) (+ y down))
+             (write-at canvas (+ x right 24) (+ y down 11) text))
+    (+ y height)))
 
 ;;; The rows.
 
@@ -101,19 +126,39 @@ MOST."
   (when (plusp (page-unseen page))
     (write-at canvas 10 y (format nil "~D more rows are left out." (page-unseen page)))))
 
+(defconstant +title-size+ 13 "How high the font of the title is, in pixels.")
+(defconstant +title-line+ 17 "How far lines of the title are apart, in pixels.")
+
+(defun chart-width (page)
+  "Return how wide the ticks of PAGE together are, in pixels."
+  (clamp (* +tick-width+ (- (page-end page) (page-start page))) +least-chart+ +chart-width+))
+
+(defun title-lines (canvas page title width)
+  "Return TITLE, or if it is NIL from when to when the ticks of PAGE are, as lines of WIDTH pixels."
+  (lines-within (or title (format nil "Plans from tick ~A to ~A" (page-start page) (page-end page)))
+                width (character-width canvas +title-size+)))
+
+(defun draw-timeline-title (canvas lines)
+  (loop for line in lines for y from 16 by +title-line+
+        do (draw-words canvas draw-gcontext* 10 y line :size +title-size+ :bold-p t)))
+
 (defun draw-timeline (canvas bars most &optional title)
   "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows, below TITLE or, if it is NIL,
 from when to when they are. Return width and height in pixels."
-  (let* ((page (make-page bars most))
-         (left (labels-width (page-rows page) 120 +label-width+))
-         (scale (make-scale (page-start page) (page-end page) left))
-         (bottom (+ +top+ (rows-height (page-rows page)))))
-    (write-at canvas 10 16 (or title (format nil "Plans from tick ~A to ~A" (page-start page)
-                                             (page-end page))))
-    (draw-axis canvas scale +top+ bottom)
-    (draw-rows canvas (page-rows page) scale +top+)
+  (let* ((page (make-page bars most)) (rows (page-rows page))
+         (left (labels-width rows 120 +label-width+))
+         (scale (make-scale (page-start page) (page-end page) left (chart-width page)))
+         (width (+ left (scale-width scale) 40))
+         (lines (title-lines canvas page title (- width 20)))
+         (top (+ 30 (draw-legend canvas (legend-for rows) 10 (+ 10 (* +title-line+ (length lines)))
+                                 (- width 10))))
+         (bottom (+ top (rows-height rows))))
+    (draw-timeline-title canvas lines)
+    (draw-axis canvas scale top bottom)
+    (write-at canvas 10 (- top 10) "ticks" #x606060)
+    (draw-rows canvas rows scale top)
     (draw-unseen canvas page (+ bottom 34))
-    (values (max (draw-legend canvas) (+ left +chart-width+ 40)) (+ bottom 42))))
+    (values width (+ bottom 42))))
 
 ;;; In a place of any width.
 
@@ -138,5 +183,5 @@ Return where it ends, in pixels."
     (with-clipping (canvas 0 axis width (max 1 (- bottom axis)))
       (draw-rows canvas (page-rows page) scale first :from from :to to))
     (draw-unseen canvas page (+ bottom 34))
-    (nth-value 1 (draw-legend canvas :y (+ bottom (if (plusp (page-unseen page)) 44 24))
-                                     :width width))))
+    (draw-legend canvas *legend* 10 (+ bottom (if (plusp (page-unseen page)) 44 24))
+                 (- width 10))))

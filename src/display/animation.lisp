@@ -16,13 +16,17 @@ how far that has come.")
 (defun call-with-frames (function journal every until &key part (watch #'identity))
   "Replay JOURNAL up to the tick UNTIL (NIL: its end); call FUNCTION with a snapshot of its
 beginning, of every EVERY ticks and of its end, of PART of its map or, if that is NIL, of all; and
-WATCH with the simulation at the beginning and after each tick."
-  (let ((last nil) (queue *message-queue*))
-    (labels ((show (simulation)
-               (setf last (take-snapshot (simulation-world simulation) last))
-               ;; What is wrong with drawing is to be told here, not in the run repeated.
+WATCH with the simulation at the beginning and after each tick. Signals what FUNCTION does."
+  (let ((last nil) (queue *message-queue*) (trouble nil))
+    (labels ((draw ()
+               ;; What is wrong with drawing is to be told here, not in the run repeated, in which
+               ;; an observer's errors are messages.
                (let ((*message-queue* queue))
-                 (funcall function (in-part last part 'save-animation)))
+                 (handler-case (funcall function (in-part last part 'save-animation))
+                   (error (condition) (setf trouble condition)))))
+             (show (simulation)
+               (setf last (take-snapshot (simulation-world simulation) last))
+               (unless trouble (draw))
                (funcall *frame-hook* (snapshot-tick last)))
              (look (simulation)
                (keep-history simulation)
@@ -31,7 +35,8 @@ WATCH with the simulation at the beginning and after each tick."
              (end ()
                (let ((simulation (current-simulation)))
                  (unless (= (snapshot-tick last) (simulation-tick simulation))
-                   (show simulation)))))
+                   (show simulation))
+                 (when trouble (error trouble)))))
       (call-with-replay #'end journal :until until :observer #'look :beginning #'look))))
 
 (defun frame-step (journal every until)
@@ -107,14 +112,22 @@ the lines of SVG MOVERS."
 " movers "</g>
 ")))))))
 
-(defun film-title (journal ticks)
+(defun title-of-journal (journal)
   (let ((header (journal-header journal)))
-    (format nil "~A, tick~P ~D~@[ to ~D~]"
-            (title-of (mapcar (lambda (robot) (drawn-name (blueprint-name (find-blueprint robot))))
-                              (getf header :robots))
-                      (map-name (find-map (getf header :map))))
-            (length ticks) (first ticks)
-            (and (rest ticks) (first (last ticks))))))
+    (title-of (mapcar (lambda (robot) (drawn-name (blueprint-name (find-blueprint robot))))
+                      (getf header :robots))
+              (map-name (find-map (getf header :map))))))
+
+(defun titled-anyway (title journal anyway)
+  "Return TITLE, or NIL; one that says so if JOURNAL is shown ANYWAY, with other definitions."
+  (let ((words (and anyway (typep title '(or null string)) (repeated-words journal))))
+    (if words
+        (format nil "~A~%~A" (or title (title-of-journal journal)) words)
+        title)))
+
+(defun film-title (journal ticks)
+  (format nil "~A, tick~P ~D~@[ to ~D~]" (title-of-journal journal)
+          (length ticks) (first ticks) (and (rest ticks) (first (last ticks)))))
 
 (defstruct (cast (:constructor make-cast (opening)) (:copier nil))
   "What is to be seen in a film that begins as the snapshot OPENING shows: the images of things, by
@@ -272,6 +285,7 @@ does."
          (journal (journal-meant journal 'save-animation))
          (moments (checked-moments 'save-animation moments
                                    (shown-end 'save-animation journal until)))
+         (title (titled-anyway title journal anyway))
          ;; The tick, which a title has that nobody gave, is told of by frames.
          (look (list :layers (if (or series title) layers (remove :title layers))
                      :in-color in-color :scale scale :title title :part part)))
@@ -342,14 +356,30 @@ left alone: nobody said that they may go."
                            (shown-name (first older))
                            (and (rest older) (file-namestring (first (last older)))) count)))))
 
+(defun files-in-words (files)
+  "Return what FILES, one or more of a series, the last first, are called."
+  (format nil "~A~@[ to ~A~]" (shown-name (first (last files)))
+          (and (rest files) (file-namestring (first files)))))
+
+(defun call-for-series (function files)
+  "Call FUNCTION, which writes the next file of a series of which FILES, the last first, are there.
+Signals MISUSE, which says so, if it cannot."
+  (handler-case (funcall function)
+    (misuse (trouble)
+      (if files
+          (reject-use "~A. Of the series there ~:[is~;are~] so far ~A."
+                      (one-line-text trouble) (rest files) (files-in-words files))
+          (error trouble)))))
+
 (defun save-series (journal file &key every until display layers in-color scale title part)
   (let ((robot (first (getf (journal-header journal) :robots))) (files '()))
-    (call-with-frames (lambda (snapshot)
-                        (push (save-snapshot snapshot (snapshot-robot snapshot robot)
-                                             (numbered-file file (1+ (length files)))
-                                             :display display :layers layers
-                                             :in-color in-color :scale scale :title title)
-                              files))
-                      journal (frame-step journal every until) until :part part)
+    (flet ((save (snapshot)
+             (save-snapshot snapshot (snapshot-robot snapshot robot)
+                            (numbered-file file (1+ (length files)))
+                            :display display :layers layers
+                            :in-color in-color :scale scale :title title)))
+      (call-with-frames (lambda (snapshot)
+                          (push (call-for-series (lambda () (save snapshot)) files) files))
+                        journal (frame-step journal every until) until :part part))
     (warn-of-older-frames file (length files))
     (reverse files)))

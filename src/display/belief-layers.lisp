@@ -1,4 +1,4 @@
-;;;; belief-layers.lisp -- layers of what robots believe, and of where they are about to go.
+;;;; belief-layers.lisp -- layers of what robots believe.
 
 (in-package :ars-magna.display)
 
@@ -66,14 +66,3 @@ that the bounds of its heading."
       (draw-lines canvas draw-gcontext* (pixels-of (odometer-box odometer)))
       (dolist (angle (list (- heading half) (+ heading half)))
         (draw-segments canvas draw-gcontext* (pixels-of (list* x y (around x y angle 3))))))))
-
-(define-constant +way-end+ 4
-  :documentation "The radius of the ring where a planned way ends, in pixels.")
-
-(defun draw-planned-way (canvas points)
-  "Draw the way through POINTS, lists (x y), with a spot where it ends."
-  (when (rest points)
-    (let ((color (layer-ink :planned-way)) (end (pixels-of (first (last points)))))
-      (inked (color :width 2 :dashes (layer-dashes :planned-way))
-        (draw-lines canvas draw-gcontext* (pixels-of (apply #'append points))))
-      (inked (color :width 2) (draw-circle canvas (first end) (second end) +way-end+ nil)))))

@@ -94,8 +94,7 @@ wide, with DASHES."
 ;;; The inks of layers: so dark that what is too light for the halo is light enough for them.
 
 (define-constant +layer-inks+
-    '(:wedges #x7A1030 :tracks #x8A1010 :designators #x0C3C78 :odometer #x4A1A80 :reach #x5A3A00
-      :planned-way #x0A4A4A)
+    '(:wedges #x7A1030 :tracks #x8A1010 :designators #x0C3C78 :odometer #x4A1A80 :reach #x5A3A00)
   :test #'cl:equal
   :documentation "The colours of what layers draw, by name.")
 

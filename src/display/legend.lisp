@@ -179,18 +179,18 @@ than the line."
 (defun line-ink (layer)
   "Return the colour of lines of LAYER in legends."
   (case layer
-    (:trail (turn-ink 0))
+    ((:trail :planned-way) (turn-ink 0))
     (:rays (first +ray-inks+))
     (t (layer-ink layer))))
 
 (defun jump-entry (color)
   "Return the entry for that something was put elsewhere, in COLOR."
   (sample-of (canvas x y) "put elsewhere"
-    (draw-jump canvas (list (- x 8) y) (list (+ x 7) y) color)))
+    (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))
 
 (defun jump-entries (snapshot layers)
   (and (member :trail layers)
-       (some (lambda (robot) (jumps-p (robot-image-trail robot))) (snapshot-robots snapshot))
+       (trail-jumps-seen-p snapshot)
        (list (jump-entry (line-ink :trail)))))
 
 (defun line-entries (snapshot layers)

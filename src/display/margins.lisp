@@ -6,7 +6,7 @@
 
 (defun title-of (robots map)
   "Return what a title says of ROBOTS, a list of names as they are drawn, in MAP, a name."
-  (format nil "~@[~A in ~]~A" (joined robots) (drawn-name map)))
+  (format nil "~@[~A in ~]~A" (and robots (joined robots)) (drawn-name map)))
 
 (defun map-title (snapshot)
   "Return what stands above a picture of SNAPSHOT unless somebody says what."

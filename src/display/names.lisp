@@ -133,16 +133,37 @@ its image."
              (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
              (+ 1 (spot-radius robot robots)) robot))
 
+;;; Of things in one place the small ones lie above. One of the same size hides what is below it.
+
+(defun same-place-p (image other)
+  (and (= (thing-image-x image) (thing-image-x other))
+       (= (thing-image-y image) (thing-image-y other))))
+
+(defun hides-p (image other)
+  "True if IMAGE, which is drawn later than OTHER, hides that."
+  (and (same-place-p image other) (<= (half-width other) (half-width image))))
+
+(defun thing-spot (image hidden)
+  "Return the spot of the thing of IMAGE, which hides so many others as HIDDEN says."
+  (make-spot (format nil "~A~@[ and ~D more~]" (short-name (thing-image-name image))
+                     (and (plusp hidden) hidden))
+             (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
+             (half-width image)))
+
+(defun thing-spots (images)
+  "Return the spots of those of IMAGES, of things in the order in which they are drawn, that no
+other hides."
+  (loop for (image . above) on images
+        for below = (ldiff images (member image images))
+        unless (find-if (lambda (other) (hides-p other image)) above)
+          collect (thing-spot image (count-if (lambda (other) (hides-p image other)) below))))
+
 (defun named-spots (snapshot)
   "Return the spots of what has a name on the map, in order of importance."
   (append (loop with robots = (snapshot-robots snapshot)
                 for robot in robots collect (robot-spot robot robots))
-          (loop for image in (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
-                                          :key #'thing-image-size)
-                collect (make-spot (short-name (thing-image-name image))
-                                   (to-pixels (thing-image-x image))
-                                   (to-pixels (thing-image-y image))
-                                   (half-width image)))))
+          (thing-spots (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
+                                    :key #'thing-image-size))))
 
 (define-constant +apart+ 6
   :documentation "How far names on a line are apart at least, not to be read as one, in pixels.")
@@ -163,7 +184,7 @@ its image."
           (let ((end (first (last (robot-image-planned-way robot)))))
             (and end (member :planned-way layers)
                  (list (box-around (to-pixels (first end)) (to-pixels (second end))
-                                   (+ 2 +way-end+)))))))
+                                   (+ 2 +mark-radius+)))))))
 
 (defun spot-box (spot)
   (box-around (spot-x spot) (spot-y spot) (spot-half spot)))
@@ -201,17 +222,23 @@ that of one of RIVALS, or NIL."
   (let ((area (box-around (spot-x spot) (spot-y spot) reach)))
     (remove-if-not (lambda (box) (overlap-p area box)) boxes)))
 
-(defun name-box (snapshot layers spot width taken marks rivals)
+(defun on-another-p (spot spots)
+  "True if SPOT lies on or right beside another of SPOTS."
+  (some (lambda (other)
+          (and (not (eq other spot)) (overlap-p (spot-box spot) (spot-box other))))
+        spots))
+
+(defun name-box (snapshot layers spot width taken marks rivals led-p)
   "Return the box for the name of SPOT, WIDTH pixels wide, or NIL, and as a second value whether a
-line has to lead there."
+line has to lead there, as it may if LED-P."
   (let ((near (near-box snapshot layers spot width taken marks rivals)))
     (cond (near (values near nil))
-          ((or (spot-robot spot) (beside-robot-p spot rivals))
+          ((or led-p (spot-robot spot) (beside-robot-p spot rivals))
            (values (led-box snapshot layers spot width taken rivals) t)))))
 
 (defun draw-names (canvas snapshot layers &optional boxes)
   "Write the names of robots and things where there is room beside what LAYERS list and BOXES; those
-of robots, and of things right beside one, where there is none at the end of a line."
+of robots, and of things right beside one or on another, where there is none at the end of a line."
   (let* ((spots (named-spots snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
          (marks (append boxes (loop for robot in robots append (marked-spots robot layers))))
@@ -222,7 +249,7 @@ of robots, and of things right beside one, where there is none at the end of a l
              (reach (+ width (spot-half spot) +reach-of-names+)))
         (multiple-value-bind (box led-p)
             (name-box snapshot layers spot width (boxes-near spot reach taken) marks
-                      (rivals spot spots reach))
+                      (rivals spot spots reach) (on-another-p spot spots))
           (when box
             (push (widened box +apart+) taken)
             (when led-p (draw-leader canvas spot box))

@@ -35,7 +35,11 @@
            #:in-part #:draw-framed #:with-map-svg #:drawn-scale #:sample-of
            #:turn-ink #:draw-ring #:robot-entry #:sample-of-name
            #:robot-radius #:drawn-name #:draw-names
-           #:telling-what-breaks #:draw-way-line #:draw-pieces #:jump-entry #:draw-start
+           #:telling-what-breaks #:lines-within #:make-way-line #:draw-way-lines #:draw-way-sample
+           #:draw-arrows
+           #:draw-way-marks
+           #:jumps-seen-p #:jumps-of #:way-seen-p #:call-along #:draw-jump-dots #:jump-entry
+           #:draw-start
            #:way-entry #:to-pixels #:pixels-of #:shown-part #:snapshot-part
            #:inked #:around #:draw-circle #:half-width
            #:box-around #:overlap-p #:draw-view-margins #:view-edges

@@ -38,9 +38,11 @@ there is; the list () gives the bare map. SCALE is how many pixels there are to 
 256. Without SCALE it is GRAPHICS-SCALE*, if you have set that to another value than 8, or else what
 suits the map: from 4 to 40, so that the picture without its legend is 900 x 700 pixels at most, if
 4 do for that. Where SCALE is more than that, and more than 20, the picture grows as a whole, text
-and lines, too. IN-COLOR is false for a picture in black and white. TITLE, a string, stands above,
-where the layers have a title, instead of the robots, the map and the tick. PART (left top right
-bottom), in cells, is what is wanted of the map, by default all. Signals WRONG-ARGUMENT,
+and lines, too. In a paper, text is readable in a column, 84 mm wide, if the picture is no more than
+400 pixels wide, and on a page, 174 mm wide, if it is 820: choose SCALE so. IN-COLOR is false for a
+picture in black and white. TITLE, a string, stands above, where the layers have a title, instead of
+the robots, the map and the tick. PART (left top right bottom), in cells, is what is wanted of the
+map, by default all. Signals WRONG-ARGUMENT,
 and MISUSE if GRAPHICS-SCALE* is no scale."
   (check-picture 'svg-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))

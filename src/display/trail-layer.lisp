@@ -1,25 +1,6 @@
-;;;; trail-layer.lisp -- the layer of where robots have been, in one piece or more.
+;;;; trail-layer.lisp -- the layers of where robots have been, and of where they are about to go.
 
 (in-package :ars-magna.display)
-
-;;; A robot that is put elsewhere, by PLACE-ROBOT or in the window, goes no way from here to there.
-;;; So lines end where it was taken away, and begin anew where it was put; dots join the two.
-
-(define-constant +jump-dashes+ '(1 6)
-  :test #'cl:equal
-  :documentation "The dots and gaps between where a robot was and where it was put, in pixels.")
-
-(defun draw-jump (canvas from to color)
-  "Draw that something was put from FROM to TO, lists (x y) in pixels: dots of COLOR."
-  (inked (color :width 3/2 :dashes +jump-dashes+)
-    (draw-segments canvas draw-gcontext* (append from to))))
-
-(defun draw-pieces (canvas pieces color draw)
-  "Draw a way of COLOR: each of PIECES, lists x y ... in pixels, by the function DRAW, and the jumps
-between them."
-  (loop for (piece next) on pieces
-        do (when (cddr piece) (funcall draw piece))
-           (when next (draw-jump canvas (last piece 2) (subseq next 0 2) color))))
 
 ;;; Trails.
 
@@ -38,9 +19,37 @@ between them."
   (do-trail (points nil nil nil placements)
     thereis (/= placements (fourth points))))
 
-(defun draw-trail (canvas points color)
-  "Draw a line of COLOR through POINTS, of a trail."
-  (draw-pieces canvas (pieces-of-trail points) color
-               (lambda (piece)
-                 (inked (color :dashes (layer-dashes :trail))
-                   (draw-lines canvas draw-gcontext* piece)))))
+(defun trail-line (robot)
+  "Return the line of the trail of ROBOT."
+  (make-way-line (robot-image-position robot) (pieces-of-trail (robot-image-trail robot))
+                 :dashes (layer-dashes :trail) :width 1 :arrows-p nil))
+
+(defun trail-jumps-seen-p (snapshot)
+  "True if it is to be seen on trails in SNAPSHOT that robots were put elsewhere."
+  (let ((trails (mapcar #'robot-image-trail (snapshot-robots snapshot))))
+    (and (some #'jumps-p trails)
+         (jumps-seen-p (mapcar #'pieces-of-trail trails) (pixels-of (shown-part snapshot))))))
+
+;;; Planned ways.
+
+(defun planned-line (robot)
+  "Return the line of the way that ROBOT is about to go, or NIL if none is known."
+  (let ((points (robot-image-planned-way robot)))
+    (and (rest points)
+         (make-way-line (robot-image-position robot) (list (pixels-of (apply #'append points)))
+                        :dashes (layer-dashes :planned-way) :arrows-p nil))))
+
+(defun draw-planned-ways (canvas robots)
+  "Draw the ways that ROBOTS are about to go, with a ring where each ends."
+  (draw-way-lines canvas (remove nil (mapcar #'planned-line robots)))
+  (draw-way-marks canvas
+                  (loop for robot in robots
+                        for points = (robot-image-planned-way robot)
+                        when (rest points)
+                          collect `(draw-start ,@(pixels-of (first (last points)))
+                                               ,(turn-ink (robot-image-position robot))))))
+
+(defun draw-ways-of-robots (canvas robots layers)
+  "Draw what LAYERS list of the ways of ROBOTS."
+  (when (member :trail layers) (draw-way-lines canvas (mapcar #'trail-line robots)))
+  (when (member :planned-way layers) (draw-planned-ways canvas robots)))

@@ -2,95 +2,10 @@
 
 (in-package :ars-magna.display)
 
-(define-constant +arrows-apart+ 90
-  :documentation "How far arrowheads on a way are apart, about, in pixels.")
-(define-constant +least-arrowed+ 24
-  :documentation "How long a way with an arrowhead is at least, in pixels.")
-(define-constant +arrow-length+ 9 :documentation "How long arrowheads on ways are, in pixels.")
-
-(defun lengths-along (points)
-  "Return lists (length x y dx dy) of the pieces of the way through POINTS, x y ...; those of no
-length are left out."
-  (loop for (x y next-x next-y) on points by #'cddr
-        for dx = (and next-y (- next-x x)) and dy = (and next-y (- next-y y))
-        for length = (and next-y (sqrt (+ (* dx dx) (* dy dy))))
-        while next-y
-        when (plusp length) collect (list length x y dx dy)))
-
-(defun spot-along (pieces distance)
-  "Return the point DISTANCE along the way of PIECES (see LENGTHS-ALONG), a list (x y)."
-  (loop for ((length x y dx dy) . more) on pieces
-        when (or (<= distance length) (null more))
-          return (let ((share (min 1 (/ distance length))))
-                   (list (+ x (* share dx)) (+ y (* share dy))))
-        do (decf distance length)))
-
-(defun arrow-along (pieces distance)
-  "Return a list (x y angle): an arrowhead DISTANCE along the way of PIECES."
-  (destructuring-bind ((x y) (to-x to-y))
-      (list (spot-along pieces (- distance (/ +arrow-length+ 2)))
-            (spot-along pieces (+ distance (/ +arrow-length+ 2))))
-    (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (atan (- to-y y) (- to-x x)))))
-
-(defun free-arrow (pieces distance arrows)
-  "Return an arrowhead about DISTANCE along the way of PIECES that lies on none of ARROWS, as it may
-where a way leads back; or NIL."
-  (loop with room = (* 3/2 +arrow-length+)
-        for aside in (list 0 room (- room) (* 2 room) (* -2 room))
-        for (x y angle) = (arrow-along pieces (max 0 (+ distance aside)))
-        when (loop for (other-x other-y) in arrows
-                   never (overlap-p (box-around x y room) (list other-x other-y other-x other-y)))
-          return (list x y angle)))
-
-(defun arrows-along (points)
-  "Return lists (x y angle) of where arrowheads stand on the way through POINTS, x y ... in pixels:
-few, and none on a very short one."
-  (let* ((pieces (lengths-along points)) (whole (reduce #'+ pieces :key #'first))
-         (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+))))
-         (arrows '()))
-    (dotimes (index count (reverse arrows))
-      (let ((arrow (free-arrow pieces (* (+ index 1/2) (/ whole count)) arrows)))
-        (when arrow (push arrow arrows))))))
-
-(defun draw-way-arrow (canvas x y angle color hollow-p)
-  "Draw an arrowhead with a halo around X, Y in direction ANGLE."
-  (flet ((head (color more)
-           (let ((reach (+ more (* 1/2 +arrow-length+))))
-             (with-gcontext (draw-gcontext* :foreground color)
-               (draw-lines canvas draw-gcontext*
-                           (append (around x y angle reach) (around x y (+ angle 2.4d0) reach)
-                                   (around x y (- angle 2.4d0) reach))
-                           :fill-p t)))))
-    (let ((ink (if in-color* color black*)) (larger (if hollow-p 2 0)))
-      (head white* (+ larger 3/2))
-      (head ink larger)
-      (when hollow-p (head white* -1)))))
-
-(defun draw-way-line (canvas points color position)
-  "Draw a line of COLOR through POINTS, x y ... in pixels, dashed as that at POSITION of several,
-with arrowheads on it that say where it leads; they are hollow where heads of robots are."
-  (with-gcontext (draw-gcontext* :foreground white* :line-width 4)
-    (draw-lines canvas draw-gcontext* points))
-  (with-color color
-    (with-dashes ((turn-dashes position) :width 2)
-      (draw-lines canvas draw-gcontext* points)))
-  (loop for (x y angle) in (arrows-along points)
-        do (draw-way-arrow canvas x y angle color (hollow-head-p position))))
-
-(defun draw-start (canvas x y color)
-  "Draw what marks where a way begins: a small ring."
-  (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y 5 t))
-  (inked (color :width 2) (draw-circle canvas x y 4 nil)))
-
-(defun draw-goal (canvas x y color)
-  "Draw what marks where a way ends: a spot."
-  (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y 5 t))
-  (with-color color (draw-circle canvas x y 4 t)))
-
 (defun way-entry (text color position)
   "Return an entry of a legend for a way."
   (sample-of-name (canvas x y) (text "" 38)
-    (draw-way-line canvas (list (- x 18) y (+ x 18) y) color position)))
+    (draw-way-sample canvas (list (- x 18) y (+ x 18) y) color position)))
 
 ;;; Ways as points.
 
@@ -99,12 +14,19 @@ with arrowheads on it that say where it leads; they are hollow where heads of ro
   (list (to-pixels (if (pt-p point) (pt-x point) (first point)))
         (to-pixels (if (pt-p point) (pt-y point) (second point)))))
 
-(defun draw-way-on-map (canvas way position)
-  "Draw WAY, a list of points, the one at POSITION of several."
-  (let ((color (turn-ink position)))
-    (draw-way-line canvas (mapcan #'coordinates-of way) color position)
-    (destructuring-bind (x y) (coordinates-of (first way)) (draw-start canvas x y color))
-    (destructuring-bind (x y) (coordinates-of (first (last way))) (draw-goal canvas x y color))))
+(defun way-line-on-map (way position)
+  "Return the line of WAY, a list of points, the one at POSITION of several."
+  (make-way-line position (list (mapcan #'coordinates-of way))))
+
+(defun draw-ways-on-map (canvas ways)
+  "Draw WAYS, lists of points, with what marks where they begin and end."
+  (draw-way-lines canvas (loop for way in ways for position from 0
+                               collect (way-line-on-map way position)))
+  (draw-way-marks canvas
+                  (loop for way in ways for position from 0
+                        for color = (turn-ink position)
+                        collect `(draw-start ,@(coordinates-of (first way)) ,color)
+                        collect `(draw-goal ,@(coordinates-of (first (last way))) ,color))))
 
 (defun way-p (way)
   (and (consp way) (proper-list-p way)
@@ -155,8 +77,7 @@ with arrowheads on it that say where it leads; they are hollow where heads of ro
         (draw-framed canvas snapshot layers
                      (lambda ()
                        (draw-terrain canvas (snapshot-map snapshot) :layers layers)
-                       (loop for way in ways for position from 0
-                             do (draw-way-on-map canvas way position))
+                       (draw-ways-on-map canvas ways)
                        (draw-movers canvas snapshot layers))
                      :title title :more more)))))
 

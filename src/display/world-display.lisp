@@ -14,15 +14,12 @@
     (when (and (shown-p :tracks) (camera-image-track camera))
       (draw-track canvas robot (camera-image-track camera)))))
 
-(defun draw-layers (canvas snapshot robot color layers)
-  "Draw what LAYERS lists of ROBOT and lies below things."
-  (flet ((shown-p (layer) (member layer layers)))
-    (when (shown-p :trail) (draw-trail canvas (robot-image-trail robot) color))
-    (when (shown-p :planned-way) (draw-planned-way canvas (robot-image-planned-way robot)))
-    (dolist (camera (robot-image-cameras robot))
-      (draw-camera-layers canvas snapshot robot camera layers))
-    (when (and (shown-p :odometer) (robot-image-odometer robot))
-      (draw-odometer canvas (robot-image-odometer robot)))))
+(defun draw-layers (canvas snapshot robot layers)
+  "Draw what LAYERS lists of what ROBOT sees and believes, and lies below things."
+  (dolist (camera (robot-image-cameras robot))
+    (draw-camera-layers canvas snapshot robot camera layers))
+  (when (and (member :odometer layers) (robot-image-odometer robot))
+    (draw-odometer canvas (robot-image-odometer robot))))
 
 (defun draw-labels (canvas snapshot layers)
   "Draw what LAYERS lists that lies above things."
@@ -49,8 +46,9 @@ than all margins have.")
 
 (defun draw-below-robots (canvas snapshot layers)
   "Draw what LAYERS lists of SNAPSHOT that robots and things lie on."
+  (draw-ways-of-robots canvas (snapshot-robots snapshot) layers)
   (dolist (robot (snapshot-robots snapshot))
-    (draw-layers canvas snapshot robot (turn-ink (robot-image-position robot)) layers))
+    (draw-layers canvas snapshot robot layers))
   (when (member :reach layers) (draw-reach canvas (snapshot-things snapshot))))
 
 (defun draw-movers (canvas snapshot layers)

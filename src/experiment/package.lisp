@@ -9,7 +9,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:save-chart)
   (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
   (:import-from :ars-magna.display
-                #:take-snapshot #:picture-kind #:keep-history
+                #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history
                 #:open-display #:*display-opener*)
   (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions

@@ -50,7 +50,8 @@ takes part in it. Manual 2.3 and appendix A.")
            #:*program-input*
            #:*simulator-hooks*)
   ;; state, replay
-  (:export #:state-digest #:replay #:with-replay #:call-with-replay #:replaying #:journal-meant
+  (:export #:state-digest #:replay #:with-replay #:call-with-replay #:replaying #:repeated-words
+           #:journal-meant
            #:save-journal #:load-journal
            #:write-journal #:read-journal #:damaged-file #:damaged-journal
            #:different-definitions #:replay-anyway)

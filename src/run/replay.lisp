@@ -43,6 +43,13 @@ definitions than those at hand."
         (replay-anyway ()
           :report "Replay it all the same.")))))
 
+(defun repeated-words (journal)
+  "Return a sentence that says that JOURNAL is of a run with other definitions than those at hand,
+for those who show it anyway; or NIL if it is not."
+  (let ((header (journal-header journal)))
+    (and (differences-from header (mapcar #'find-blueprint (getf header :robots)))
+         "Repeated with other definitions than it began with.")))
+
 ;;; Silence. A journal may say that a run went on for very many ticks in which nothing was asked
 ;;; for; whoever replays it may not want to wait for so long.
 

@@ -6,6 +6,7 @@
   (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.run
                 #:simulation-robots #:simulation-tick #:call-with-replay #:replaying
+                #:repeated-words
                 #:journal-meant
                 #:journal-header #:simulation-world)
   (:import-from :ars-magna.robot
@@ -18,8 +19,11 @@
                 #:snapshot-map #:snapshot-robots #:snapshot-things #:robot-image-name
                 #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
                 #:drawn-scale
-                #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
-                #:draw-pieces #:jump-entry
+                #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:make-way-line
+                #:draw-way-lines #:draw-way-sample #:draw-arrows #:draw-way-marks #:jumps-seen-p
+                #:jumps-of #:way-seen-p
+                #:call-along
+                #:draw-jump-dots #:jump-entry
                 #:draw-start #:draw-ring #:robot-entry #:sample-of-name #:turn-ink
                 #:to-pixels #:box-around
                 #:inked #:around #:draw-circle #:half-width
@@ -27,7 +31,8 @@
                 #:drawn-name #:shown-part #:snapshot-part #:pixels-of #:*picture-layers*
                 #:check-map-options #:in-part #:sample-of
                 #:take-snapshot #:picture-kind #:save-svg
-                #:make-moment #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y
+                #:make-moment #:moment-tick #:moment-kind #:moment-code #:moment-text #:moment-x
+                #:moment-y
                 #:moment-robot #:moment-weight #:moment-words #:moments-watcher
                 #:remarked-moments #:checked-moments #:check-kinds #:of-kinds #:in-order
                 #:shown-end)

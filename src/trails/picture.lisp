@@ -34,8 +34,37 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
 
 (defun draw-way (canvas way)
   (let ((look (look-of way)))
-    (draw-pieces canvas (pieces-in-pixels (way-pieces way)) (second look)
-                 (lambda (points) (draw-line-of-way canvas points look)))))
+    (dolist (points (pieces-in-pixels (way-pieces way)))
+      (when (cddr points) (draw-line-of-way canvas points look)))))
+
+(defconstant +end-opacity+ 8/10 "How much the marker at the end of a way hides what is below.")
+
+(defun draw-arrows-of (canvas ways)
+  "Draw arrowheads on WAYS, as many as have room on all of them together."
+  (draw-arrows canvas (loop for way in ways
+                            collect (make-way-line 0 (pieces-in-pixels (way-pieces way))
+                                                   :color (second (look-of way))))))
+
+(defun robot-at-p (snapshot x y)
+  "True if a robot in SNAPSHOT is at X, Y."
+  (find-if (lambda (robot)
+             (and (< (abs (- x (robot-image-x robot))) 1/10)
+                  (< (abs (- y (robot-image-y robot))) 1/10)))
+           (snapshot-robots snapshot)))
+
+(defun starts-of (ways snapshot)
+  "Return the points (x y), in metres, where WAYS begin, each once: where no robot in SNAPSHOT is,
+which says so itself."
+  (remove-duplicates (loop for way in ways
+                           for ((piece)) = (list (way-pieces way))
+                           for (x . y) = (first piece)
+                           when (and (rest piece) (not (robot-at-p snapshot x y)))
+                             collect (list x y))
+                     :test #'equal :key (lambda (point)
+                                          (mapcar (lambda (at) (round at 1/10)) point))))
+
+(defun draw-jumps (canvas way)
+  (draw-jump-dots canvas (jumps-of (pieces-in-pixels (way-pieces way))) (second (look-of way))))
 
 (defun draw-marker-of (canvas look x y)
   (draw-marker canvas (first look) x y 4 (if in-color* (second look) black*)))
@@ -47,12 +76,13 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
         (draw-marker-of canvas (look-of way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
-  "Draw WAYS so faint that many can be told apart."
-  (dolist (way ways)
-    (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
-      (draw-way canvas way))))
-
-(defconstant +end-opacity+ 8/10 "How much the marker at the end of a way hides what is below.")
+  "Draw WAYS so faint that many can be told apart, above the dots where robots were put elsewhere."
+  (flet ((draw (function way)
+           (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
+             (funcall function canvas way))))
+    (dolist (way ways)
+      (when (rest (way-pieces way)) (draw #'draw-jumps way)))
+    (dolist (way ways) (draw #'draw-way way))))
 
 (defun bundle-entry (look opacity text)
   "Return an entry of the legend with TEXT for ways with LOOK and OPACITY."
@@ -70,11 +100,18 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
           collect (bundle-entry look (way-opacity (length ended))
                                 (format nil "~A: ~D ~A~P" (first (last look)) count what count))))
 
-(defun bundle-entries (ways what)
-  "Return the entries of the legend for WAYS, each of a WHAT."
+(defun jump-entries-of (ways snapshot)
+  "Return the entries of the legend that say how jumps look, if one of WAYS, lists of pieces, is to
+be seen in what SNAPSHOT shows."
+  (and (jumps-seen-p (mapcar #'pieces-in-pixels ways) (pixels-of (shown-part snapshot)))
+       (list (jump-entry black*))))
+
+(defun bundle-entries (snapshot ways what)
+  "Return the entries of the legend for WAYS, each of a WHAT, over the world of SNAPSHOT."
   (append (outcome-entries ways what)
-          (and (some (lambda (way) (rest (way-pieces way))) ways)
-               (list (jump-entry black*)))))
+          (and (starts-of ways snapshot)
+               (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
+          (jump-entries-of (mapcar #'way-pieces ways) snapshot)))
 
 (defun map-opacity (color-p)
   "Return how much the map of a bundle hides what is below, in colours if COLOR-P."
@@ -87,6 +124,9 @@ and things where these end."
     (with-opacity (canvas (map-opacity in-color*))
       (draw-terrain canvas (snapshot-map snapshot) :layers layers))
     (draw-ways canvas ways)
+    (with-opacity (canvas +end-opacity+) (draw-arrows-of canvas ways))
+    (loop for (x y) in (starts-of ways snapshot)
+          do (draw-start canvas (to-pixels x) (to-pixels y) black*))
     (draw-movers canvas snapshot (remove :names layers))
     (dolist (way ways)
       (with-opacity (canvas +end-opacity+) (draw-end canvas way)))
@@ -94,13 +134,31 @@ and things where these end."
 
 (defun bundle-text (snapshot ways &key what title subtitle layers in-color scale)
   "Return an SVG document of SNAPSHOT and WAYS in it, each of a WHAT, under TITLE and SUBTITLE."
-  (let ((more (bundle-entries ways what)))
+  (let ((more (bundle-entries snapshot ways what)))
     (with-output-to-string (out)
       (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
         (draw-framed canvas snapshot layers
                      (lambda () (draw-bundle canvas snapshot ways layers))
                      :title title :subtitle subtitle :more more
                      :legend (list :opacity (map-opacity in-color)))))))
+
+(defun ways-in (part ways)
+  "Return those of WAYS of which something is in PART (left top right bottom), in cells; all if that
+is NIL."
+  (if part
+      (let ((graphics-scale* 8))
+        (remove-if-not (lambda (way)
+                         (way-seen-p (pieces-in-pixels (way-pieces way)) (pixels-of part)))
+                       ways))
+      ways))
+
+(defun unseen-words (what all ways)
+  "Return a sentence that says of how many, each a WHAT, there are none in WAYS of ALL; or none."
+  (flet ((count-in (ways) (length (remove-duplicates (mapcar #'way-trial ways)))))
+    (let ((unseen (- (count-in all) (count-in ways))))
+      (if (plusp unseen)
+          (format nil " Not shown, outside of this part: the ways of ~D ~A~P." unseen what unseen)
+          ""))))
 
 (defun save-bundle (operator what file snapshot ways-of own-title subtitle
                     &key part title (layers (remove :tracks *picture-layers*)) (in-color t) scale)
@@ -110,9 +168,13 @@ returns, each of a WHAT, such as a trial, under TITLE, or if it is NIL OWN-TITLE
 truename. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
   (let ((kind (picture-kind operator file)))
     (check-map-options operator :title title :layers layers :scale scale)
-    (let* ((snapshot (in-part snapshot part operator)) (ways (funcall ways-of)))
+    (let* ((snapshot (in-part snapshot part operator))
+           (all (funcall ways-of))
+           (ways (ways-in part all)))
       (save-svg (telling-what-breaks
                   (bundle-text snapshot ways
-                               :what what :title (or title own-title) :subtitle subtitle
+                               :what what :title (or title own-title)
+                               :subtitle (concatenate 'string subtitle
+                                                      (unseen-words what all ways))
                                :layers layers :in-color in-color :scale scale))
                 file kind))))

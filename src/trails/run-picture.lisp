@@ -61,26 +61,21 @@ WRONG-ARGUMENT if these are of robots that are not there."
   (and (or (cddr way) (rest (second way))) t))
 
 (defun draw-robot-ways (canvas ways)
-  (loop for way in ways
-        for position from 0
-        for color = (turn-ink position)
-        when (moved-p way)
-          do (let ((pieces (pieces-in-pixels (rest way))))
-               (draw-pieces canvas pieces color
-                            (lambda (points) (draw-way-line canvas points color position)))
-               (draw-start canvas (first (first pieces)) (second (first pieces)) color))))
+  "Draw WAYS, lists of a robot's name and of pieces, of which each has its position among robots."
+  (let* ((moved (loop for way in ways for position from 0
+                      when (moved-p way)
+                        collect (cons position (pieces-in-pixels (rest way))))))
+    (draw-way-lines canvas (loop for (position . pieces) in moved
+                                 collect (make-way-line position pieces)))
+    (draw-way-marks canvas (loop for (position (x y)) in moved
+                                 collect (list 'draw-start x y (turn-ink position))))))
 
 (defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
 
 (defun tiles-of-line (x y next-x next-y tiles)
   "Enter into the hash table TILES conses (column . row) of the boxes that hide a line."
-  (let ((steps (max 1 (ceiling (max (abs (- next-x x)) (abs (- next-y y))) (/ +tile+ 2)))))
-    (loop for step from 0 to steps
-          for share = (/ step steps)
-          do (setf (gethash (cons (floor (+ x (* share (- next-x x))) +tile+)
-                                  (floor (+ y (* share (- next-y y))) +tile+))
-                            tiles)
-                   t))))
+  (call-along (lambda (x y) (setf (gethash (cons (floor x +tile+) (floor y +tile+)) tiles) t))
+              x y next-x next-y (/ +tile+ 2)))
 
 (defun boxes-along (points)
   "Return boxes that together hide the line through POINTS, x y ... in pixels."
@@ -98,25 +93,33 @@ WRONG-ARGUMENT if these are of robots that are not there."
   "Return an entry for the robot called NAME at POSITION among those of its world, and for its way."
   (sample-of-name (canvas x y) (name " and its way" 54)
     (draw-ring canvas (- x 18) y 6 0 position)
-    (draw-way-line canvas (list (- x 10) y (+ x 26) y) (turn-ink position) position)))
+    (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (turn-ink position) position)))
 
 (defun robot-entries-with-ways (snapshot ways)
-  "Return the entries of the legend for the robots that have WAYS or are to be seen in SNAPSHOT."
-  (loop for way in ways
+  "Return the entries of the legend for the robots that are to be seen in SNAPSHOT, or whose WAYS
+are."
+  (loop with box = (pixels-of (shown-part snapshot))
+        for way in ways
         for position from 0
         for name = (first way)
-        if (moved-p way)
+        if (and (moved-p way) (way-seen-p (pieces-in-pixels (rest way)) box))
           collect (moved-robot-entry (drawn-name name) position)
         else if (find name (snapshot-robots snapshot) :key #'robot-image-name)
                collect (robot-entry (drawn-name name) position)))
+
+(defun start-seen-p (way snapshot)
+  "True if the ring is to be seen in SNAPSHOT with which WAY begins."
+  (and (moved-p way)
+       (destructuring-bind (x . y) (first (second way))
+         (way-seen-p (list (pixels-of (list x y))) (pixels-of (shown-part snapshot))))))
 
 (defun run-entries (snapshot ways spots)
   "Return the entries of the legend that a picture of a run that ended as SNAPSHOT shows, with WAYS
 and SPOTS, has besides that of a map and things."
   (append (robot-entries-with-ways snapshot ways)
-          (when (some #'moved-p ways)
+          (when (some (lambda (way) (start-seen-p way snapshot)) ways)
             (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
-          (when (some #'cddr ways) (list (jump-entry black*)))
+          (jump-entries-of (mapcar #'rest ways) snapshot)
           (and spots (list (sample-of (canvas x y) "see below"
                              (draw-number canvas x y "1"))))))
 
@@ -151,27 +154,37 @@ pixels: where the rings around two places would be one."
 
 (defun moments-in (part moments)
   "Return those of MOMENTS that were in PART (left top right bottom) of the map, or nobody knows
-where; all if PART is NIL."
+where; all if PART is NIL. The second value is the others."
   (flet ((elsewhere-p (moment)
            (destructuring-bind (left top right bottom) part
              (and (moment-x moment)
                   (not (and (<= left (moment-x moment) right)
                             (<= top (moment-y moment) bottom)))))))
-    (if part (remove-if #'elsewhere-p moments) moments)))
+    (if part
+        (values (remove-if #'elsewhere-p moments) (remove-if-not #'elsewhere-p moments))
+        moments)))
 
-(defun run-picture-text (snapshot ways moments &key limit title layers in-color scale)
+(defun spots-and-notes-in (part moments limit several-p reach)
+  "Return what SPOTS-AND-NOTES does of those of MOMENTS that were in PART, and a note that counts
+the others."
+  (multiple-value-bind (moments others) (moments-in part moments)
+    (multiple-value-bind (spots notes) (spots-and-notes moments limit several-p reach)
+      (values spots
+              (append notes (not-shown-note "Not shown, outside of this part" others))))))
+
+(defun run-picture-text (snapshot ways moments &key limit title subtitle layers in-color scale)
   "Return an SVG document of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS."
   (multiple-value-bind (spots notes)
-      (spots-and-notes (moments-in (snapshot-part snapshot) moments) limit
-                       (and (rest (snapshot-robots snapshot)) t)
-                       (reach-of-spots (drawn-scale scale snapshot layers)))
+      (spots-and-notes-in (snapshot-part snapshot) (in-brief moments) limit
+                          (and (rest ways) t)
+                          (reach-of-spots (drawn-scale scale snapshot layers)))
     (let ((more (run-entries snapshot ways spots)))
       (with-output-to-string (out)
         (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
           (multiple-value-bind (width height left)
               (draw-framed canvas snapshot layers
                            (lambda () (draw-run canvas snapshot ways spots layers))
-                           :title title :more more :legend '(:robots ()))
+                           :title title :subtitle subtitle :more more :legend '(:robots ()))
             (let ((width (max width 480)))
               (values width
                       (draw-notes canvas notes (max 8 left) (+ height 16)
@@ -215,5 +228,6 @@ PNG needs, or where no journal is kept."
                   (run-picture-text (in-part snapshot part 'save-run-picture) ways
                                     (in-order (append (of-kinds kinds seen) own))
                                     :limit limit :title title :layers layers
+                                    :subtitle (and anyway (repeated-words journal))
                                     :in-color in-color :scale scale))
                 file kind))))

@@ -87,17 +87,60 @@ than MOST ticks, or all if it is NIL."
     (:error "error in your code" "errors in your code") (:note "note of yours" "notes of yours"))
   "What one moment of each kind is called, and several.")
 
+(defun not-shown-note (words moments)
+  "Return a list of a note that says, after WORDS, what MOMENTS were; or none."
+  (when moments
+    (list (list nil (format nil "~A: ~{~A~^, ~}."
+                            words
+                            (loop for (kind one several) in *kind-words*
+                                  for count = (count kind moments :key #'moment-kind)
+                                  when (plusp count)
+                                    collect (format nil "~D ~A" count
+                                                    (if (= count 1) one several))))))))
+
 (defun left-out-note (happenings)
   "Return a list of a note that says what HAPPENINGS, which are left out, were; or none."
-  (let ((moments (mapcan (lambda (happening) (copy-list (happening-moments happening)))
-                         happenings)))
-    (when moments
-      (list (list nil (format nil "Not shown: ~{~A~^, ~}."
-                              (loop for (kind one several) in *kind-words*
-                                    for count = (count kind moments :key #'moment-kind)
-                                    when (plusp count)
-                                      collect (format nil "~D ~A" count
-                                                      (if (= count 1) one several)))))))))
+  (not-shown-note "Not shown" (mapcan (lambda (happening)
+                                        (copy-list (happening-moments happening)))
+                                      happenings)))
+
+;;; What the journal says of plans has their code in it. A picture has a line for each, and says why
+;;; a plan failed where the task in it did that failed first.
+
+(define-constant +reason-mark+ "failed: "
+  :test #'cl:equal
+  :documentation "What stands before why a plan failed.")
+(defconstant +longest-reason+ 40 "How many characters the reason has at most.")
+
+(defun brief-reason (reason)
+  "Return REASON, why a plan failed, in a few words, without code."
+  (let* ((prefix "Plan failure ")
+         (own-p (eql 0 (search prefix reason)))
+         (words (if own-p (string-downcase (subseq reason (length prefix))) reason))
+         (words (subseq words 0 (search " (" words)))
+         (second (and own-p (position #\: words :start (min 1 (length words))))))
+    (cut (string-trim " :" (subseq words 0 second)) +longest-reason+)))
+
+(defun in-brief (moments)
+  "Return MOMENTS with what failed in few words, and why only once."
+  (let ((told '()))
+    (flet ((brief (moment)
+             (let* ((text (moment-text moment)) (at (search +reason-mark+ text))
+                    (why (and at (list (moment-robot moment) (subseq text at)))))
+               (cond ((not (and at (member (moment-kind moment) '(:plan :part)))) moment)
+                     ((and (eq :plan (moment-kind moment)) (member why told :test #'equal))
+                      (with-text moment (format nil "~Afailed by that" (subseq text 0 at))))
+                     (t (push why told)
+                        (with-text moment
+                          (format nil "~A~A~A" (subseq text 0 at) +reason-mark+
+                                  (brief-reason (subseq text
+                                                        (+ at (length +reason-mark+)))))))))))
+      (mapcar #'brief moments))))
+
+(defun with-text (moment text)
+  "Return MOMENT with TEXT as what is told of it."
+  (make-moment (moment-tick moment) (moment-kind moment) text (moment-x moment) (moment-y moment)
+               (moment-robot moment) (moment-code moment)))
 
 (defun spots-and-notes (moments limit several-p reach)
   "Return the numbered spots of what happened at MOMENTS, and notes that tell of that, lists of a

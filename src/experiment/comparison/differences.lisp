@@ -79,9 +79,19 @@ of booleans, are true."
   "Return how many draws the test of so many TRIALS is worth: with many, fewer will do."
   (max 1000 (min 10000 (floor 200000000 (max 1 trials)))))
 
+;; Who adds the same numbers in another order gets another last digit: that is no difference.
+(defconstant +grain+ 1d-8 "What two numbers differ in less than by this share of them are equal.")
+
+(defun equal-but-for-rounding-p (a b)
+  (<= (abs (- a b)) (* +grain+ (max (abs a) (abs b)))))
+
+(defun without-rounding (firsts seconds)
+  "Return FIRSTS with the numbers of SECONDS in place of those that are equal but for rounding."
+  (mapcar (lambda (a b) (if (equal-but-for-rounding-p a b) b a)) firsts seconds))
+
 (defun mean-difference (measure firsts seconds &optional (kind :mean))
   "Return how large MEASURE is on average, by FIRSTS and SECONDS, lists of numbers."
-  (let ((trials (length firsts)))
+  (let ((trials (length firsts)) (firsts (without-rounding firsts seconds)))
     (if (zerop trials)
         (make-difference measure kind 0 nil nil nil nil nil)
         (multiple-value-bind (low high) (mean-difference-interval firsts seconds)

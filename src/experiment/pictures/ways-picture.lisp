@@ -36,14 +36,16 @@ without the program that PNG needs."
   (picture-kind 'save-ways-picture file)
   (let* ((experiment (find-experiment experiment))
          (condition (find-condition experiment condition))
-         (trials (trial-numbers trials)))
-    (apply #'save-bundle 'save-ways-picture "trial" file
-           (start-of-trial experiment condition (first trials))
+         (trials (trial-numbers trials))
+         (start (start-of-trial experiment condition (first trials))))
+    (apply #'save-bundle 'save-ways-picture "trial" file start
            (lambda () (ways-of-trials experiment condition trials))
            (or (question-of (experiment-name experiment))
                (string-downcase (experiment-name experiment)))
-           (format nil "~A. ~A, with a marker at the end of each. Robots and things are where ~
-                        ~:[the first of these~;the trial~] begins."
-                   (condition-name condition) (trials-in-words trials) (null (rest trials)))
+           (format nil "~A. ~A, with a marker ~:[at the end of each~;for each robot where ~
+                        it ended~]. Robots and things are where ~:[the first of these~;the ~
+                        trial~] begins."
+                   (condition-name condition) (trials-in-words trials)
+                   (rest (snapshot-robots start)) (null (rest trials)))
            (loop for (key value) on options by #'cddr
                  unless (eq :trials key) append (list key value)))))

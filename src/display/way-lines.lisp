@@ -1,0 +1,231 @@
+;;;; way-lines.lisp -- ways as lines on a map, also where several go along one line.
+
+(in-package :ars-magna.display)
+
+;;; Ways may go along one line. So each goes in a lane of its own, a few pixels beside where it
+;;; was, and they are drawn together: all halos, then all lines, then arrowheads, then the marks of
+;;; their ends, one around the other where they are on one spot. None hides what is of another.
+
+(define-constant +arrows-apart+ 90
+  :documentation "How far arrowheads on a way are apart, about, in pixels.")
+(define-constant +least-arrowed+ 24
+  :documentation "How long a way with an arrowhead is at least, in pixels.")
+(define-constant +arrow-length+ 9 :documentation "How long arrowheads on ways are, in pixels.")
+
+(defun lengths-along (points)
+  "Return lists (length x y dx dy) of the pieces of the way through POINTS, x y ...; those of no
+length are left out."
+  (loop for (x y next-x next-y) on points by #'cddr
+        for dx = (and next-y (- next-x x)) and dy = (and next-y (- next-y y))
+        for length = (and next-y (sqrt (+ (* dx dx) (* dy dy))))
+        while next-y
+        when (plusp length) collect (list length x y dx dy)))
+
+(defun spot-along (pieces distance)
+  "Return the point DISTANCE along the way of PIECES (see LENGTHS-ALONG), a list (x y)."
+  (loop for ((length x y dx dy) . more) on pieces
+        when (or (<= distance length) (null more))
+          return (let ((share (min 1 (/ distance length))))
+                   (list (+ x (* share dx)) (+ y (* share dy))))
+        do (decf distance length)))
+
+(defun arrow-along (pieces distance)
+  "Return a list (x y angle): an arrowhead DISTANCE along the way of PIECES."
+  (destructuring-bind ((x y) (to-x to-y))
+      (list (spot-along pieces (- distance (/ +arrow-length+ 2)))
+            (spot-along pieces (+ distance (/ +arrow-length+ 2))))
+    (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (atan (- to-y y) (- to-x x)))))
+
+(defun free-arrow (pieces distance arrows)
+  "Return an arrowhead about DISTANCE along the way of PIECES that lies on none of ARROWS, as it may
+where a way leads back; or NIL."
+  (loop with room = (* 3/2 +arrow-length+)
+        for aside in (list 0 room (- room) (* 2 room) (* -2 room))
+        for (x y angle) = (arrow-along pieces (max 0 (+ distance aside)))
+        when (loop for (other-x other-y) in arrows
+                   never (overlap-p (box-around x y room) (list other-x other-y other-x other-y)))
+          return (list x y angle)))
+
+(defun arrows-along (points &optional others)
+  "Return lists (x y angle) of where arrowheads stand on the way through POINTS, x y ... in pixels:
+few, none on a very short one, and none on OTHERS."
+  (let* ((pieces (lengths-along points)) (whole (reduce #'+ pieces :key #'first))
+         (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+))))
+         (arrows '()))
+    (dotimes (index count (reverse arrows))
+      (let ((arrow (free-arrow pieces (* (+ index 1/2) (/ whole count)) (append arrows others))))
+        (when arrow (push arrow arrows))))))
+
+(defun draw-way-arrow (canvas x y angle color hollow-p)
+  "Draw an arrowhead with a halo around X, Y in direction ANGLE."
+  (flet ((head (color more)
+           (let ((reach (+ more (* 1/2 +arrow-length+))))
+             (with-gcontext (draw-gcontext* :foreground color)
+               (draw-lines canvas draw-gcontext*
+                           (append (around x y angle reach) (around x y (+ angle 2.4d0) reach)
+                                   (around x y (- angle 2.4d0) reach))
+                           :fill-p t)))))
+    (let ((ink (if in-color* color black*)) (larger (if hollow-p 2 0)))
+      (head white* (+ larger 3/2))
+      (head ink larger)
+      (when hollow-p (head white* -1)))))
+
+(define-constant +lanes+ '((0 0) (2 3/2) (-3/2 2) (-2 -3/2) (3/2 -2))
+  :test #'cl:equal
+  :documentation "How far what there are several of is drawn beside its place, in turn: lists (x y)
+in widths of its line. Few directions let two of them be one.")
+
+(defstruct (way-line (:constructor make-way-line
+                         (position pieces &key (color (turn-ink position))
+                                               (dashes (turn-dashes position)) (width 2)
+                                               (arrows-p t) (lane position)))
+                     (:copier nil))
+  "A way, the one at POSITION of several, as a line: PIECES are lists x y ... in pixels, between
+which something was put elsewhere; with arrowheads if ARROWS-P, in LANE, a number."
+  (position 0 :type integer :read-only t)
+  (lane 0 :type integer :read-only t)
+  (pieces '() :type list :read-only t)
+  (color 0 :type integer :read-only t)
+  (dashes '() :type list :read-only t)
+  (width 2 :type real :read-only t)
+  (arrows-p t :read-only t))
+
+(document-functions
+  make-way-line "Return the line of the way at a position of several, of its pieces.")
+
+(defun pieces-in-lane (line)
+  "Return the pieces of the way LINE that are lines, each in its lane."
+  (destructuring-bind (aside down) (in-turn (way-line-lane line) +lanes+)
+    (let ((dx (* aside (way-line-width line))) (dy (* down (way-line-width line))))
+      (loop for piece in (way-line-pieces line)
+            when (cddr piece)
+              collect (loop for (x y) on piece by #'cddr collect (+ x dx) collect (+ y dy))))))
+
+;;; A robot that is put elsewhere, by PLACE-ROBOT or in the window, goes no way from here to there.
+;;; So lines end where it was taken away, and begin anew where it was put; dots join the two.
+
+(define-constant +jump-dashes+ '(1 6)
+  :test #'cl:equal
+  :documentation "The dots and gaps between where a robot was and where it was put, in pixels.")
+(define-constant +jump-width+ 3/2 :documentation "How wide these dots are, in pixels.")
+
+(defun draw-jump-dots (canvas jumps color)
+  "Draw that something was put elsewhere: dots of COLOR along JUMPS, lists x y to-x to-y in pixels."
+  (with-color color
+    (with-dashes (+jump-dashes+ :width +jump-width+)
+      (dolist (jump jumps) (draw-segments canvas draw-gcontext* jump)))))
+
+(defun jumps-of (pieces)
+  "Return the jumps between PIECES, lists x y ... in pixels: lists x y to-x to-y."
+  (loop for (piece next) on pieces
+        when (and piece next) collect (append (last piece 2) (subseq next 0 2))))
+
+(defun draw-halos (canvas lines)
+  "Draw what is white around the ways LINES and their jumps."
+  (dolist (line lines)
+    (with-gcontext (draw-gcontext* :foreground white* :line-width (+ 2 +jump-width+))
+      (dolist (jump (jumps-of (way-line-pieces line)))
+        (draw-segments canvas draw-gcontext* jump)))
+    (with-gcontext (draw-gcontext* :foreground white* :line-width (+ 2 (way-line-width line)))
+      (dolist (points (pieces-in-lane line)) (draw-lines canvas draw-gcontext* points)))))
+
+(defun draw-arrows (canvas lines)
+  "Draw the arrowheads of the ways LINES, none on another."
+  (let ((arrows '()))
+    (dolist (line (remove-if-not #'way-line-arrows-p lines))
+      (dolist (points (pieces-in-lane line))
+        (loop for (x y angle) in (arrows-along points arrows)
+              do (push (list x y angle) arrows)
+                 (draw-way-arrow canvas x y angle (way-line-color line)
+                                 (hollow-head-p (way-line-position line))))))))
+
+(defun draw-way-lines (canvas lines)
+  "Draw the ways LINES and their jumps, so that none hides another."
+  (draw-halos canvas lines)
+  (dolist (line lines)
+    (draw-jump-dots canvas (jumps-of (way-line-pieces line)) (way-line-color line)))
+  (dolist (line lines)
+    (with-color (way-line-color line)
+      (with-dashes ((way-line-dashes line) :width (way-line-width line))
+        (dolist (points (pieces-in-lane line)) (draw-lines canvas draw-gcontext* points)))))
+  (draw-arrows canvas lines))
+
+(defun draw-way-sample (canvas points color position)
+  "Draw a sample of the way at POSITION of several, in COLOR, along POINTS, x y ... in pixels."
+  (draw-way-lines canvas (list (make-way-line position (list points) :color color :lane 0))))
+
+;;; Whether jumps are to be seen.
+
+(define-constant +tile+ 4 :documentation "How large the boxes are that hide a line, in pixels.")
+
+(defun call-along (function x y to-x to-y step)
+  "Call FUNCTION with points from X, Y to TO-X, TO-Y, about STEP pixels apart."
+  (let ((count (max 1 (ceiling (max (abs (- to-x x)) (abs (- to-y y))) step))))
+    (dotimes (index (1+ count))
+      (let ((share (/ index count)))
+        (funcall function (+ x (* share (- to-x x))) (+ y (* share (- to-y y))))))))
+
+(defun tile-at (x y)
+  (cons (floor x +tile+) (floor y +tile+)))
+
+(defun tiles-along (pieces)
+  "Return a hash table with the tiles that the lines PIECES go through, or by."
+  (let ((tiles (make-hash-table :test #'equal)))
+    (dolist (piece pieces tiles)
+      (loop for (x y next-x next-y) on piece by #'cddr
+            while next-y
+            do (call-along (lambda (x y)
+                             (loop for (dx dy) in '((-1 -1) (-1 1) (1 -1) (1 1))
+                                   do (setf (gethash (tile-at (+ x dx) (+ y dy)) tiles) t)))
+                           x y next-x next-y (/ +tile+ 2))))))
+
+(defun jumps-seen-p (ways box)
+  "True if a jump of WAYS, lists of pieces, is to be seen within BOX: something of it that does not
+go along a way."
+  (let ((jumps (mapcan #'jumps-of ways)) (tiles nil) (seen-p nil))
+    (loop for (x y to-x to-y) in jumps
+          do (setf tiles (or tiles (tiles-along (apply #'append ways))))
+             (call-along (lambda (x y)
+                           (when (and (overlap-p (list x y (+ x 1/100) (+ y 1/100)) box)
+                                      (not (gethash (tile-at x y) tiles)))
+                             (setf seen-p t)))
+                         x y to-x to-y +tile+))
+    seen-p))
+
+(defun way-seen-p (pieces box)
+  "True if something of the way of PIECES is within BOX."
+  (some (lambda (piece)
+          (loop for (x y next-x next-y) on piece by #'cddr
+                thereis (and (overlap-p (list (1- x) (1- y) (1+ x) (1+ y)) box) t)
+                while next-y
+                thereis (block line
+                          (call-along (lambda (x y)
+                                        (when (overlap-p (list x y (1+ x) (1+ y)) box)
+                                          (return-from line t)))
+                                      x y next-x next-y +tile+))))
+        pieces))
+
+;;; Where ways begin and end.
+
+(define-constant +mark-radius+ 4
+  :documentation "The radius of what marks where a way begins or ends, in pixels.")
+
+(defun draw-start (canvas x y color &optional (radius +mark-radius+))
+  "Draw what marks where a way begins: a small ring."
+  (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y (1+ radius) t))
+  (inked (color :width 2) (draw-circle canvas x y radius nil)))
+
+(defun draw-goal (canvas x y color &optional (radius +mark-radius+))
+  "Draw what marks where a way ends: a spot."
+  (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y (1+ radius) t))
+  (with-color color (draw-circle canvas x y radius t)))
+
+(defun draw-way-marks (canvas marks)
+  "Draw MARKS, lists (function x y color) of the ends of ways: those on one spot around each other."
+  (flet ((near-p (one other)
+           (and (< (abs (- (second one) (second other))) +mark-radius+)
+                (< (abs (- (third one) (third other))) +mark-radius+))))
+    (loop for (mark . before) on (reverse marks)
+          for within = (count-if (lambda (other) (near-p mark other)) before)
+          for (draw x y color) = mark
+          do (funcall draw canvas x y color (+ +mark-radius+ (* 3 within))))))
