@@ -45,9 +45,9 @@
 (defun place-pane (pane left top width height)
   "Put PANE where the rest says; one without room is not shown."
   (let ((there-p (and (plusp width) (plusp height))))
-    (setf (clim:sheet-enabled-p pane) there-p)
-    (when there-p
-      (put-pane pane left top width height))))
+    ;; Put there first: it is not to be seen where it was.
+    (when there-p (put-pane pane left top width height))
+    (setf (clim:sheet-enabled-p pane) there-p)))
 
 ;;; A display grows when it has to show more. It stays so when it shows less, lest titles and
 ;;; switches move from under the mouse while a run goes on: until the user changes the arrangement

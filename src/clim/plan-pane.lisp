@@ -105,11 +105,19 @@
         (say-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))
         y)))
 
+(defun plans-under-way-p (look)
+  "True if plans are under way that LOOK may not have seen yet."
+  (let ((interface (interface-of (plan-look-simulation look))))
+    (and interface (plan-runner-tasks (interface-runner interface)) t)))
+
 (defun say-no-plan (canvas pane)
-  (let ((y (say-text canvas pane +plan-head+ "No plan is under way. PLAN name ... starts one.")))
-    (say-ending canvas pane
-                (say-lines canvas y (line-switch pane "Which plans are there?" "plan"
-                                                 "List the plans that can be started")))))
+  (if (plans-under-way-p (plan-look-of pane))
+      (say-text canvas pane +plan-head+ "Looking at the plans ...")
+      (let ((y (say-text canvas pane +plan-head+
+                         "No plan is under way. PLAN name ... starts one.")))
+        (say-ending canvas pane
+                    (say-lines canvas y (line-switch pane "Which plans are there?" "plan"
+                                                     "List the plans that can be started"))))))
 
 (defun say-untraced (canvas pane)
   (say-lines canvas (say-text canvas pane +plan-head+

@@ -83,8 +83,8 @@ signals, the user may replace the clause by another, of which COMPILER makes a f
   (dolist (recipe (map-things map))
     (let ((x (recipe-x recipe)) (y (recipe-y recipe)) (name (recipe-name recipe)))
       (when (wall-at-p map x y)
-        (warn-of-definition "defmap ~(~A~)~@[ (~A)~]: ~(~A~) at ~A is inside a wall, where no ~
-                             robot can see or reach it."
+        (warn-of-definition "defmap ~(~A~)~@[ (~A)~]: ~(~A~) at ~A is inside a wall, where ~
+                             robots may not see or reach it."
                             (map-name map) (clause-place name) name (point-in-text x y))))))
 
 ;;; Things.
