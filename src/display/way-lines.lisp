@@ -70,10 +70,11 @@ few, none on a very short one, and none on OTHERS."
       (head ink larger)
       (when hollow-p (head white* -1)))))
 
-(define-constant +lanes+ '((0 0) (2 3/2) (-3/2 2) (-2 -3/2) (3/2 -2))
+(define-constant +lanes+ '((0 0) (5/4 5/2) (5/2 -5/4) (-5/4 -5/2) (-5/2 5/4))
   :test #'cl:equal
   :documentation "How far what there are several of is drawn beside its place, in turn: lists (x y)
-in widths of its line. Few directions let two of them be one.")
+in widths of its line. As with queens on a chessboard, no two share a row, a column or a diagonal,
+in which they would lie on each other.")
 
 (defstruct (way-line (:constructor make-way-line
                          (position pieces &key (color (turn-ink position))
