@@ -52,8 +52,9 @@
   (let ((fork (copied-run seed)) (run *simulation*))
     (tell-others session run (format nil "Another prompt is in a fork of the run, which waits.~%"))
     (unwind-protect (call-with-others-paused (lambda () (enter-fork session fork)))
-      (tell-others session run (format nil "The fork is left; the run ~:[waits no longer~;is paused~].~%"
-                                        (paused-p run)))
+      (tell-others session run
+                   (format nil "The fork is left; the run ~:[waits no longer~;is paused~].~%"
+                           (paused-p run)))
       (stop-listening session)
       (release-fork fork)
       (unless (session-over-p session)
