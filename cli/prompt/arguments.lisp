@@ -78,16 +78,6 @@ method, DATUM is the argument.")
 
 ;;; Reading.
 
-(defun comment-at-p (text position)
-  "True if a comment begins in TEXT at POSITION: with ;, or with # between blanks or ends of the
-line."
-  (flet ((blank-at-p (position)
-           (or (not (array-in-bounds-p text position))
-               (blank-p (char text position)))))
-    (case (char text position)
-      (#\; t)
-      (#\# (and (blank-at-p (1- position)) (blank-at-p (1+ position)))))))
-
 (defun skip-blanks (text start)
   "Return where, from START, TEXT goes on after blanks; its length if no more than a comment does."
   (let ((position (position-if-not #'blank-p text :start start)))

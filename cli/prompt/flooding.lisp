@@ -3,22 +3,25 @@
 (in-package :ars-magna.cli)
 
 (define-constant +flood+ 50
-  :documentation "After how many messages of others' commands, with no line between them, a session
-says how they can be hushed.")
+  :documentation "After how many messages of others' commands, with no line between them, it is
+said how they can be hushed.")
 
-(defun flood-text (session messages)
-  "Count those of MESSAGES, which are shown in SESSION, that are of others' commands. Return, once,
-what is to be said where they are a flood; else NIL."
-  (let* ((before (session-others-told session))
-         (now (+ before (count-if #'others-p messages))))
-    (setf (session-others-told session) now)
+(defstruct (flood (:copier nil))
+  "How many messages of others' commands have been SHOWN since a line was read, or, once they were a
+flood, in all."
+  (shown 0 :type fixnum))
+
+(defun flood-text (flood count)
+  "Count COUNT more messages in FLOOD. Return, once, what is to be said where they are a flood; else
+NIL."
+  (let* ((before (flood-shown flood)) (now (+ before count)))
+    (setf (flood-shown flood) now)
     (and (< before +flood+)
          (<= +flood+ now)
-         (terminal-p session)
          (format nil "ECHO OFF hushes what comes of the commands that plans and programs ~
                       give.~%"))))
 
-(defun count-others-anew (session)
-  "Begin to count anew what SESSION shows of others' commands, unless that was a flood."
-  (when (< (session-others-told session) +flood+)
-    (setf (session-others-told session) 0)))
+(defun begin-flood-anew (flood)
+  "Begin to count anew in FLOOD, unless that was one."
+  (when (< (flood-shown flood) +flood+)
+    (setf (flood-shown flood) 0)))

@@ -33,31 +33,6 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
 
 ;;; Others are told.
 
-(defun words-for-run (simulation)
-  "Return in words where those are who are in SIMULATION: in a fork, a trial, or a map."
-  (let* ((visitor (visitor-of simulation)) (visit (and visitor (session-visit visitor))))
-    (cond ((timeline-fork-p (timeline-of simulation))
-           (format nil "a fork of ~A at tick ~D" (simulation-name simulation)
-                   (simulation-tick simulation)))
-          (visit (words-for-visit visit))
-          ((and *trial-replayed* (headless-p simulation)) *trial-replayed*)
-          (t (simulation-name simulation)))))
-
-(defun away-p (session)
-  "True if SESSION is in a trial or a fork."
-  (or (session-visit session) (plusp (session-forks session))))
-
-(defun visitor-of (simulation)
-  "Return the session that has come into SIMULATION by TRIAL or FORK and is there, or NIL."
-  (find-if (lambda (session)
-             (and (eq simulation (session-whereabouts session)) (away-p session)))
-           (sessions-at-work)))
-
-(defun way-in (simulation)
-  "Return in words how a prompt has come into SIMULATION, if by TRIAL or FORK, or NIL."
-  (let ((session (visitor-of simulation)))
-    (and session (if (session-visit session) "a trial" "a fork"))))
-
 (defun say-in (session text)
   "Show TEXT, a line, in SESSION, and the prompt again. Any thread may ask."
   (with-lock ((session-lock session))

@@ -1,4 +1,4 @@
-;;;; reading.lisp -- reading a line, and its first look: what kind of line it is.
+;;;; reading.lisp -- reading a line.
 
 (in-package :ars-magna.cli)
 
@@ -52,40 +52,9 @@ that."
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console)))
         (count-anew (session-told session))
-        (count-others-anew session))
+        (begin-flood-anew (session-flood session)))
       (note-read (session-account session))
       line)))
-
-(defun comment-p (text)
-  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or a # that stands
-alone."
-  (let ((start (position-if-not #'blank-p text)))
-    (or (null start) (comment-at-p text start))))
-
-;; #|, which may end in the line, is for others, and #FOO is a word like others.
-(defun sharp-form-p (text start)
-  "True if a form of Lisp begins in TEXT at START with #, such as #'car, #(1 2), #xFF or #p\"f\"."
-  (flet ((char-at (position) (and (< position (length text)) (char text position))))
-    (let ((first (char-at (1+ start))) (second (char-at (+ 2 start))))
-      (and (eql #\# (char-at start))
-           first
-           (not (find first "|!"))
-           (not (blank-p first))
-           (or (not (alpha-char-p first))
-               (find second "(\"")
-               (and (char-equal #\b first) (find second "01+-"))
-               (and (char-equal #\o first) (find second "01234567+-"))
-               (and (char-equal #\x first) (find second "0123456789+-abcdefABCDEF")))
-           t))))
-
-;; As reading 205 says.
-(defun lisp-p (text)
-  "True if TEXT is Lisp: it begins with a parenthesis, with # and what follows that in a form, or
-with Nisp's mark of a slot."
-  (let ((start (position-if-not #'blank-p text)))
-    (or (find (char text start) "()")
-        (sharp-form-p text start)
-        (eql start (search "!>" text)))))
 
 (defun split-line (text)
   "Return the first word of TEXT and what follows it."

@@ -31,8 +31,7 @@
   ;; The tallies of errors, by their text, as in repetition.lisp: any thread tells, so the lock
   ;; guards them.
   (told (make-hash-table :test 'equal) :type hash-table :read-only t)
-  ;; How many messages of others' commands it has shown since a line was read.
-  (others-told 0 :type fixnum)
+  (flood (make-flood) :type flood :read-only t)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)
@@ -237,6 +236,15 @@ an error in a script, with the place of the line under way."
   (remove-if (lambda (message) (told-often-p message session))
              (if (session-quiet-p session) (remove-if #'others-p messages) messages)))
 
+(defun texts-about (session messages)
+  "Return what is to be said in SESSION of MESSAGES, which have been shown there: that some come
+again and again, or are very many."
+  (remove nil (append (loop for message in messages
+                            collect (repetition-text message (session-told session)))
+                      (and (terminal-p session)
+                           (list (flood-text (session-flood session)
+                                             (count-if #'others-p messages)))))))
+
 (defun tell-messages (session messages)
   "Show MESSAGES in SESSION, and the prompt again."
   (with-lock ((session-lock session))
@@ -246,10 +254,7 @@ an error in a script, with the place of the line under way."
       (when (and messages (not flush-all-errors*))
         (or (report-messages (session-account session) messages)
             (write-messages messages session))
-        (loop for message in messages
-              for text = (repetition-text message (session-told session))
-              when text do (write-fresh (fitted text console) console))
-        (let ((text (flood-text session messages)))
-          (when text (write-fresh (fitted text console) console))))
+        (dolist (text (texts-about session messages))
+          (write-fresh (fitted text console) console)))
       (restore-prompt console)
       (finish-output console))))

@@ -1,0 +1,106 @@
+;;;; name-boxes.lisp -- where a name may stand beside what it is of, and what it would hide there.
+
+(in-package :ars-magna.display)
+
+(defstruct (spot (:constructor make-spot (name x y half &optional robot)) (:copier nil))
+  "What has the name NAME at X, Y, and reaches HALF pixels from there; if it is a robot, ROBOT is
+its image."
+  (name "" :type string :read-only t)
+  (x 0 :type real :read-only t) (y 0 :type real :read-only t) (half 0 :type real :read-only t)
+  (robot nil :read-only t))
+
+(defun spot-box (spot)
+  (box-around (spot-x spot) (spot-y spot) (spot-half spot)))
+
+(define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
+(define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
+
+(defun name-boxes (x y half width)
+  "Return boxes for a name WIDTH pixels wide beside what reaches HALF pixels from X, Y: the best
+first."
+  (let ((gap (+ half 2)) (high +name-height+))
+    (loop for (left top) in (list (list (+ x gap) (- y (/ high 2)))
+                                  (list (- x gap width) (- y (/ high 2)))
+                                  (list (- x (/ width 2)) (- y gap high))
+                                  (list (- x (/ width 2)) (+ y gap))
+                                  (list (+ x (/ gap 2)) (- y gap high))
+                                  (list (+ x (/ gap 2)) (+ y gap))
+                                  (list (- x (/ gap 2) width) (- y gap high))
+                                  (list (- x (/ gap 2) width) (+ y gap))
+                                  ;; In a corner of walls: along a side.
+                                  (list (- x half) (- y gap high))
+                                  (list (- x half) (+ y gap))
+                                  (list (- (+ x half) width) (- y gap high))
+                                  (list (- (+ x half) width) (+ y gap))
+                                  (list (+ x gap) (- y half))
+                                  (list (+ x gap) (- (+ y half) high))
+                                  (list (- x gap width) (- y half))
+                                  (list (- x gap width) (- (+ y half) high)))
+          collect (list left top (+ left width) (+ top high)))))
+
+(defun boxes-beside (x y half width marks)
+  "Return boxes as NAME-BOXES does; if one of the boxes MARKS lies there, such as that of the ring
+of a track, also boxes beside such a ring. Elsewhere a name so far away would be taken for others'."
+  (append (name-boxes x y half width)
+          (and (some (lambda (mark) (overlap-p mark (box-around x y half))) marks)
+               (name-boxes x y (max half (+ 2 (track-radius))) width))))
+
+(defun within-shown-p (snapshot box)
+  "True if BOX lies within what is to be shown of the map of SNAPSHOT."
+  (destructuring-bind ((left top right bottom) (first-x first-y last-x last-y))
+      (list box (pixels-of (shown-part snapshot)))
+    (and (<= first-x left) (<= first-y top) (<= right last-x) (<= bottom last-y))))
+
+(defun cells-below (map box function)
+  "True if FUNCTION, of the index of a cell, is true for one of the cells of MAP that BOX, which is
+on it, meets."
+  (destructuring-bind (left top right bottom) box
+    (flet ((cell (pixels limit) (min (floor pixels graphics-scale*) (1- limit))))
+      (let ((width (map-width map)) (height (map-height map)))
+        (loop for row from (cell top height) to (cell (- bottom 1/100) height)
+                thereis (loop for column from (cell left width) to (cell (- right 1/100) width)
+                                thereis (funcall function (+ column (* row width)))))))))
+
+(defun on-wall-p (map box)
+  (cells-below map box (lambda (index) (logtest +wall+ (aref (map-flags map) index)))))
+
+(defun on-mark-p (map box)
+  "True if a place that is marked on MAP lies below BOX."
+  (cells-below map box (lambda (index)
+                         (drawn-place-type-p (svref (map-place-types map)
+                                                    (aref (map-places map) index))))))
+
+(defun on-trail-p (snapshot box)
+  (destructuring-bind (left top right bottom) box
+    (loop for robot in (snapshot-robots snapshot)
+          thereis (do-trail ((robot-image-trail robot) x y)
+                        thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
+
+(define-constant +thick-wall+ 4
+  :documentation "From how many pixels to a cell on a name may hide a part of a wall.")
+
+(defun box-cost (snapshot layers box anywhere-p)
+  "Return how much a name in BOX would hide on the map that SNAPSHOT shows with LAYERS, from 0 for
+nothing; NIL if it may not stand there, on a wall that is not thick, unless ANYWHERE-P."
+  (let ((map (snapshot-map snapshot)))
+    (cond ((not (on-wall-p map box))
+           (+ (if (and (member :places layers) (on-mark-p map box)) 2 0)
+              (if (and (member :trail layers) (on-trail-p snapshot box)) 1 0)))
+          ((or anywhere-p (<= +thick-wall+ graphics-scale*)) 4))))
+
+(defun best-box (snapshot layers boxes taken &key anywhere-p (own-p (constantly t)))
+  "Return the first of those of BOXES that hide least, are in the part of the map that SNAPSHOT
+shows, meet none of TAKEN, and for which OWN-P is true; or NIL. Rather than nothing a name hides a
+trail, then the mark of a place, and at last a part of a wall that is thick, or of any if
+ANYWHERE-P."
+  (loop with best = nil and least = nil
+        for box in boxes
+        for cost = (and (within-shown-p snapshot box)
+                        (notany (lambda (other) (overlap-p box other)) taken)
+                        (funcall own-p box)
+                        (box-cost snapshot layers box anywhere-p))
+        when (and cost (or (null least) (< cost least)))
+          do (setf best box least cost)
+        ;; None hides less. Most of the time that a film takes goes by here.
+        until (eql 0 least)
+        finally (return best)))
