@@ -123,19 +123,19 @@ there is none."
           (1+ (position condition (experiment-conditions experiment)))
           trial))
 
-(defun run-replaying (replaying until rate step
-                      &aux (*trial-replayed* (trial-words (replaying-experiment replaying)
-                                                          (replaying-condition replaying)
-                                                          (replaying-trial replaying))))
+(defun run-replaying (replaying until rate step)
   "Run the trial of REPLAYING. Return its result."
-  (catch 'stopped
-    (run-again (replaying-experiment replaying) (replaying-condition replaying)
-               (replaying-trial replaying)
-               :gate (looking-gate until rate step (lambda () (stop-replaying replaying)))
-               :journal (and (replaying-journal replaying) t)
-               :then (lambda (result)
-                       (declare (ignore result))
-                       (look-around replaying)))))
+  (let* ((experiment (replaying-experiment replaying))
+         (condition (replaying-condition replaying))
+         (trial (replaying-trial replaying))
+         (*trial-replayed* (trial-words experiment condition trial)))
+    (catch 'stopped
+      (run-again experiment condition trial
+                 :gate (looking-gate until rate step (lambda () (stop-replaying replaying)))
+                 :journal (and (replaying-journal replaying) t)
+                 :then (lambda (result)
+                         (declare (ignore result))
+                         (look-around replaying))))))
 
 (defun run-comparing (replaying directory function)
   "Call FUNCTION, which runs the trial of REPLAYING. Return its result, and in what that differs
