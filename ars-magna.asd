@@ -8,13 +8,19 @@
                "named-readtables" "sb-cltl2" "sb-introspect" "sb-posix")
   :serial t
   :components
-  ((:module "src/base" :serial t
-    :components ((:file "package") (:file "policy") (:file "wrapping") (:file "public") (:file "floats")
+  ((:module "src/host" :serial t
+    :components ((:file "package") (:file "versions") (:file "wrapping") (:file "floats")
+                 (:file "memory") (:file "stacks") (:file "interrupts") (:file "instances")
+                 (:file "interpreter") (:file "closures") (:file "code") (:file "environments")
+                 (:file "compiler") (:file "reading") (:file "random-state") (:file "debugger")
+                 (:file "streams") (:file "signals") (:file "terminal")))
+   (:module "src/base" :serial t
+    :components ((:file "package") (:file "policy") (:file "public") (:file "floats")
                  (:file "numbers") (:file "globals") (:file "tables") (:file "atomic")
-                 (:file "classes") (:file "closures") (:file "instances") (:file "packages")
+                 (:file "classes") (:file "packages")
                  (:file "printing") (:file "files") (:file "code")
                  (:file "processes") (:file "environments") (:file "undefined")
-                 (:file "compiling") (:file "interrupts")
+                 (:file "compiling") (:file "limits")
                  (:file "stacks") (:file "debuggers") (:file "abridging") (:file "conditions")
                  (:file "exits")
                  (:file "telling") (:file "breaking-lines") (:file "ordering")

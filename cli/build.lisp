@@ -1,8 +1,9 @@
-;;;; build.lisp -- compiles the project, warnings being errors, for ./cli/ars-magna and ./tests/run.
+;;;; build.lisp -- compiles the project for ./cli/ars-magna and ./tests/run.
 
 ;;; Loaded into a bare SBCL by those scripts, which say in the environment where compiled files
-;;; go. A warning of any kind, undefined functions included, ends the build with status 2 and
-;;; leaves none of the project's compiled files behind, so that the next build finds it again.
+;;; go. For the tests, a warning of any kind, undefined functions included, ends the build with
+;;; status 2 and leaves none of the project's compiled files behind, so that the next build finds it
+;;; again. For users, who may have another SBCL, what ASDF accepts is accepted.
 
 (require "asdf")
 
@@ -10,8 +11,8 @@
   (:documentation "Compiling, saving the prompt's core, running the tests.")
   (:use :cl)
   (:export #:configure #:print-missing-libraries #:print-window-libraries #:get-window-libraries
-           #:load-strictly
-           #:load-tests #:save-prompt #:save-window-prompt #:run-tests
+           #:load-project
+           #:print-library-versions #:load-tests #:save-prompt #:save-window-prompt #:run-tests
            #:record-sessions #:write-manual))
 
 (in-package :ars-magna.build)
@@ -69,6 +70,18 @@
          if (project-system-p name) append (libraries name) else collect name)
    :test #'string=))
 
+(defun print-library-versions ()
+  "Print the versions of the libraries that the simulator and its prompt use, on one line."
+  (flet ((text (name)
+           (format nil "~A ~A" name
+                   (if (missing-p name)
+                       "(not installed)"
+                       (or (asdf:component-version (asdf:find-system name)) "(no version)")))))
+    (format t "~{~A~^, ~}~%"
+            (mapcar #'text
+                    (remove-if (lambda (name) (eql 0 (search "sb-" name)))
+                               (sort (libraries "ars-magna/cli") #'string<))))))
+
 ;;; Compiling.
 
 (defun forget (fasls)
@@ -92,25 +105,23 @@
 
 (defun interesting-p (warning)
   "True unless WARNING is only about compiling and loading in the same Lisp: that a macro is
-defined twice, that a package has grown since it was defined."
-  (not (typep warning `(or ,sb-ext:*muffled-warnings* sb-int:package-at-variance))))
+defined twice."
+  (not (typep warning sb-ext:*muffled-warnings*)))
 
 (defun count-troubles (function)
-  "Call FUNCTION. Return how many warnings it signalled; an error counts, and ends it."
+  "Call FUNCTION. Return how many warnings it signalled, and true if an error has ended it."
   (let ((count 0))
-    (flet ((note (condition)
-             (incf count)
-             (note-trouble condition)))
-      (block nil
-        (handler-bind ((sb-ext:compiler-note #'muffle-warning)
-                       (warning (lambda (warning)
-                                  (when (interesting-p warning) (note warning))))
-                       (error (lambda (condition)
-                                (note condition)
-                                (setf *damaged-p* (loading-old-p))
-                                (return))))
-          (funcall function))))
-    count))
+    (handler-bind ((sb-ext:compiler-note #'muffle-warning)
+                   (warning (lambda (warning)
+                              (when (interesting-p warning)
+                                (incf count)
+                                (note-trouble warning))))
+                   (error (lambda (condition)
+                            (note-trouble condition)
+                            (setf *damaged-p* (loading-old-p))
+                            (return-from count-troubles (values count t)))))
+      (funcall function))
+    (values count nil)))
 
 (defun give-up ()
   "End this Lisp, with status 2 if sources are at fault; else it may be that compiling helps."
@@ -125,13 +136,21 @@ defined twice, that a package has grown since it was defined."
       (forget (library-fasls))
       (mapc #'asdf:load-system names))))
 
+(defun load-project (system)
+  "Compile and load SYSTEM, one of the project's. If that fails, end this Lisp."
+  (load-libraries (libraries system))
+  (when (nth-value 1 (count-troubles (lambda () (asdf:load-system system))))
+    (give-up)))
+
 (defun load-strictly (system)
-  "Compile and load SYSTEM; a warning in any file of the project is an error."
+  "Do as LOAD-PROJECT does; a warning in any file of the project is an error."
   (load-libraries (libraries system))
   (let ((uiop:*compile-file-warnings-behaviour* :error)
         (uiop:*compile-file-failure-behaviour* :error))
-    (unless (zerop (count-troubles (lambda () (asdf:load-system system))))
-      (give-up))))
+    (multiple-value-bind (warnings failed-p)
+        (count-troubles (lambda () (asdf:load-system system)))
+      (when (or failed-p (plusp warnings))
+        (give-up)))))
 
 (defun load-tests ()
   "Compile and load the tests, and those of the window where there is what it needs."
@@ -167,7 +186,7 @@ defined twice, that a package has grown since it was defined."
 
 (defun save-prompt (&optional (system "ars-magna/cli"))
   "Save a core that runs the prompt, with SYSTEM, in the file that the environment says."
-  (load-strictly system)
+  (load-project system)
   ;; What is in the core is not to be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)
@@ -186,7 +205,7 @@ says."
 (defun write-manual ()
   "Write the manual into the directory that the environment names; end this Lisp, with status 1 if
 that fails."
-  (load-strictly "ars-magna/manual")
+  (load-project "ars-magna/manual")
   (uiop:quit (uiop:symbol-call :ars-magna.manual :main (uiop:getenv "ARS_MAGNA_MANUAL"))))
 
 ;;; The tests.

@@ -7,6 +7,11 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
         :ars-magna.run
         :ars-magna.command :ars-magna.display)
   (:shadowing-import-from :ars-magna.world #:map)
+  (:import-from :ars-magna.host
+                #:octet-input #:text-output #:descriptor-stream #:input-within-p
+                #:user-interrupt #:signal-user-interrupt #:call-on-interrupt
+                #:die-of-interrupts #:die-of-termination
+                #:rows-and-columns #:char-width #:disabled-hook-p)
   (:import-from :trivial-gray-streams
                 #:fundamental-character-output-stream #:fundamental-character-input-stream
                 #:stream-line-column #:stream-write-char #:stream-write-string

@@ -166,7 +166,10 @@ evaluate_building() {  # LOG LISP-FORM
 compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.
     forget_halves
     forget_changed || say "what has changed cannot be told; is $cache full?"
-    compile_anew evaluate_building "$@" && return
+    compile_anew evaluate_building "$@" &&
+        # Such as that this SBCL is newer than those tried.
+        { grep -a '^ars-magna: ' "$1" >&2 || :; } &&
+        return
     grep -a -v -e '^; compil' -e '^; wrote' -e '^$' "$1" | tail -n 60 >&2
     say "that did not compile; all of it is in $1"
     return 1

@@ -76,13 +76,13 @@
 
 (defun structure-reader-p (symbol)
   "True if SYMBOL names a reader of a structure's slot, which Lisp itself checks the argument of."
-  (equal '(sb-kernel:instance) (sb-kernel:%fun-lambda-list (fdefinition symbol))))
+  (host:structure-reader-p (fdefinition symbol)))
 
 (defun shown-lambda-list (symbol)
   "Return the lambda list of the function SYMBOL. Of a generic one, its code has none of its own."
   (if (typep (fdefinition symbol) 'generic-function)
       (uiop:symbol-call :sb-introspect '#:function-lambda-list symbol)
-      (sb-kernel:%fun-lambda-list (fdefinition symbol))))
+      (host:declared-lambda-list (fdefinition symbol))))
 
 (defun parameters-of (symbol)
   "Return lists (name kind) of the parameters of the function SYMBOL; the kinds are NIL, &OPTIONAL,

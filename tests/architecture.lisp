@@ -103,20 +103,13 @@
                    when (names-fiveam-p (code-in path))
                      collect (enough-namestring path (project-file ""))))))
 
-;;; What is SBCL's own. Each of its packages has one door, but for packages of many ideas, such as
-;;; SB-EXT: there each name has one, and only the files listed here may have any of SB-EXT.
+;;; What is SBCL's own: its documented packages are free to use, all else is named in src/host.
 
-(defparameter *sb-ext-doors*
-  '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
-    "src/base/packages.lisp" "src/base/environments.lisp" "src/base/interrupts.lisp"
-    "src/base/debuggers.lisp" "src/base/exits.lisp" "src/base/files.lisp" "src/base/tables.lisp"
-    "src/base/processes.lisp" "src/base/weak.lisp" "cli/shell/executable.lisp")
-  "The files that may name SB-EXT.")
+(defparameter *documented-packages*
+  '("sb-ext" "sb-mop" "sb-thread" "sb-introspect" "sb-posix" "sb-cltl2"))
 
-(defparameter *before-the-doors*
-  '("cli/build.lisp")
-  "The files that may name what they like: build.lisp runs in a bare SBCL, to which none of the
-project's systems has been loaded.")
+(defparameter *calling-c* '("tests/benchmarks/rays-in-c.lisp")
+  "The files that call C, as the manual of SBCL says.")
 
 (defun name-char-p (char)
   (or (alphanumericp char) (find char "-:*+%!?")))
@@ -131,45 +124,89 @@ project's systems has been loaded.")
            collect (subseq code start end))
    :test #'string=))
 
-(defun names-of-files (exempt)
-  "Return a list of lists (file name...): what of SBCL's each file but those in EXEMPT names."
-  (loop for path in (lisp-files "src/" "rpl/" "cli/" "worlds/")
-        for file = (enough-namestring path (project-file ""))
-        for names = (implementation-names (code-in path))
-        when (and names (not (member file exempt :test #'string=)))
-          collect (cons file names)))
-
 (defun package-part (name)
   (subseq name 0 (position #\: name)))
 
-(defun unit-of (name)
-  "Return what has one door: NAME's package, or NAME itself if it is in one of many ideas."
-  (if (find (package-part name)
-            '("sb-ext" "sb-sys" "sb-kernel" "sb-vm" "sb-c" "sb-int" "sb-posix" "sb-thread")
-            :test #'string=)
-      name
-      (package-part name)))
+(defun sbcls-package-p (name)
+  "True if NAME, in lower case, is that of a package of SBCL's."
+  (and (find-package (string-upcase name)) (< 3 (length name)) t))
 
-(test implementation.has-one-door-for-each-idea
-  (let ((doors (make-hash-table :test #'equal)))
-    (loop for (file . names) in (names-of-files *before-the-doors*)
-          do (dolist (name names)
-               (pushnew file (gethash (unit-of name) doors) :test #'string=)
-               (when (string= "sb-ext" (package-part name))
-                 (is (member file *sb-ext-doors* :test #'string=) "~A names ~A" file name))))
-    (is (plusp (hash-table-count doors)))
-    (loop for unit being the hash-keys of doors using (hash-value files)
-          do (is (= 1 (length files)) "~A is named in ~S" unit files))))
+(defun internal-names (text)
+  "Return the names in TEXT, strings and comments included, that are of SBCL's internal packages."
+  (remove-if (lambda (name)
+               (or (not (sbcls-package-p (package-part name)))
+                   (and (member (package-part name) *documented-packages* :test #'string=)
+                        (null (search "::" name)))))
+             (implementation-names (string-downcase text))))
 
-(test implementation.exceptions-are-needed
-  (let ((files (mapcar #'first (names-of-files '()))))
-    (dolist (file (append *sb-ext-doors* *before-the-doors*))
-      (is (member file files :test #'string=) "~A names nothing of SBCL's" file))))
+(defun text-without-comments (path)
+  (format nil "~{~A~%~}"
+          (remove-if (lambda (line) (begins-with-p ";" (string-left-trim " " line)))
+                     (file-lines path))))
+
+(test internals.are-named-in-the-host-layer
+  (let ((files 0))
+    (dolist (path (lisp-files "src/" "rpl/" "cli/" "worlds/" "tests/"))
+      (let ((file (enough-namestring path (project-file "")))
+            (names (internal-names (text-without-comments path))))
+        (if (begins-with-p "src/host/" file)
+            (when names (incf files))
+            (unless (member file (list* "tests/architecture.lisp" *calling-c*) :test #'string=)
+              (is (null names) "~A names ~{~A~^, ~}" file names)))))
+    (is (< 10 files))))
+
+(defun host-files ()
+  (remove "package" (lisp-files "src/host/") :key #'pathname-name :test #'string=))
+
+(defun host-names (path)
+  "Return the internal names, as strings, that the file PATH of the host layer looks up."
+  (let ((code (code-in path)))
+    (remove-duplicates
+     (loop for start = (search "#:" code) then (search "#:" code :start2 end)
+           while start
+           for end = (position-if-not #'name-char-p code :start (+ 2 start))
+           collect (subseq code (+ 2 start) end))
+     :test #'string=)))
+
+(test internals.are-named-in-one-file-each
+  (let ((seen (make-hash-table :test 'equal)))
+    (dolist (path (host-files))
+      (dolist (name (host-names path))
+        (is (null (gethash name seen)) "~A is named in ~A and in ~A" name (gethash name seen) path)
+        (setf (gethash name seen) (pathname-name path))))
+    (is (< 50 (hash-table-count seen)))))
+
+(test internals.say-with-which-versions-they-were-tried
+  (let ((page (base:read-file-into-string (project-file "src/README.md")))
+        (tried (format nil "Tried with SBCL ~{~A~^, ~}" (butlast host::*tried-versions*))))
+    (dolist (path (host-files))
+      (is (search (format nil "| `~A` |" (pathname-name path)) page) "~A is in no table" path)
+      (unless (string= "versions" (pathname-name path))
+        (is (search tried (base:read-file-into-string path))
+            "~A does not say with which versions it was tried" path)))))
+
+(test internals.are-found-by-the-first-name-that-there-is
+  (is (eq 'car (host::internal-name :cl '#:no-such-name '#:car)))
+  (handler-case (host::internal-name :sb-kernel '#:no-such-name)
+    (error (condition)
+      (is (search "has no SB-KERNEL:NO-SUCH-NAME" (princ-to-string condition))))
+    (:no-error (name) (fail "~S was found" name))))
+
+(test versions.that-were-not-tried-are-told
+  (is (null (host:untried-host-text "2.2.9.debian")))
+  (is (null (host:untried-host-text "2.4")))
+  (is (search "newer" (host:untried-host-text "2.6.5")))
+  (is (search "newer" (host:untried-host-text "2.10.0-abc")))
+  (is (search "newer" (host:untried-host-text "3")))
+  (is (search "older" (host:untried-host-text "2.2.8")))
+  (is (search "older" (host:untried-host-text "1.5.9"))))
 
 (test implementation.names-are-found-in-code
   (is (equal '("sb-ext:gc" "sb-posix" "sb-c")
              (implementation-names "(sb-ext:gc) '#:sb-posix usb-stick (f :sb-c)")))
-  (is (equal '() (implementation-names "(usb-port x)"))))
+  (is (equal '() (implementation-names "(usb-port x)")))
+  (is (equal '("sb-kernel" "sb-thread::x")
+             (internal-names "(find-symbol \"A\" \"SB-KERNEL\") (sb-thread::x) (sb-ext:gc)"))))
 
 (test chance-and-clock.come-from-where-they-should
   (is (null (files-mentioning '("(sleep ") '("src/" "rpl/" "cli/" "worlds/"))))
@@ -220,7 +257,7 @@ project's systems has been loaded.")
   (loop for (kind bound-p) in `((function ,(fboundp symbol))
                                 (variable ,(and (boundp symbol) (not (keywordp symbol))))
                                 (type ,(or (find-class symbol nil)
-                                           (sb-int:info :type :expander symbol))))
+                                           (host:user-type-p symbol))))
         when (and bound-p (null (documentation symbol kind)))
           collect kind))
 

@@ -186,7 +186,7 @@ listing what it is given and what it takes for the buffer's package."
              (with-input-from-string (*standard-input* (format nil "q~%")) (inspect object)))))
     (let ((map (said (world:find-map 'ars-worlds:watson))))
       (is (< (length map) 3000))
-      (is-true (has-words-p map "WIDTH: 40" "FLAGS: #(1 1 1" "...)")))
+      (is-true (has-words-p map "WIDTH: 40" "FLAGS: #(1 1 1" "..)")))
     (is (= 30 (count #\z (said (make-list 30 :initial-element "z"))))
         "what is not ours is shown as ever")))
 

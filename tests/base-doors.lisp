@@ -160,10 +160,10 @@
 (test room.is-there-when-it-was-made
   (let ((octets (floor (sb-ext:bytes-consed-between-gcs) 2)))
     (base:make-room octets)
-    (let ((epoch sb-kernel::*gc-epoch*)
+    (let ((collections (host:collections))
           (made (loop repeat (floor octets 200000) collect (make-string 25000))))
       (is (plusp (length made)))
-      (is (eq epoch sb-kernel::*gc-epoch*)))))
+      (is (eq collections (host:collections))))))
 
 ;;; Who waits leaves the terminal to a debugger. What SBCL says of that goes nowhere.
 
@@ -174,7 +174,7 @@
   (let* ((left (base:make-semaphore "left")) (*query-io* (nowhere))
          (thread (base:start-thread (lambda ()
                                       (let ((*query-io* (nowhere)))
-                                        (sb-thread::get-foreground)
+                                        (host:take-foreground)
                                         (sb-thread:release-foreground)
                                         (base:signal-semaphore left)))
                                     "needs the terminal")))

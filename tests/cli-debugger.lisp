@@ -58,7 +58,7 @@
     (cli::begin-sharing 'cli::debugger-disabled-hook)
     (is (eq 'cli::enter-debugger (base:common-debugger-hook)))
     (cli::end-sharing 'cli::enter-debugger)
-    (is (base:disabled-p (base:common-debugger-hook)))
+    (is (host:disabled-hook-p (base:common-debugger-hook)))
     (cli::end-sharing 'cli::debugger-disabled-hook)
     (is (eq before (base:common-debugger-hook)))))
 
@@ -387,7 +387,7 @@ asked goes."
     (base:with-debugger-hook ((constantly nil))
       (is (eq 'cli::enter-debugger (base:debugger-hook))))
     (base:with-debugger-hook ('cli::debugger-disabled-hook)
-      (is (base:disabled-p (base:debugger-hook))))))
+      (is (host:disabled-hook-p (base:debugger-hook))))))
 
 (test prompts.begin-in-the-package-of-who-opens-them
   (let ((*package* (find-package :ars-user)))

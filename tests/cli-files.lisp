@@ -165,6 +165,12 @@ name, in Nisp's syntax and with a decimal fraction."
   (is (eql 1 (status-of-script "--version >/dev/full")))
   (is (eql 2 (status-of-script "--list --world \"$(printf 'caf\\351')\" </dev/null"))))
 
+(test version.tells-what-it-runs-on
+  (let ((text (nth-value 1 (base:run-command (base:native-name (project-file "cli/ars-magna"))
+                                             '("--version") :output :string))))
+    (dolist (part (list "ARS MAGNA " (lisp-implementation-version) "bordeaux-threads "))
+      (is (search part text) "~S lacks ~A" text part))))
+
 ;;; Other files.
 
 (test names-of-journals.may-have-any-characters

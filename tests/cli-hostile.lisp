@@ -178,7 +178,7 @@
     (is (equal '(:held :interrupt :line :held) (reverse log)))))
 
 (test interrupts.end-a-line
-  (let ((lines '("(progn (error 'sb-sys:interactive-interrupt) 7)" "(+ 1 2)")))
+  (let ((lines '("(progn (ars-magna.host:signal-user-interrupt) 7)" "(+ 1 2)")))
     (is (equal '("Robot> Interrupted. QUIT leaves." "Robot> 3" "Robot> ")
                (values (type-lines lines))))
     (is (= 130 (catch 'cli::leave (type-lines lines :batch t))))))

@@ -95,7 +95,7 @@
 
 (test trial.line-can-be-interrupted
   (is-true (has-words-p (joined (type-lines '("trial trying well 1"
-                                              "(error 'sb-sys:interactive-interrupt)" "step")))
+                                              "(ars-magna.host:signal-user-interrupt)" "step")))
                         "Interrupted." "Tick 1.")))
 
 (test trial.breaks-ask-who-sits-there

@@ -283,10 +283,11 @@
           (watcher (window:make-watcher 'studio-robot (constantly nil)))
           (meanwhile '()))
       (window:watch-simulation watcher old)
-      (sb-int:encapsulate 'window::leave-simulation 'test
+      (host:wrap-function 'window::leave-simulation
                           (lambda (leave &rest arguments)
                             (push (window::watcher-simulation watcher) meanwhile)
-                            (apply leave arguments)))
+                            (apply leave arguments))
+                          'test)
       (unwind-protect (window:watch-simulation watcher new)
-        (sb-int:unencapsulate 'window::leave-simulation 'test))
+        (host:unwrap-function 'window::leave-simulation 'test))
       (is (equal (list new) meanwhile)))))

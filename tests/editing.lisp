@@ -200,7 +200,7 @@ name in *KEY-CODES*."
   "True if KEYS interrupt the line that is being read."
   (let ((stream (typed-text-for (apply #'keyboard-for keys options) (terminal-console))))
     (handler-case (progn (read-line stream nil) nil)
-      (sb-sys:interactive-interrupt () t))))
+      (host:user-interrupt () t))))
 
 (test interrupts.clear-what-is-typed
   (types-p ("go") "turn 1" #\C "go" :enter)

@@ -25,7 +25,7 @@
 (defun interrupt-oneself ()
   "Do as control C does after 3 ticks, and let 4 more pass."
   (run:run-ticks 3)
-  (with-simple-restart (cli::go-on "Go on.") (error 'sb-sys:interactive-interrupt))
+  (with-simple-restart (cli::go-on "Go on.") (host:signal-user-interrupt))
   (run:run-ticks 4)
   t)
 
@@ -33,7 +33,7 @@
   "Do as control C does twice before a tick passes."
   (run:run-ticks 3)
   (loop repeat 2
-        do (with-simple-restart (cli::go-on "Go on.") (error 'sb-sys:interactive-interrupt)))
+        do (with-simple-restart (cli::go-on "Go on.") (host:signal-user-interrupt)))
   t)
 
 (defun try (way)

@@ -158,7 +158,7 @@ output, and what to the error output."
 (test interrupts.while-an-experiment-is-loaded-stop-it
   (let ((cli::*interrupts-while-ending* nil))
     (in-place
-      (write-file "slow.lisp" "(error 'sb-sys:interactive-interrupt)")
+      (write-file "slow.lisp" "(ars-magna.host:signal-user-interrupt)")
       (multiple-value-bind (status written errors) (shell "experiment" (placed "slow.lisp"))
         (is (eql 130 status))
         (is (string= "" written))
@@ -176,7 +176,7 @@ output, and what to the error output."
                                (* seconds internal-time-units-per-second))))
     (cli::call-stoppable (lambda ()
                            (let ((ars-magna.experiment::*progress* progress))
-                             (error 'sb-sys:interactive-interrupt)))
+                             (ars-magna.host:signal-user-interrupt)))
                          "experiment" '() '())
     (get-output-stream-string *error-output*)))
 

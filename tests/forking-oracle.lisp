@@ -37,8 +37,9 @@
       (tasks::node '(tasks::form tasks::names tasks::states))
       (tasks::procedure '(tasks::lambda-list tasks::source))
       ((satisfies base:environment-p)
-       '(sb-eval::expanders sb-eval::symbol-expansions sb-eval::tags sb-eval::blocks
-         sb-eval::declarations sb-eval::native-lexenv))
+       (remove-if-not #'host:fixed-slot-p (mapcar #'sb-mop:slot-definition-name
+                                                  (sb-mop:class-slots (class-of object)))
+                      :key #'string))
       (tasks::plan-runner '(tasks::warned))
       (fluents:entity '(first))
       (t (and kind

@@ -26,7 +26,7 @@
   "Files, as lists of lines: a library that knows nothing of Nisp, and a file that does.")
 
 (defparameter *what-the-library-has*
-  "(let ((*package* (find-package :cl-user)))
+  "(let ((*package* (find-package :cl-user)) (*readtable* (copy-readtable nil)))
      (write (list (uiop:symbol-call :library '#:marks) (uiop:symbol-call :library '#:later)
                   (find-symbol \"?X\" :ars-user)
                   (type-of (second (uiop:symbol-call :library-own '#:own))))

@@ -27,10 +27,10 @@
     (dotimes (i depth list) (setf list (list list)))))
 
 (defun infinity (sign)
-  (sb-kernel:make-double-float (if (plusp sign) #x7FF00000 #x-100000) 0))
+  (host:make-double (if (plusp sign) #x7FF00000 #x-100000) 0))
 
 (defun not-a-number ()
-  (sb-kernel:make-double-float #x7FF80000 0))
+  (host:make-double #x7FF80000 0))
 
 (defun hostile-number (dice)
   (base:roll-element (list 0 -1 -0d0 1/3 -7/2 1.5 (expt 10 40) (- (expt 10 400)) (/ (expt 7 400))

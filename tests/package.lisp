@@ -8,7 +8,8 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
 (in-package :ars-magna.tests)
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
-  (loop for (nickname layer) in '((:base "BASE") (:geo "GEOMETRY") (:stats "STATISTICS")
+  (loop for (nickname layer) in '((:host "HOST") (:base "BASE")
+                                  (:geo "GEOMETRY") (:stats "STATISTICS")
                                   (:nisp "NISP")
                                   (:world "WORLD") (:ways "WAYS") (:floors "FLOORS") (:time "TIME")
                                   (:robot "ROBOT")
@@ -26,13 +27,20 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
 
 ;;; What others need to know of FiveAM's insides.
 
-(defun suite-names ()
-  "Return a list of the names of the suites, in order of definition."
-  (loop for name being the hash-keys of (fiveam::tests (get-test 'ars-magna)) collect name))
+(defun names-in-bundle (bundle)
+  "Return the names of what is in BUNDLE, a suite's tests, in order of definition. It was a hash
+table until FiveAM 1.4.3."
+  (if (hash-table-p bundle)
+      (loop for name being the hash-keys of bundle collect name)
+      (reverse (remove-duplicates (uiop:symbol-call :fiveam '#:%test-names bundle)))))
 
 (defun suite-tests (suite)
   "Return a list of the names of the tests in SUITE, a name, in order of definition."
-  (loop for name being the hash-keys of (fiveam::tests (get-test suite)) collect name))
+  (names-in-bundle (fiveam::tests (get-test suite))))
+
+(defun suite-names ()
+  "Return a list of the names of the suites, in order of definition."
+  (suite-tests 'ars-magna))
 
 (defun test-name (result)
   "Return the name of the test that RESULT, a check's, belongs to."

@@ -216,7 +216,7 @@ value...), one after the other."
                                          (rpl:handle-failure ((error () (return :failed)))
                                            (error "oops"))))))
       (let ((base:*break-on-user-error* t))
-        (base:with-debugger-hook ('sb-debug::debugger-disabled-hook)
+        (base:with-debugger-hook ('debugger-disabled-hook)
           (rpl:react-to-all runner)))
       (is (eq :failed (rpl:task-result task)))
       (is (= 1 (length (base:take-messages)))))))

@@ -130,7 +130,8 @@
 (defun here-p (x place) (< (abs (- x place)) .4))
 
 (defun most-urgent (letters)
-  (first (sort (remove :delivered letters :key #'letter-state) #'< :key #'letter-deadline)))
+  (first (sort (remove :delivered (copy-list letters) :key #'letter-state)
+               #'< :key #'letter-deadline)))
 
 (defun ticks-left (letter)
   "Return how many ticks there are to spare if the robot goes for LETTER from now on alone."

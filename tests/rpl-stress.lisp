@@ -26,7 +26,8 @@
 
 (defun nth-of-outcome (n outcome ends)
   "Return the time of the Nth of ENDS, from 0, that are of OUTCOME, or NIL."
-  (first (nth n (sort (remove outcome ends :key #'second :test-not #'eq) #'< :key #'first))))
+  (first (nth n (sort (remove outcome (copy-list ends) :key #'second :test-not #'eq)
+                      #'< :key #'first))))
 
 (defun some-decision (count ends)
   "Return when, and how, it is decided whether COUNT of those succeed whose ends are ENDS."

@@ -15,8 +15,8 @@
 
 (defun what-is-said (warning)
   "Return what the compiler points at, as text, and what WARNING says."
-  (let ((context (sb-c::find-error-context nil)))
-    (cons (and context (prin1-to-string (sb-c::compiler-error-context-original-form context)))
+  (let ((context (host:error-context)))
+    (cons (and context (prin1-to-string (host:context-original-form context)))
           (princ-to-string warning))))
 
 (defun said (function)

@@ -96,7 +96,7 @@
   "(flet ((defined-p (symbol)
             (and (eq (symbol-package symbol) (find-package :ars-user))
                  (or (boundp symbol) (fboundp symbol) (find-class symbol nil)
-                     (sb-int:info :type :kind symbol)))))
+                     (ars-magna.host:user-type-p symbol)))))
      (prin1 (list (find-package :ars-worlds)
                   (loop for symbol being the symbols of :ars-user
                         when (defined-p symbol) collect symbol)

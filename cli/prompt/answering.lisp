@@ -42,7 +42,7 @@ in which he began it."
     (and (own-thread-p)
          (null *hooks-at-work*)
          hook
-         (not (disabled-p hook)))))
+         (not (disabled-hook-p hook)))))
 
 (defun call-sharing (hook function)
   "Call FUNCTION, a prompt at work, while HOOK is the debugger's in this thread, and one of those

@@ -5,15 +5,9 @@
 ;;; Accents take no column of their own, the characters of East Asia two. Codes that terminals obey,
 ;;; such as those for colours, take none.
 
-(defun beyond-latin-columns (char)
-  "Return how many columns CHAR takes, one that Latin 1 does not have."
-  (cond ((member (sb-unicode:general-category char) '(:mn :me :cf)) 0)
-        ((member (sb-unicode:east-asian-width char) '(:w :f)) 2)
-        (t 1)))
-
 (defun char-columns (char)
   "Return how many columns CHAR takes on a terminal."
-  (if (< (char-code char) 256) 1 (beyond-latin-columns char)))
+  (if (< (char-code char) 256) 1 (char-width char)))
 
 (defun code-end (text position)
   "Return where the code ends that begins in TEXT at POSITION, or NIL if none does."

@@ -56,22 +56,8 @@ told to go on."
 
 ;;; How large the window is.
 
-(defconstant +ask-for-size+ (if (uiop:featurep :linux) #x5413 #x40087468)
-  "The number of the system's request for the size of a terminal's window.")
-
-(defun size-as-the-system-says ()
-  "Return how many rows and columns the window has; zeros if the system does not know."
-  (sb-alien:with-alien ((size (array sb-alien:unsigned-short 4)))
-    (setf (sb-alien:deref size 0) 0
-          (sb-alien:deref size 1) 0)
-    (sb-alien:alien-funcall
-     (sb-alien:extern-alien "ioctl" (function sb-alien:int sb-alien:int sb-alien:unsigned-long
-                                              (* (array sb-alien:unsigned-short 4))))
-     1 +ask-for-size+ (sb-alien:addr size))
-    (values (sb-alien:deref size 0) (sb-alien:deref size 1))))
-
 (defun window-size ()
   "Return how many columns and rows the window of this process's terminal has."
-  (multiple-value-bind (rows columns) (size-as-the-system-says)
+  (multiple-value-bind (rows columns) (rows-and-columns)
     (values (if (plusp columns) columns 80)
             (if (plusp rows) rows 24))))

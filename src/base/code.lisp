@@ -2,23 +2,6 @@
 
 (in-package :ars-magna.base)
 
-(defun code-constants (function)
-  "Return a list of what the code of FUNCTION, and of those compiled with it, has as constants."
-  (let ((code (sb-kernel:fun-code-header (sb-kernel:%fun-fun function))))
-    (loop for index from sb-vm:code-constants-offset below (sb-kernel:code-header-words code)
-          collect (sb-kernel:code-header-ref code index))))
-
-(defun constant-meant (constant)
-  "Return what CONSTANT, one of code, stands for: of a call by name that name."
-  (if (typep constant 'sb-kernel:fdefn)
-      (sb-kernel:fdefn-name constant)
-      constant))
-
-(defun method-code (method)
-  "Return the function that was compiled from the body of METHOD."
-  (or (uiop:symbol-call :sb-pcl :safe-method-fast-function method)
-      (method-function method)))
-
 (defun code-references (function)
   "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
 symbols, other functions, and whatever else stands in its code or was closed over. In it are no
@@ -92,11 +75,10 @@ but a function."
 ;;; Editors ask Lisp where a name is defined, as a function, a variable and so on. What only we know
 ;;; the place of is told with the declarations of that name, as nothing else is free for it.
 
-(defun source-at (file position operator)
-  "Return, as SBCL has it, that something is defined by OPERATOR in FILE at POSITION."
-  (uiop:symbol-call :sb-introspect '#:make-definition-source
-                    :pathname (uiop:parse-native-namestring file)
-                    :character-offset position :description (list operator)))
+(defun source-of-place (place)
+  "Return, as SBCL has it, that something is defined at PLACE, a list (file position operator)."
+  (destructuring-bind (file position operator) place
+    (source-at (uiop:parse-native-namestring file) position operator)))
 
 (defun tell-sources (function)
   "Let whoever asks where a symbol is defined be told also what FUNCTION of that returns, lists
@@ -106,4 +88,4 @@ but a function."
                    (append (funcall original name type)
                            (and (eq type :declaration) (symbolp name)
                                 (loop for place in (funcall function name)
-                                      collect (apply #'source-at place)))))))
+                                      collect (source-of-place place)))))))

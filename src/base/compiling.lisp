@@ -2,42 +2,8 @@
 
 (in-package :ars-magna.base)
 
-;;; SBCL remembers where each list stands that it has read to compile or load it. A list that was
-;;; made of one that stands somewhere can be given its place: what the compiler has to say of it is
-;;; then said of what the author wrote. That is all in tables and variables of the compiler.
-
-(defun compiler-variable (name)
-  "Return the variable of the compiler called NAME."
-  (uiop:find-symbol* name :sb-c))
-
-(defun compiler-function (name)
-  (fdefinition (uiop:find-symbol* name :sb-c)))
-
-(defun show-lambda-list (name lambda-list &optional (function (macro-function name)))
-  "Let those who ask how FUNCTION, by default the macro NAME, is used be told LAMBDA-LIST."
-  (when (compiled-function-p function)
-    (funcall (compiler-function-setter '#:%simple-fun-arglist) lambda-list function)))
-
-(defun compiler-function-setter (name)
-  (fdefinition `(setf ,(uiop:find-symbol* name :sb-c))))
-
-(defun nested-p (environment)
-  "True if a form in ENVIRONMENT stands inside others that are compiled with it."
-  (and environment (funcall (compiler-function '#:lexenv-lambda) environment) t))
-
-;;; Places.
-
-(defun places ()
-  "Return the table of the places of what is being compiled, or NIL."
-  (let ((variable (compiler-variable '#:*source-paths*)))
-    (and (boundp variable)
-         (hash-table-p (symbol-value variable))
-         (symbol-value variable))))
-
-(defun place-of (form)
-  "Return where FORM stands in what is being compiled, or NIL."
-  (let ((places (places)))
-    (and places (consp form) (values (gethash form places)))))
+;;; A list that was made of one that stands in the source can be given its place: what the compiler
+;;; has to say of it is then said of what the author wrote. See src/host/compiler.lisp.
 
 (defun in-source-p (form)
   "True if FORM was read from what is being compiled, or stands in place of what was."
@@ -47,14 +13,14 @@
   "Let NEW, made of OLD, stand where OLD does if it has no place yet. Return NEW."
   (let ((place (and (consp new) (not (eq new old)) (place-of old))))
     (when (and place (not (place-of new)))
-      (setf (gethash new (places)) place))
+      (set-place new place))
     new))
 
 (defun call-at-place (form function)
   "Call FUNCTION. What it warns of the compiler takes to be about FORM."
   (let ((place (place-of form)))
     (if place
-        (progv (list (compiler-variable '#:*current-path*)) (list place) (funcall function))
+        (call-with-current-place place function)
         (funcall function))))
 
 ;;; SBCL also remembers where each form at top level begins in the text.
@@ -62,16 +28,6 @@
 (defvar *kept-place* nil
   "While something is done that waited until all had been read: a list of a form and, after it,
 where in the text that stands.")
-
-(defun value-if-bound (variable)
-  (and (boundp variable) (symbol-value variable)))
-
-(defun positions-of-forms ()
-  "Return the vector of the positions in the text after which the forms at top level begin, or NIL."
-  (let ((info (value-if-bound (compiler-variable '#:*source-info*))))
-    (and info
-         (funcall (compiler-function '#:file-info-positions)
-                  (funcall (compiler-function '#:source-info-file-info) info)))))
 
 (defun place-in-text (form)
   "Return where FORM stands in the text that is being compiled or loaded: a list of the position
@@ -84,14 +40,6 @@ is in, which element of this, and so on. Return NIL if that is not known."
          (let ((positions (positions-of-forms)))
            (and top positions (< top (length positions))
                 (cons (aref positions top) numbers)))))))
-
-;;; An editor may have a piece of a file compiled: it copies that to a file of its own, and tells
-;;; the compiler where it is from.
-
-(defun edited-file ()
-  "Return the name of the file of which an editor has a piece compiled, a string, or NIL."
-  (let ((file (getf (value-if-bound (compiler-variable '#:*source-plist*)) :emacs-filename)))
-    (and *compile-file-truename* (stringp file) file)))
 
 ;;; What can be said only when all of a file has been read, or of all files of a system.
 ;;;
@@ -112,7 +60,7 @@ the text."
 
 (defun context-of (form)
   "Return how the compiler would tell about FORM later."
-  (call-at-place form (lambda () (funcall (compiler-function '#:find-error-context) nil))))
+  (call-at-place form #'error-context))
 
 (defun at-end-of-unit (form function)
   "Call FUNCTION when all has been read of what is compiled or loaded together with FORM, once. What
@@ -121,32 +69,28 @@ it warns of the compiler takes to be about FORM. Without a compiler, do nothing.
     (setf (gethash form (unit-tasks *unit*))
           (list function (context-of form) (place-in-text form)))))
 
-(defun call-as-compiler (function)
+(defun call-noting-warnings (function)
   "Call FUNCTION. What it warns of is told as what the compiler warns of. Return whether there was a
 warning, and whether it was more than a matter of style."
   (let ((warned nil) (failed nil))
-    (with-compilation-unit ()
-      (progv (mapcar #'compiler-variable '(#:*last-message-count* #:*last-error-context*))
-          (list (list* 0 nil nil) nil)
-        (handler-bind ((style-warning (compiler-function '#:compiler-style-warning-handler))
-                       (warning (compiler-function '#:compiler-warning-handler)))
-          (handler-bind ((warning (lambda (condition)
-                                    (setf warned t)
-                                    (unless (typep condition 'style-warning) (setf failed t)))))
-            (funcall function)))))
+    (call-as-compiler
+     (lambda ()
+       (handler-bind ((warning (lambda (condition)
+                                 (setf warned t)
+                                 (unless (typep condition 'style-warning) (setf failed t)))))
+         (funcall function))))
     (values warned failed)))
 
 (defun end-unit (unit)
-  "Do what was to be done at the end of UNIT, in order. Return what CALL-AS-COMPILER does."
-  (let ((context (compiler-variable '#:*compiler-error-context*)))
-    (if (plusp (hash-table-count (unit-tasks unit)))
-        (call-as-compiler
-         (lambda ()
-           (loop for form being the hash-keys of (unit-tasks unit)
-                   using (hash-value (function place in-text))
-                 do (let ((*kept-place* (cons form in-text)))
-                      (progv (list context) (list place) (funcall function))))))
-        (values nil nil))))
+  "Do what was to be done at the end of UNIT, in order. Return what CALL-NOTING-WARNINGS does."
+  (if (plusp (hash-table-count (unit-tasks unit)))
+      (call-noting-warnings
+       (lambda ()
+         (loop for form being the hash-keys of (unit-tasks unit)
+                 using (hash-value (function place in-text))
+               do (let ((*kept-place* (cons form in-text)))
+                    (call-with-error-context place function)))))
+      (values nil nil)))
 
 (defun leave-to-outer (unit)
   (loop for form being the hash-keys of (unit-tasks unit) using (hash-value task)
@@ -181,9 +125,7 @@ is not true, or else another."
 ;; Who compiles or loads another file meanwhile has functions of that.
 (defun apply-in-own-file (function arguments)
   "Apply FUNCTION, which compiles or loads a file, to ARGUMENTS."
-  (let ((name (compiler-variable '#:*source-namestring*)))
-    (progv (and (date-of-file (symbol-value name)) (list name)) '(nil)
-      (apply function arguments))))
+  (call-as-other-file (lambda () (apply function arguments)) #'date-of-file))
 
 ;;; SBCL has no hook for the end of a unit.
 
@@ -195,9 +137,8 @@ is not true, or else another."
   (wrap-function 'load
                  (lambda (function &rest arguments)
                    (call-in-unit :load (lambda () (apply-in-own-file function arguments)))))
-  (wrap-function (compiler-variable '#:%with-compilation-unit)
-                 (lambda (function body &rest options &key override &allow-other-keys)
-                   (apply function (lambda () (call-in-unit :compilation body override))
-                          options))))
+  (wrap-compilation-units
+   (lambda (function body &rest options &key override &allow-other-keys)
+     (apply function (lambda () (call-in-unit :compilation body override)) options))))
 
 (watch-units)

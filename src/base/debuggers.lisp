@@ -1,15 +1,6 @@
-;;;; debuggers.lisp -- the calls under way, and whether anybody is there to answer a debugger.
+;;;; debuggers.lisp -- whether anybody is there to answer a debugger.
 
 (in-package :ars-magna.base)
-
-(defun calls-under-way (&optional (limit 100))
-  "Return a list of the calls under way, the newest first and at most LIMIT of them, each as
-(function argument...) as far as the compiler has kept that."
-  (sb-debug:list-backtrace :count limit))
-
-(defun disabled-p (hook)
-  "True if HOOK is the one by which SBCL has no debugger, as in scripts."
-  (and (symbolp hook) (string= hook "DEBUGGER-DISABLED-HOOK")))
 
 ;; A hook of ours, around which there may be others of ours, says nothing of who is there.
 (defvar *answerer* nil
@@ -41,16 +32,8 @@ which no editor is connected.")
   "True if a debugger that is entered has somebody to talk to: a terminal, or the program, such as
 an editor, that has set HOOK or *DEBUGGER-HOOK*."
   (cond ((and *debugger-hook* (not (funcall *editor-gone-p*))) t)
-        (hook (not (disabled-p hook)))
+        (hook (not (disabled-hook-p hook)))
         (t (and (interactive-stream-p *standard-input*) (interactive-stream-p *debug-io*)))))
-
-(defun yield-foreground ()
-  "If another thread wants to enter Lisp's own debugger, for which this one, which waits, would have
-to leave it the terminal, do so, until it has left the debugger."
-  (let ((threads (interactive-threads)))
-    (when (and (eq (first threads) sb-thread:*current-thread*) (rest threads))
-      (sb-thread:release-foreground)
-      (get-foreground))))
 
 (defun debugger-hook ()
   "Return the function that is called instead of Lisp's debugger, with a condition and itself, in

@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.base)
 
-;;; SB-CLTL2 looks into and extends lexical environments; SB-WALKER visits the expressions of a
-;;; form, each with its true environment.
+;;; SB-CLTL2 looks into and extends lexical environments.
 
 ;;; Variables.
 
@@ -35,15 +34,6 @@ on, or NIL if it is none that is known."
   (or (fboundp name)
       (eq :function (sb-cltl2:function-information name environment))))
 
-(defun function-arguments (name)
-  "Return what the function NAME takes, types and lambda list keywords as in the type FUNCTION, and
-true; or NIL twice if the compiler does not know."
-  (let ((type (and (member (sb-int:info :function :where-from name) '(:declared :defined))
-                   (sb-kernel:type-specifier (sb-int:info :function :type name)))))
-    (if (typep type '(cons (eql function) (cons list)))
-        (values (second type) t)
-        (values nil nil))))
-
 (defun macro-expander (definition environment)
   "Return the expander of DEFINITION, (name lambda-list form...) as in MACROLET."
   (destructuring-bind (name lambda-list &rest body) definition
@@ -70,10 +60,6 @@ of (name expander), :symbol-macro and a list of (name expansion)."
   (let ((sb-ext:*evaluator-mode* (if compile :compile :interpret)))
     (eval form)))
 
-(defun form-behind-comma (object)
-  "Return the form behind OBJECT if that is a comma in a backquoted form, or NIL."
-  (and (sb-int:comma-p object) (sb-int:comma-expr object)))
-
 (defun walk-form (form environment visit)
   "Return FORM with each expression in it replaced by what VISIT returns for it and its environment,
 outermost first; what is put in place is visited in turn. A second value that is true keeps the
@@ -81,7 +67,7 @@ walk out of what is put there. What takes the place of an expression stands wher
   (declare (type function visit))
   (let ((entered nil))
     (labels ((walk (form environment)
-               (sb-walker:walk-form form environment #'replacement))
+               (walk-expressions form environment #'replacement))
              (inside (form environment)
                (setf entered form)
                (values (keep-place (walk form environment) form) t))
@@ -95,9 +81,3 @@ walk out of what is put there. What takes the place of an expression stands wher
                                 ((eq new form) (inside form environment))
                                 (t (values (keep-place (walk new environment) form) t))))))))
       (walk form environment))))
-
-(defun bound-in-walk-p (variable environment)
-  "True if VARIABLE is bound by an expression that the walk which visits ENVIRONMENT has entered."
-  ;; Variables of the environment that the walk began in are entries, others lists of these.
-  (let ((found (sb-walker:var-lexical-p variable environment)))
-    (and (consp found) (consp (first found)))))

@@ -11,7 +11,7 @@
 (defun finite-double-p (number)
   "True unless NUMBER, a double-float, is infinite or no number."
   (declare (type double-float number))
-  (/= #x7FF00000 (logand #x7FF00000 (sb-kernel:double-float-high-bits number))))
+  (/= #x7FF00000 (logand #x7FF00000 (double-high-bits number))))
 
 (defun other-finite-p (object)
   (typecase object
@@ -33,12 +33,12 @@ number, and integers and ratios that are too large."
 (defun double-to-bits (number)
   "Return the 64 bits of NUMBER, a double-float, as an integer that is not negative."
   (declare (type double-float number))
-  (logior (ash (ldb (byte 32 0) (sb-kernel:double-float-high-bits number)) 32)
-          (sb-kernel:double-float-low-bits number)))
+  (logior (ash (ldb (byte 32 0) (double-high-bits number)) 32)
+          (double-low-bits number)))
 
 (defun bits-to-double (bits)
   "Return the double-float with BITS, an integer of 64 bits: DOUBLE-TO-BITS undone."
   (declare (type (unsigned-byte 64) bits))
   (let ((high (ldb (byte 32 32) bits)))
-    (sb-kernel:make-double-float (if (logbitp 31 high) (- high (ash 1 32)) high)
-                                 (ldb (byte 32 0) bits))))
+    (make-double (if (logbitp 31 high) (- high (ash 1 32)) high)
+                 (ldb (byte 32 0) bits))))

@@ -107,7 +107,7 @@ whether somebody is there to talk to the debugger. If nobody is, it is not to re
     (flet ((decide (condition this-hook)
              (declare (ignore this-hook))
              (funcall answer condition (debugger-p foreign))
-             (cond ((disabled-p hook))
+             (cond ((disabled-hook-p hook))
                    ((and (eq hook foreign) (not *debugger-refused-p*)) (inquire condition hook))
                    (t (funcall hook condition hook)))))
       (declare (dynamic-extent #'decide))

@@ -2,23 +2,14 @@
 
 (defpackage :ars-magna.base
   (:documentation "Conditions, dice, threads, messages and parameters. Names alexandria,
-bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has to.")
-  (:use :cl)
+bordeaux-threads, closer-mop and SBCL's documented packages so that no other layer has to.")
+  (:use :cl :ars-magna.host)
   (:import-from :alexandria
                 #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
                 #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
                 #:read-file-into-string #:starts-with-subseq #:ends-with
                 #:ends-with-subseq #:define-constant #:proper-list-p
                 #:parse-ordinary-lambda-list #:simple-style-warning)
-  ;; For debuggers.lisp alone.
-  (:import-from :sb-thread #:get-foreground #:interactive-threads)
-  ;; For closures.lisp alone.
-  (:import-from :sb-eval
-                #:env-p #:env-parent #:env-vars #:env-funs #:make-interpreted-function
-                #:interpreted-function-name #:interpreted-function-lambda-list
-                #:interpreted-function-env #:interpreted-function-declarations
-                #:interpreted-function-documentation #:interpreted-function-body
-                #:interpreted-function-source-location)
   ;; alexandria
   (:export #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
@@ -90,11 +81,11 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:*while-waiting* #:wait-a-while #:wait-patiently #:call-when-free
            #:start-thread #:own-thread-p #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
-  ;; interrupts, debuggers
+  ;; limits, debuggers
   (:export #:time-limit #:call-with-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
-           #:debugger-hook #:common-debugger-hook #:disabled-p
+           #:debugger-hook #:common-debugger-hook #:disabled-hook-p
            #:*editor-gone-p* #:*hook-instead*
            #:with-debugger-hook #:yield-foreground)
   ;; inquiries

@@ -51,8 +51,8 @@ is NIL or FILE cannot be read."
 line the form begins that it could not read; NIL if CONDITION says something else. Only while that
 file is still open."
   (let ((stream (and (typep condition 'reader-error) (stream-error-stream condition))))
-    (when (and (typep stream 'sb-int:form-tracking-stream) (open-stream-p stream))
+    (when (and stream (open-stream-p stream) (form-start stream))
       (let* ((file (native-name (pathname stream)))
              (text (file-text (pathname stream)))
-             (start (sb-int:form-tracking-stream-form-start-char-pos stream)))
+             (start (form-start stream)))
         (values file (line-number text (skip-blanks text (min start (length text)))))))))

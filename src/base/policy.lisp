@@ -22,17 +22,12 @@
   "Make room for objects where there are others that nobody can reach any more."
   (sb-ext:gc :full t))
 
-(defun octets-before-garbage ()
-  "Return how many octets of objects can be made before Lisp next looks for garbage."
-  (- (sb-sys:sap-ref-word (sb-sys:foreign-symbol-sap "auto_gc_trigger" t) 0)
-     (sb-kernel:dynamic-usage)))
-
 ;; The stack is scrubbed, as what is left there of calls that have returned would keep objects.
 (defun make-room (octets)
   "Let Lisp look now for objects that nobody can reach if else it would while OCTETS of new ones are
 made: by then these would be in its way, since it moves what can be reached."
   (when (< (octets-before-garbage) octets (sb-ext:bytes-consed-between-gcs))
-    (sb-sys:scrub-control-stack)
+    (scrub-stack)
     (sb-ext:gc)))
 
 (deftype cell-index ()

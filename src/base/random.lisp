@@ -20,14 +20,6 @@
 ;;; roll. So only the first word, which is the seed itself, is set, with a mark behind it; the rest
 ;;; follows when the first roll asks SBCL for new numbers. A copy of such words means the same.
 
-(deftype words () "What is in a random state." '(simple-array (unsigned-byte 32) (627)))
-
-(declaim (type function *words-of-state* *fill-words*))
-(defparameter *words-of-state* (symbol-function (find-symbol "RANDOM-STATE-STATE" "SB-KERNEL"))
-  "The function that returns the words of a random state.")
-(defparameter *fill-words* (symbol-function (find-symbol "INIT-RANDOM-STATE" "SB-KERNEL"))
-  "The function of a seed and the words of a random state that seeds these.")
-
 (defconstant +place-of-place+ 2
   "The index, in the words of a random state, of the place at which they are read next.")
 (defconstant +first-word+ (1+ +place-of-place+))
@@ -55,19 +47,19 @@
   "Fill the WORDS of a random state if they bear the mark."
   (declare (type words words))
   (when (marked-p words)
-    (funcall *fill-words* (aref words +first-word+) words)))
+    (fill-words (aref words +first-word+) words)))
 
 (defun fill-and-renew (renew words)
   "Do what RENEW, SBCL's function, does with WORDS of which all have been read."
   (fill-if-marked words)
   (funcall renew words))
 
-(wrap-function (find-symbol "RANDOM-MT19937-UPDATE" "SB-KERNEL") #'fill-and-renew)
+(wrap-renewal #'fill-and-renew)
 
 (defun seeding-waits-p ()
   "True if this SBCL asks for new words in such a way that they can be filled by then."
   (flet ((state (filled-p)
-           (let* ((state (make-random-state nil)) (words (funcall *words-of-state* state)))
+           (let* ((state (make-random-state nil)) (words (words-of-state state)))
              (mark-seeded words 1992)
              (when filled-p (fill-if-marked words))
              state)))
@@ -77,7 +69,7 @@
 
 (defun seed-state (state short)
   "Return the random state STATE, seeded by SHORT, a number of 32 bits."
-  (let ((words (funcall *words-of-state* state)))
+  (let ((words (words-of-state state)))
     (mark-seeded words short)
     (unless *seeding-waits-p* (fill-if-marked words))
     state))
@@ -145,7 +137,7 @@ Code that changes a world rolls other dice."
 (defun lisps-dice-numbers (state)
   "Return what is in the random state STATE, a list of whole numbers of 32 bits: what it is seeded
 by, if nobody has rolled it since; or else the place in its words, and these."
-  (let ((words (funcall *words-of-state* state)))
+  (let ((words (words-of-state state)))
     (if (marked-p words)
         (list (aref words +first-word+))
         (coerce (subseq words +place-of-place+) 'list))))
@@ -162,7 +154,7 @@ by, if nobody has rolled it since; or else the place in its words, and these."
   "Return a random state for which LISPS-DICE-NUMBERS returns NUMBERS."
   (let ((state (make-random-state nil)))
     (if (rest numbers)
-        (replace (the words (funcall *words-of-state* state)) numbers :start1 +place-of-place+)
+        (replace (words-of-state state) numbers :start1 +place-of-place+)
         (seed-state state (first numbers)))
     state))
 
@@ -177,7 +169,7 @@ by, if nobody has rolled it since; or else the place in its words, and these."
 (defun dice-rolled (before)
   "Return what the dice of programs are here and now, for ROLL-BACK. It is BEFORE, which was
 returned earlier, or NIL, if they have not been rolled since."
-  (let* ((now (funcall *words-of-state* *random-state*))
+  (let* ((now (words-of-state *random-state*))
          (place (aref now +place-of-place+))
          (same-words-p (and before (= (aref now +first-word+)
                                       (aref (rolled-words before) +first-word+)))))
@@ -188,7 +180,7 @@ returned earlier, or NIL, if they have not been rolled since."
 
 (defun roll-back (rolled)
   "Let the dice of programs be here what they were when DICE-ROLLED returned ROLLED."
-  (let ((words (funcall *words-of-state* *random-state*)))
+  (let ((words (words-of-state *random-state*)))
     (replace words (rolled-words rolled))
     (setf (aref words +place-of-place+) (rolled-place rolled))))
 

@@ -1,18 +1,6 @@
-;;;; stacks.lisp -- a thread's stack, or the memory, after it has overflowed.
+;;;; stacks.lisp -- making room after a stack, or the memory, has overflowed.
 
 (in-package :ars-magna.base)
-
-;;; Near its end a stack has pages that must not be touched. The first is opened when a program
-;;; touches it, so that there is room for the handlers; the page before it then closes it again as
-;;; soon as the program comes back. One that leaves by a jump may never touch that: its thread, or
-;;; the next that gets the same stack, dies of its second overflow.
-
-(defun restore-stack ()
-  "Let the stack of this thread, of which little is in use again, be guarded as at first."
-  (let ((end (sb-kernel:get-lisp-obj-address sb-vm:*control-stack-start*)))
-    ;; Opened or not, the page may be written to: if it is closed, that is what is waited for.
-    (setf (sb-sys:sap-ref-8 (sb-sys:int-sap (+ end (* 2 sb-c:+backend-page-bytes+))) 0) 0))
-  (values))
 
 (defun stack-full-p (condition)
   "True if CONDITION, a STORAGE-CONDITION, is that a stack has overflowed."

@@ -62,9 +62,8 @@ cannot be printed."
 
 (defun cause-of-reading-trouble (condition)
   "Return CONDITION, or if that only says where it came up, as LOAD's does, what it says that of."
-  (if (typep condition 'sb-int:encapsulated-condition)
-      (cause-of-reading-trouble (sb-int:encapsulated-condition condition))
-      condition))
+  (let ((cause (encapsulated-condition condition)))
+    (if cause (cause-of-reading-trouble cause) condition)))
 
 (defun naming-remedy (text)
   "Return what can be done about what TEXT says of a name that cannot be read; NIL of other texts."

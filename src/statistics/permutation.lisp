@@ -83,7 +83,7 @@ unless DIFFERENCES are from -1e15 to 1e15, and RESAMPLES from 100 to 1e7."
   (check-argument permutation-test seed (integerp seed) "an integer")
   (let* ((sample (sample 'permutation-test 'differences differences))
          (sum (abs (sum sample)))
-         (sizes (sorted (map 'doubles #'abs (remove 0 sample :test #'=))))
+         (sizes (sorted (map 'doubles #'abs (remove-if #'zerop sample))))
          (grain (* 1d-13 (sum sizes)))
          (exact (exact-share sizes sum grain)))
     (if exact

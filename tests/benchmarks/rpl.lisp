@@ -42,11 +42,11 @@
   (let ((runner (make-plan-runner))
         (items (loop for i below count collect i)))
     (sb-ext:gc :full t)
-    (let ((before (sb-kernel:dynamic-usage)))
+    (let ((before (ars-magna.host:dynamic-usage)))
       (start-plan runner 'many-waiters items)
       (react runner)
       (sb-ext:gc :full t)
-      (prog1 (/ (- (sb-kernel:dynamic-usage) before) count)
+      (prog1 (/ (- (ars-magna.host:dynamic-usage) before) count)
         (stop-plan runner)))))
 
 (dolist (count '(100 1000 10000 100000))

@@ -58,8 +58,8 @@ text and of what stands for it."
 (defun await-quiet (terminal)
   "Wait until nothing has been written on the screen for *GRACE* seconds."
   (handler-case
-      (loop (sb-sys:with-deadline (:seconds *grace*) (await-news terminal)))
-    (sb-sys:deadline-timeout () nil)))
+      (loop (host:with-deadline (*grace*) (await-news terminal)))
+    (host:deadline-passed () nil)))
 
 (defun await-screen (name terminal)
   "True if the screen is as the file of NAME has it, at last when nothing has come for *GRACE*

@@ -165,10 +165,10 @@ sign that something hangs, so the screen is asked once more at the end."
            (error 'newcomer-stuck :fact fact
                                   :screen (format nil "~{|~A~%~}" (screen-lines terminal)))))
     (or (handler-case
-            (sb-sys:with-deadline (:seconds *longest-wait*)
+            (host:with-deadline (*longest-wait*)
               (loop thereis (funcall function terminal)
                     do (await-news terminal)))
-          (sb-sys:deadline-timeout () (funcall function terminal)))
+          (host:deadline-passed () (funcall function terminal)))
         (give-up))))
 
 (defun await-text (terminal text)

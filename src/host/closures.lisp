@@ -1,0 +1,79 @@
+;;;; closures.lisp -- what functions have closed over.
+
+(in-package :ars-magna.host)
+
+;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
+
+;;; A closure is code and values. A variable that is closed over and assigned to is a CELL, which
+;;; all closures over it share. What is interpreted has closed over its environment.
+
+(defun interpreted-closure-p (object)
+  (and (interpreted-p object)
+       (environment-values (interpreted-environment object))
+       t))
+
+(declaim (inline compiled-closure-p closure-p))
+(defun compiled-closure-p (object)
+  (internal (:sb-kernel #:closurep) object))
+
+(defun closure-p (object)
+  "True if OBJECT is a function that has closed over something."
+  (or (compiled-closure-p object)
+      (and (internal (:sb-kernel #:funcallable-instance-p) object)
+           (interpreted-closure-p object))))
+
+(defun closure-values (closure)
+  "Return a list of what CLOSURE has closed over."
+  (if (compiled-closure-p closure)
+      (internal (:sb-kernel #:%closure-values) closure)
+      (list (interpreted-environment closure))))
+
+(sb-ext:define-load-time-global **closure-copier**
+    (symbol-function (internal-name :sb-impl '#:copy-closure))
+  "The function that copies a closure.")
+
+(defun copy-closure (closure)
+  "Return a new closure of the same code over the same values and cells."
+  (if (compiled-closure-p closure)
+      (funcall (the function **closure-copier**) closure)
+      (copy-interpreted closure)))
+
+(defun replace-closure-values (closure function)
+  "Make CLOSURE have closed over what FUNCTION returns for each value and cell. Return CLOSURE."
+  (declare (type function function))
+  (if (compiled-closure-p closure)
+      (let ((count 0))
+        (declare (type fixnum count))
+        (internal (:sb-kernel #:do-closure-values) (value closure)
+          (declare (ignorable value))
+          (incf count))
+        (dotimes (index count)
+          (internal (:sb-kernel #:%closure-index-set)
+                    closure index
+                    (funcall function (internal (:sb-kernel #:%closure-index-ref) closure index)))))
+      (setf (interpreted-environment closure)
+            (funcall function (interpreted-environment closure))))
+  closure)
+
+(declaim (inline cell-p))
+(defun cell-p (object)
+  "True if OBJECT is the cell of a variable."
+  (and (internal (:sb-kernel #:%other-pointer-p) object)
+       (= (internal-value :sb-vm #:value-cell-widetag)
+          (internal (:sb-kernel #:%other-pointer-widetag) object))))
+
+(defun cell-value (cell)
+  "Return the value of the variable of CELL. Can be set."
+  (internal (:sb-kernel #:value-cell-ref) cell))
+
+(defun (setf cell-value) (value cell)
+  (internal (:sb-kernel #:value-cell-set) cell value))
+
+(defun exit-cell-p (cell)
+  "True if CELL belongs to a block or tag that closures exit to, and that has not been left. It
+holds a place on the stack, which looks like an integer that nobody would use."
+  (typep (cell-value cell) '(integer #.(ash #x700000000000 -1) #.(ash #x7FFFFFFFFFFF -1))))
+
+(defun make-cell (value)
+  "Return a new cell for a variable with VALUE."
+  (internal (:sb-kernel #:make-value-cell) value))

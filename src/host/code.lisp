@@ -1,0 +1,48 @@
+;;;; code.lisp -- what compiled code refers to.
+
+(in-package :ars-magna.host)
+
+;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. Since 2.4.10, the names of called functions are no
+;;; constants of code: it calls them through a linkage table.
+
+(defun linked-names (code)
+  "Return the names of the functions that CODE calls through a linkage table."
+  (if-internal (:sb-vm #:linkage-addr->name)
+    (loop for index in (internal (:sb-c #:unpack-code-fixup-locs)
+                                 (internal (:sb-vm #:%code-fixups) code))
+          collect (internal (:sb-vm #:linkage-addr->name) index :index))
+    (progn code '())))
+
+(defun code-constants (function)
+  "Return a list of what the code of FUNCTION, and of those compiled with it, has as constants, the
+names of functions that it calls included."
+  (let ((code (internal (:sb-kernel #:fun-code-header)
+                        (internal (:sb-kernel #:%fun-fun) function))))
+    (append (loop for index from (internal-value :sb-vm #:code-constants-offset)
+                    below (internal (:sb-kernel #:code-header-words) code)
+                  collect (internal (:sb-kernel #:code-header-ref) code index))
+            (linked-names code))))
+
+(defun constant-meant (constant)
+  "Return what CONSTANT, one of code, stands for: of a call by name that name."
+  (if (internal-type-p constant :sb-kernel #:fdefn)
+      (internal (:sb-kernel #:fdefn-name) constant)
+      constant))
+
+(defun method-code (method)
+  "Return the function that was compiled from the body of METHOD."
+  (or (internal (:sb-pcl #:safe-method-fast-function) method)
+      (sb-mop:method-function method)))
+
+(defun declared-lambda-list (function)
+  "Return the lambda list that FUNCTION was compiled with."
+  (internal (:sb-kernel #:%fun-lambda-list) function))
+
+(defun structure-reader-p (function)
+  "True if FUNCTION is the reader of a structure's slot that DEFSTRUCT made."
+  (equal (list (internal-name :sb-kernel '#:instance)) (declared-lambda-list function)))
+
+(defun source-at (path position operator)
+  "Return, as SB-INTROSPECT has it, that something is defined by OPERATOR in PATH at POSITION."
+  (internal (:sb-introspect #:make-definition-source)
+            :pathname path :character-offset position :description (list operator)))

@@ -1,0 +1,15 @@
+;;;; reading.lisp -- where LOAD is in a file when it cannot read on.
+
+(in-package :ars-magna.host)
+
+;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
+
+(defun form-start (stream)
+  "Return at which character the form begins that LOAD reads from STREAM; NIL of other streams."
+  (and (internal-type-p stream :sb-int #:form-tracking-stream)
+       (internal (:sb-int #:form-tracking-stream-form-start-char-pos) stream)))
+
+(defun encapsulated-condition (condition)
+  "Return the condition that CONDITION only gives a place to, as LOAD's do; NIL of others."
+  (and (internal-type-p condition :sb-int #:encapsulated-condition)
+       (internal (:sb-int #:encapsulated-condition) condition)))

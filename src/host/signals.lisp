@@ -1,0 +1,35 @@
+;;;; signals.lisp -- signals from the system: control C, and the request to end.
+
+(in-package :ars-magna.host)
+
+;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
+
+(deftype user-interrupt ()
+  "The condition that the user has pressed control C."
+  (internal-name :sb-sys '#:interactive-interrupt))
+
+(defun signal-user-interrupt ()
+  "Signal the error USER-INTERRUPT."
+  (error (internal-name :sb-sys '#:interactive-interrupt)))
+
+(defun handle-signal (signal handler)
+  (internal (:sb-sys #:enable-interrupt) signal handler))
+
+(defun call-on-interrupt (function)
+  "Call FUNCTION, in any thread, whenever control C is pressed."
+  (handle-signal sb-posix:sigint
+                 (lambda (signal info context)
+                   (declare (ignore signal info context))
+                   (funcall function))))
+
+;;; There are states in which no Lisp runs any more that would handle a signal, so the system itself
+;;; ends the process. (With a terminal that goes away it does so anyway, unless it was told NOHUP.)
+
+(defun die-of-interrupts ()
+  "Let control C end this process at once, as when its memory is being saved."
+  (handle-signal sb-posix:sigint :default))
+
+(defun die-of-termination ()
+  "Let this process end at once when it is told to terminate, as by control \\."
+  (handle-signal sb-posix:sigterm :default)
+  (handle-signal sb-posix:sigquit :default))

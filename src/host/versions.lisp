@@ -1,0 +1,79 @@
+;;;; versions.lisp -- the versions of SBCL that were tried, and how internal names are found.
+
+(in-package :ars-magna.host)
+
+;;; Internal names of SBCL come and go. INTERNAL looks a name up when a file of this folder is
+;;; compiled, among the names that it has had, and says clearly when there is none. No file names
+;;; such a symbol directly, so none fails to be read.
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+
+  (defparameter *tried-versions* '("2.2.9" "2.5.2" "2.6.4")
+    "The versions of SBCL with which the tests pass, oldest first.")
+
+  (defun host-text ()
+    "Return the Lisp this runs on, as text: \"SBCL 2.5.2.debian\"."
+    (format nil "~A ~A" (lisp-implementation-type) (lisp-implementation-version)))
+
+  (defun find-internal (package names)
+    "Return the first symbol among NAMES, strings or symbols, that SBCL's PACKAGE has; else NIL."
+    (let ((package (find-package package)))
+      (and package
+           (some (lambda (name) (find-symbol (string name) package)) names))))
+
+  (defun internal-name (package &rest names)
+    "Return the first symbol among NAMES, strings or symbols, that SBCL's PACKAGE has. Signals an
+ERROR if it has none of them."
+    (or (find-internal package names)
+        (error "~A has no ~A:~{~A~^ or ~}. ARS MAGNA runs on SBCL ~A to ~A. Use one of these, or ~
+                add the new name to the files in src/host."
+               (host-text) package names
+               (first *tried-versions*) (first (last *tried-versions*))))))
+
+(defmacro internal ((package &rest names) &rest arguments)
+  "Call with ARGUMENTS the function or macro that is the first of NAMES in SBCL's PACKAGE. A place,
+if that is one."
+  `(,(apply #'internal-name package names) ,@arguments))
+
+(defmacro if-internal ((package &rest names) then else)
+  "Do THEN if SBCL's PACKAGE has one of NAMES, or else ELSE. Only that form is compiled."
+  (if (find-internal package names) then else))
+
+(defmacro internal-value (package &rest names)
+  "Return the value of the variable or constant that is the first of NAMES in SBCL's PACKAGE."
+  (apply #'internal-name package names))
+
+(defmacro internal-type-p (object package &rest names)
+  "True if OBJECT is of the type that is the first of NAMES in SBCL's PACKAGE."
+  `(typep ,object ',(apply #'internal-name package names)))
+
+(defun version-numbers (version)
+  "Return the numbers at the beginning of VERSION, such as (2 5 2) of \"2.5.2.debian\"."
+  (loop for start = 0 then (1+ end)
+        for end = (position #\. version :start start)
+        for number = (parse-integer version :start start :end end :junk-allowed t)
+        while number collect number
+        while end))
+
+(defun later-version-p (version other)
+  "True if VERSION, a string such as \"2.5.2.debian\", is later than OTHER."
+  (loop for (number . more) on (version-numbers version)
+        for others = (version-numbers other) then (rest others)
+        do (cond ((null others) (return (plusp number)))
+                 ((/= number (first others)) (return (> number (first others)))))))
+
+(defun untried-host-text (&optional (version (lisp-implementation-version)))
+  "Return a sentence that says so if VERSION of SBCL is later than all tried, or earlier; else NIL."
+  (flet ((sentence (than)
+           (format nil "SBCL ~A is ~A than the versions ARS MAGNA was tested with, ~A to ~A."
+                   version than (first *tried-versions*) (first (last *tried-versions*)))))
+    (cond ((later-version-p version (first (last *tried-versions*))) (sentence "newer"))
+          ((later-version-p (first *tried-versions*) version) (sentence "older")))))
+
+(defun tell-if-untried ()
+  "Say so, on the error output, if this SBCL is none of those between the first and the last tried."
+  (let ((text (untried-host-text)))
+    (when text
+      (format *error-output* "~&ars-magna: ~A~%" text))))
+
+(tell-if-untried)
