@@ -16,13 +16,21 @@ finish() {  # STATUS: print the line and exit.
     exit "$1"
 }
 
-# The last line of a log says why. What the project's own logs say is kept too.
+# What apt or debootstrap call an error says why, or else the last line of a log.
+reason() { grep -a -e '^E: ' -e '^W: Failure' "$1" || grep -a . "$1"; }
+
+keep_logs() {  # Keep those that lie in the machine.
+    cp "$machine/debootstrap/debootstrap.log" "$logs/debootstrap-inside.log"
+    for home in root 'a b'; do
+        mkdir "$logs/$home" && cp "$machine/home/$home/.cache/ars-magna"/*/*.log "$logs/$home"
+        rmdir "$logs/$home"
+    done
+}
+
 fail() {  # WHAT LOG: end with what failed, the reason, and where the logs are.
     tail -n 30 "$logs/$2.log" >&2
-    for home in "$machine/home/"*; do
-        mkdir "$logs/${home##*/}" && cp "$home/.cache/ars-magna"/*/*.log "$logs/${home##*/}"
-    done 2>/dev/null
-    line="$line$1 FAILED: $(grep -a . "$logs/$2.log" | tail -n 1); logs in $logs"
+    keep_logs 2>/dev/null
+    line="$line$1 FAILED: $(reason "$logs/$2.log" | tail -n 1); logs in $logs"
     finish 1
 }
 
