@@ -1,9 +1,9 @@
-# machine.sh -- makes a bare Debian in LOGS/machine and runs the project in it, for ./tests/machines/run.
+# machine.sh -- makes a bare Debian and runs the project in it, for ./tests/machines/run.
 #
 #     unshare ... sh machine.sh SUITE MIRROR LOGS PROJECT.tar
 #
-# Its namespaces of mounts and processes are its own: what it mounts and starts ends with it.
-# Prints one line, and ends with status 1 if something failed.
+# The Debian lies in LOGS/machine. The namespaces of mounts and processes are the script's own: what
+# it mounts and starts ends with it. Prints one line, and ends with status 1 if something failed.
 
 set -u
 suite=$1 mirror=$2 logs=$3 project=$4
@@ -43,8 +43,8 @@ bootstrap() {
     script=/usr/share/debootstrap/scripts/$suite
     [ -e "$script" ] || script=${script%/*}/sid
     eval "$(apt-config shell proxy Acquire::http::Proxy)"
-    http_proxy=${http_proxy:-${proxy:-}} LC_ALL=C TMPDIR=/tmp debootstrap --variant=minbase "$suite" \
-        "$machine" "$mirror" "$script"
+    http_proxy=${http_proxy:-${proxy:-}} LC_ALL=C TMPDIR=/tmp \
+        debootstrap --variant=minbase "$suite" "$machine" "$mirror" "$script"
 }
 
 # Let apt in the machine reach the mirror as apt does here.
@@ -111,15 +111,16 @@ answered() { grep -q '^Position:' "$logs/$1.log"; }
 counts() { grep -a -x '[0-9]* passed, [0-9]* failed.*' "$logs/$1.log" | tail -n 1; }
 
 make_machine >"$logs/debootstrap.log" 2>&1 || fail "making it" debootstrap
-! as_user user-without-sbcl "$prompt" && grep -q 'sudo apt-get install sbcl' "$logs/user-without-sbcl.log" ||
-    fail "naming what a user without root has to install" user-without-sbcl
+! as_user missing "$prompt" && grep -q 'sudo apt-get install sbcl' "$logs/missing.log" ||
+    fail "telling a user without root what to install" missing
 
 as_root prompt "$prompt" && answered prompt || fail "prompt" prompt
 line="prompt ok in $seconds s, "
 as_root tests ./tests/run || fail "$(counts tests) in $seconds s, tests" tests
 line="$line$(counts tests) in $seconds s, "
 
-as_user user-prompt "$prompt" && answered user-prompt || fail "prompt of a user without root" user-prompt
-as_user user-tests './tests/run geometry' || fail "tests of a user without root" user-tests
-line="${line}as a user without root: ok"
+without="as a user without root:"
+as_user user-prompt "$prompt" && answered user-prompt || fail "$without prompt" user-prompt
+as_user user-tests './tests/run geometry' || fail "$without tests" user-tests
+line="$line$without ok"
 finish 0
