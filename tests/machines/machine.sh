@@ -16,8 +16,11 @@ finish() {  # STATUS: print the line and exit.
     exit "$1"
 }
 
-# What apt or debootstrap call an error says why, or else the last line of a log.
-reason() { grep -a -e '^E: ' -e '^W: Failure' "$1" || grep -a . "$1"; }
+# A failed test or an error of apt or debootstrap is the reason, or else the last line of a log.
+reason() {  # LOG
+    { grep -a -e '^FAILED ' -e '^E: ' -e '^W: Failure' "$1" || grep -a . "$1"; } |
+        tail -n 1 | sed 's/^FAILED //'
+}
 
 keep_logs() {  # Keep those that lie in the machine.
     cp "$machine/debootstrap/debootstrap.log" "$logs/debootstrap-inside.log"
@@ -28,9 +31,9 @@ keep_logs() {  # Keep those that lie in the machine.
 }
 
 fail() {  # WHAT LOG: end with what failed, the reason, and where the logs are.
-    tail -n 30 "$logs/$2.log" >&2
+    { grep -a -A 4 '^FAILED ' "$logs/$2.log" || tail -n 30 "$logs/$2.log"; } >&2
     keep_logs 2>/dev/null
-    line="$line$1 FAILED: $(reason "$logs/$2.log" | tail -n 1); logs in $logs"
+    line="$line$1 FAILED: $(reason "$logs/$2.log"); logs in $logs"
     finish 1
 }
 
@@ -116,8 +119,11 @@ make_machine >"$logs/debootstrap.log" 2>&1 || fail "making it" debootstrap
 
 as_root prompt "$prompt" && answered prompt || fail "prompt" prompt
 line="prompt ok in $seconds s, "
-as_root tests ./tests/run || fail "$(counts tests) in $seconds s, tests" tests
-line="$line$(counts tests) in $seconds s, "
+as_root tests ./tests/run
+passing=$?
+counted=$(counts tests)
+line="$line${counted:+$counted in $seconds s, }"
+[ $passing -eq 0 ] || fail "tests" tests
 
 without="as a user without root:"
 as_user user-prompt "$prompt" && answered user-prompt || fail "$without prompt" user-prompt
