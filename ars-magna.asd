@@ -404,7 +404,7 @@
                  (:file "rpl-images") (:file "cli-tasks")
                  (:file "rpl-seeing-truth") (:file "thinking") (:file "thinking-runs")
                  (:file "skipping")
-                 (:file "kinds") (:file "digests") (:file "runs") (:file "rewinding")
+                 (:file "kinds") (:file "digests") (:file "same-bits") (:file "runs") (:file "rewinding")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")
