@@ -4,9 +4,9 @@
 
 (def-suite* same-bits :in ars-magna)
 
-;;; What one machine recorded stands in tests/same-bits: the digests of 40 set-ups, and of one of
-;;; them its journal and the run saved halfway. All machines must come to the same. After a change of
-;;; what runs do, record it anew: (record-same-bits), and say in the commit why.
+;;; What one machine recorded stands in tests/same-bits: the digests of 40 set-ups, the journal of
+;;; one of them, and a saved run. All machines must come to the same. After a change of what runs
+;;; do, record it anew: (record-same-bits), and say in the commit why.
 
 (defun same-bits-file (name)
   (project-file (format nil "tests/same-bits/~A" name)))

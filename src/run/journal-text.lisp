@@ -185,7 +185,7 @@ is wrong, and in which entry."
 (defun check-head (head)
   (unless (typep head '(cons (eql :ars-magna-journal) (cons t (cons t null))))
     (error "it does not begin like one"))
-  (unless (eql +journal-version+ (second head)) (error "another version wrote it"))
+  (check-format (second head) +journal-version+)
   (when (header-trouble (third head))
     (error "its head makes no sense: ~A" (header-trouble (third head)))))
 

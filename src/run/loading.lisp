@@ -20,7 +20,7 @@
   "Signal an error unless DATUM begins a saved run of this version."
   (unless (typep datum '(cons (eql :ars-magna-run) (cons t (cons t null))))
     (error "it does not begin like one"))
-  (unless (eql +saved-version+ (second datum)) (error "another version wrote it"))
+  (check-format (second datum) +saved-version+)
   (let* ((head (third datum))
          (trouble (or (header-trouble (if (plist-p head) (list* :seed 0 head) head))
                       (saved-head-trouble head))))

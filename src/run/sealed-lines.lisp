@@ -103,3 +103,9 @@ class DAMAGE, which says that FILE is to blame."
 (defmacro reading-file ((file damage) &body body)
   "Run BODY as CALL-READING-FILE would a function."
   `(call-reading-file (lambda () ,@body) ,file ,damage))
+
+(defun check-format (found expected)
+  "Signal an error unless FOUND, the number of a file's format, is EXPECTED."
+  (unless (eql expected found)
+    (error "another version of the simulator wrote it, in format ~A; this one reads format ~D"
+           (safe-text found) expected)))
