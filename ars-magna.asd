@@ -269,7 +269,7 @@
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
                    (:file "breakage") (:file "answering") (:file "debugger")
                    (:file "answers")
-                   (:file "window-system") (:file "completing")
+                   (:file "clx") (:file "window-system") (:file "completing")
                    (:file "prompt") (:file "sessions") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
@@ -307,8 +307,8 @@
                  (:file "keyboard")
                  (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
-                 (:file "menus") (:file "menu-keys") (:file "habits") (:file "opening")
-                 (:file "x-server") (:file "replies")
+                 (:file "menus") (:file "menu-keys") (:file "habits")
+                 (:file "connecting") (:file "opening") (:file "x-server") (:file "replies")
                  (:file "following")))))
 
 (defsystem "ars-magna/fiveam"

@@ -50,6 +50,8 @@
 
 (configure)
 
+(load (uiop:subpathname *root* "cli/prompt/clx.lisp"))
+
 ;;; Libraries.
 
 (defun missing-p (library)
@@ -164,8 +166,10 @@ defined twice."
   (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
 
 (defun print-window-libraries ()
-  "Print by what McCLIM is to be had: asdf, quicklisp, or nothing."
-  (write-line (cond ((not (missing-p "mcclim/looks")) "asdf")
+  "Print by what McCLIM is to be had: asdf, quicklisp, or nothing; or why CLX, which it needs, does
+not work."
+  (write-line (cond ((uiop:symbol-call :ars-magna.clx :clx-trouble))
+                    ((not (missing-p "mcclim/looks")) "asdf")
                     ((quicklisp-file) "quicklisp")
                     (t "nothing"))))
 
@@ -182,11 +186,64 @@ defined twice."
   (when (missing-p "mcclim/looks")
     (get-window-libraries)))
 
+;;; What a core is made of besides the project: library_state in setup.sh looks at it at each start.
+
+(defun loaded-libraries ()
+  "Return the systems that are loaded, but for the project's and those that SBCL comes with."
+  (remove-if (lambda (system)
+               (or (null (asdf:system-source-file system))
+                   (project-system-p (asdf:component-name system))))
+             (mapcar #'asdf:find-system (asdf:already-loaded-systems))))
+
+(defun files-of (component)
+  "Return the files of COMPONENT, a system or a part of one."
+  (if (typep component 'asdf:parent-component)
+      (mapcan #'files-of (asdf:component-children component))
+      (list (asdf:component-pathname component))))
+
+(defun library-files ()
+  "Return the files of SBCL and of the libraries that are loaded, and those that say which versions
+Quicklisp has."
+  (append (list sb-ext:*runtime-pathname* sb-ext:*core-pathname*)
+          (loop for system in (loaded-libraries)
+                collect (asdf:system-source-file system)
+                append (files-of system))
+          (directory (merge-pathnames "quicklisp/dists/*/distinfo.txt" (user-homedir-pathname)))))
+
+(defun library-names ()
+  "Return how the paths of files end that decide which libraries ASDF finds."
+  (remove-duplicates
+   (cons "/source-registry.conf"
+         (loop for system in (loaded-libraries)
+               collect (format nil "/~A" (file-namestring (asdf:system-source-file system)))))
+   :test #'string=))
+
+(defun library-places ()
+  "Return lists (directory . options), as ASDF has them, that say where it looks for libraries and
+for what it is told about that, and where Quicklisp does."
+  (flet ((tree (directory) (list directory :recurse t)))
+    (append (remove *root* (uiop:symbol-call :asdf/source-registry :flatten-source-registry)
+                    :key #'first :test #'equal)
+            (mapcar #'tree (uiop:xdg-config-pathnames "common-lisp/"))
+            (mapcar #'tree (uiop:system-config-pathnames "common-lisp/"))
+            (list (tree (merge-pathnames "quicklisp/local-projects/" (user-homedir-pathname)))))))
+
+(defun list-libraries (file)
+  "Write into FILE what a core depends on besides the project, as setup.sh says."
+  (with-open-file (out file :direction :output :if-exists :supersede)
+    (flet ((note (kind path) (format out "~A ~A~%" kind (uiop:native-namestring path))))
+      (dolist (path (library-files)) (note "file" path))
+      (format out "~{name ~A~%~}" (library-names))
+      (loop for (directory . options) in (library-places)
+            do (note (if (getf options :recurse) "tree" "directory") directory)))))
+
 ;;; The prompt.
 
 (defun save-prompt (&optional (system "ars-magna/cli"))
   "Save a core that runs the prompt, with SYSTEM, in the file that the environment says."
   (load-project system)
+  (list-libraries (uiop:parse-native-namestring
+                   (format nil "~A.libraries" (uiop:getenv "ARS_MAGNA_CORE"))))
   ;; What is in the core is not to be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)

@@ -113,6 +113,30 @@ ensure_programs() {  # PROGRAM...: true if all of them are there, or can be inst
     [ -z "$packages" ] || (install_packages $packages)
 }
 
+# SBCL and the libraries that a core was made of. build.lisp lists in a file beside it, one a line,
+# their files, and where ASDF looks for libraries, by which names: `file PATH`, `tree DIRECTORY`,
+# `directory DIRECTORY`, `name ENDING`. To ask ASDF at each start would take a second; to look at
+# dates and sizes takes some hundredths. What is listed changes when a library does, when one of the
+# same name comes to another place, which may be found first, and when ASDF is told to look elsewhere.
+
+library_state() (  # LIST: size, date and path of each of these files, one a line.
+    # Paths may have spaces.
+    IFS='
+'
+    set -f
+    listed() { sed -n "s/^$1 //p" "$list"; }
+    list=$1
+    {
+        listed file
+        {
+            find -L $(listed tree) -name .git -prune -o \
+                 \( -name '*.asd' -o -name '*.conf' \) -print
+            find -L $(listed directory) -maxdepth 1 -name '*.asd'
+        } 2>/dev/null | grep -F -e "$(listed name)"
+    } | LC_ALL=C sort -u | tr '\n' '\0' | xargs -0 stat -L -c '%s %Y %n' 2>/dev/null
+    printf '%s\n' "${CL_SOURCE_REGISTRY:-}"
+)
+
 # Compiling. Starts at the same time wait for each other, where the system has flock; also for what
 # goes on compiling when the start that wanted it has been killed.
 

@@ -61,8 +61,14 @@ of a text that says why."
   (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt"))
   "What is to be done where McCLIM is not installed.")
 
+(defun reject-unfit-clx ()
+  "Signal BAD-LINE if the CLX that would be loaded is known not to work."
+  (let ((trouble (ars-magna.clx:clx-trouble)))
+    (when trouble (reject-line "No window: ~A" trouble))))
+
 (defun ensure-windows ()
-  "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM."
+  "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM, or
+if CLX does not work."
   (unless *display-opener*
     (unless (display-named-p)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
@@ -72,6 +78,7 @@ of a text that says why."
       (unless (or found-p (quicklisp-there-p))
         (write-string *how-to-get-windows*)
         (reject-line "No window: McCLIM is not installed; what is to be done stands above."))
+      (reject-unfit-clx)
       (format t "Loading what windows need; the first time that takes some minutes.~%")
       (finish-output)
       (load-windows (not found-p)))))

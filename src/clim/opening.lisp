@@ -238,22 +238,6 @@ else, if its user has chosen another one of the same run, that that is shown."
 
 ;;; Opening.
 
-(defun x-server-named-p ()
-  (or clim:*default-server-path*
-      (let ((display (environment-value "DISPLAY")))
-        (and display (string/= display "")))))
-
-(defun window-port ()
-  "Return CLIM's port to the X server. Signals MISUSE if there is none."
-  (unless (x-server-named-p)
-    (reject-use "No display: there is no X server; set the environment variable DISPLAY."))
-  (handler-case (clim:find-port)
-    (error (condition)
-      (reject-use "No display: the X server ~A, which DISPLAY names, does not answer (~A). ~
-                   Start it, or set DISPLAY to another."
-                  (environment-value "DISPLAY")
-                  (one-line-text condition)))))
-
 (defun open-new-window (robot)
   (let* ((port (window-port))
          (simulation (robot-simulation robot))

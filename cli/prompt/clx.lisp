@@ -1,0 +1,49 @@
+;;;; clx.lisp -- does the CLX that ASDF finds work on this SBCL, and what to do if it does not.
+
+;;; CLX is the library by which McCLIM talks to the X server. Up to version 0.7.5 it reads with an
+;;; internal function of SBCL's, READ-N-BYTES, whose last argument became an end instead of a count
+;;; in SBCL 2.4.7. Since then such a CLX opens a display, but misreads every answer of the X server
+;;; that is longer than 32 bytes. Newer ones read with READ-SEQUENCE, in the file common.lisp.
+;;; Debian 13 has SBCL 2.5.2 and CLX 0.7.5.
+
+;;; cli/build.lisp loads this file, too, into a bare SBCL: it has to know before it compiles McCLIM.
+
+(defpackage :ars-magna.clx
+  (:documentation "Versions of CLX: which one ASDF finds, and whether it works on this SBCL.")
+  (:use :cl)
+  (:export #:library-text #:clx-trouble #:*clx-remedy*))
+
+(in-package :ars-magna.clx)
+
+(defvar *clx-remedy*
+  (format nil "Install CLX 0.7.6 or newer where ASDF finds it first, for example with: ~
+               git clone https://github.com/sharplispers/clx ~~/common-lisp/clx")
+  "How a user gets a CLX that works.")
+
+(defun find-library (name)
+  "Return the ASDF system of the library that users call NAME, such as CLX, or NIL."
+  (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
+    (ignore-errors (asdf:find-system (string-downcase name) nil))))
+
+(defun library-text (name &optional (system (find-library name)))
+  "Return which library NAME, a SYSTEM of ASDF's or NIL, is meant: its version and directory."
+  (format nil "~A~@[ ~A~]~@[ in ~A~]" name
+          (and system (asdf:component-version system))
+          (and system (asdf:system-source-directory system))))
+
+(defun leading-numbers (version)
+  "Return VERSION, such as 2.5.2.debian, up to what is not a number."
+  (let ((end (position-if-not (lambda (char) (find char "0123456789.")) version)))
+    (string-right-trim "." (subseq version 0 end))))
+
+(defun misreads-p (clx lisp-version)
+  "True if the system CLX reads in a way that SBCL of LISP-VERSION does not support."
+  (and (uiop:version<= "2.4.7" (leading-numbers lisp-version))
+       (null (asdf:find-component clx "common"))))
+
+(defun clx-trouble (&optional (clx (find-library "CLX"))
+                      (lisp-version (lisp-implementation-version)))
+  "Return a text that says why the system CLX does not work on SBCL of LISP-VERSION, and what to do;
+NIL if nothing is known against it."
+  (when (and clx (misreads-p clx lisp-version))
+    (format nil "~A does not work on SBCL ~A. ~A" (library-text "CLX" clx) lisp-version *clx-remedy*)))

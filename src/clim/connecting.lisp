@@ -1,0 +1,56 @@
+;;;; connecting.lisp -- CLIM's port to the X server, and what is said if there is none.
+
+(in-package :ars-magna.clim)
+
+(defun x-server-named-p ()
+  (or clim:*default-server-path*
+      (let ((display (environment-value "DISPLAY")))
+        (and display (string/= display "")))))
+
+;;; An X server that cannot be reached is one thing; a library that fails once it has been reached is
+;;; another, which no other value of DISPLAY mends.
+
+(deftype program-fault ()
+  "Errors of a program, not of what it is connected to."
+  '(or type-error cell-error program-error control-error arithmetic-error))
+
+(defun call-reading-from-x-server (reader)
+  "Call READER on a new connection to the X server that DISPLAY names, of CLX alone."
+  (let ((display (xlib:open-default-display)))
+    (unwind-protect (funcall reader display)
+      (xlib:close-display display :abort t))))
+
+(defun clx-fails-p ()
+  "True if CLX by itself cannot read an answer of the X server's that is longer than 32 bytes: which
+keys are down takes 40."
+  (handler-case (progn (call-reading-from-x-server #'xlib:query-keymap) nil)
+    (program-fault () t)
+    (error () nil)))
+
+(defun words-for-fault (condition clx-fails-p)
+  "Return what is said of CONDITION, with which McCLIM fails on an X server that answers: that CLX
+is at fault if CLX-FAILS-P."
+  (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
+          (ars-magna.clx:library-text (if clx-fails-p "CLX" "McCLIM"))
+          (lisp-implementation-version)
+          (environment-value "DISPLAY")
+          (one-line-text condition)
+          (and clx-fails-p ars-magna.clx:*clx-remedy*)))
+
+(defun words-for-no-port (condition)
+  "Return what is said if CONDITION came up when CLIM's port was opened."
+  (typecase condition
+    (program-fault (words-for-fault condition (clx-fails-p)))
+    (xlib:connection-failure
+     (format nil "No display: the X server ~A, which DISPLAY names, refuses the connection (~A)."
+             (environment-value "DISPLAY") (one-line-text condition)))
+    (t (format nil "No display: the X server ~A, which DISPLAY names, does not answer (~A). ~
+                    Start it, or set DISPLAY to another."
+               (environment-value "DISPLAY") (one-line-text condition)))))
+
+(defun window-port ()
+  "Return CLIM's port to the X server. Signals MISUSE if there is none."
+  (unless (x-server-named-p)
+    (reject-use "No display: there is no X server; set the environment variable DISPLAY."))
+  (handler-case (clim:find-port)
+    (error (condition) (reject-use "~A" (words-for-no-port condition)))))
