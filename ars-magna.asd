@@ -416,7 +416,7 @@
                  (:file "saving") (:file "saving-hostile")
                  (:file "mutators") (:file "abuse-outcomes") (:file "abuse-definers")
                  (:file "abuse-data") (:file "abuse-calls") (:file "abuse") (:file "listings")
-                 (:file "cli-door")
+                 (:file "cli-door") (:file "cli-libraries")
                  (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans") (:file "manual")
                  (:file "manual-2") (:file "manual-3-1") (:file "manual-3-1-commands")

@@ -281,6 +281,55 @@ server blackens what is resized, and has it painted by what it sends to the wind
                         "~A" said)))
         (run:stop-clock simulation)))))
 
+;;; What is said if CLIM's port cannot be opened.
+
+(defparameter *misreading*
+  (make-condition 'type-error :datum -20 :expected-type '(unsigned-byte 44))
+  "What CLX 0.7.5 signals on SBCL 2.5.2 when it reads a short answer of the X server's.")
+
+(defun words-where-clx-cannot-read ()
+  "Return what is said of *MISREADING* where CLX itself fails with it on an X server that answers."
+  (let ((read #'xlib::buffer-read-default))
+    (with-x-server ()
+      (unwind-protect
+           (progn (setf (fdefinition 'xlib::buffer-read-default)
+                        (lambda (display vector start &rest arguments)
+                          (if (plusp start)
+                              (error *misreading*)
+                              (apply read display vector start arguments))))
+                  (window::words-for-no-port *misreading*))
+        (setf (fdefinition 'xlib::buffer-read-default) read)))))
+
+(test port.clx-is-named-when-it-fails-on-a-server-that-answers
+  (let ((text (words-where-clx-cannot-read)))
+    (when (stringp text)
+      (is-true (has-words-p text "CLX" "fails on SBCL" (lisp-implementation-version) "answers"
+                            "-20 is not of type" "CLX 0.7.6 or newer" "~/common-lisp/clx")
+               "~A" text)
+      (is-true (mentions-p text (namestring (asdf:system-source-directory "clx"))))
+      (is-false (mentions-p text "does not answer")))))
+
+(test port.mcclim-is-named-when-it-fails-and-clx-reads
+  (with-x-server ()
+    (let ((text (window::words-for-no-port *misreading*)))
+      (is-true (has-words-p text "McCLIM" "fails on SBCL" "-20 is not of type") "~A" text)
+      (is-false (mentions-p text "CLX 0.7.6")))))
+
+(test port.servers-that-are-not-there-or-refuse-are-told-apart
+  (flet ((words (display)
+           (let ((before (uiop:getenv "DISPLAY")))
+             (setf (uiop:getenv "DISPLAY") display)
+             (unwind-protect (handler-case (progn (window::window-port) "")
+                               (base:misuse (condition) (princ-to-string condition)))
+               (setf (uiop:getenv "DISPLAY") (or before ""))))))
+    (dolist (display '(":5999" "no-such-host.invalid:0" "nonsense" ":abc"))
+      (is-true (has-words-p (words display) display "does not answer" "Start it") "~A" display)))
+  (is-true (has-words-p (window::words-for-no-port
+                         (make-condition 'xlib:connection-failure
+                                         :display nil :host "" :major-version 11 :minor-version 0
+                                         :reason "No protocol specified"))
+                        "refuses the connection" "No protocol specified")))
+
 ;;; Threads of a window that the user ends.
 
 (defun threads-called (name)

@@ -46,4 +46,5 @@
   "Return a text that says why the system CLX does not work on SBCL of LISP-VERSION, and what to do;
 NIL if nothing is known against it."
   (when (and clx (misreads-p clx lisp-version))
-    (format nil "~A does not work on SBCL ~A. ~A" (library-text "CLX" clx) lisp-version *clx-remedy*)))
+    (format nil "~A does not work on SBCL ~A. ~A"
+            (library-text "CLX" clx) lisp-version *clx-remedy*)))

@@ -7,8 +7,8 @@
       (let ((display (environment-value "DISPLAY")))
         (and display (string/= display "")))))
 
-;;; An X server that cannot be reached is one thing; a library that fails once it has been reached is
-;;; another, which no other value of DISPLAY mends.
+;;; If the X server cannot be reached, another value of DISPLAY may help. If it answers and a library
+;;; fails then, only another library does.
 
 (deftype program-fault ()
   "Errors of a program, not of what it is connected to."
@@ -21,8 +21,8 @@
       (xlib:close-display display :abort t))))
 
 (defun clx-fails-p ()
-  "True if CLX by itself cannot read an answer of the X server's that is longer than 32 bytes: which
-keys are down takes 40."
+  "True if CLX by itself cannot read a long answer of the X server: which keys are down takes 40
+bytes, and CLX reads 32 of them first."
   (handler-case (progn (call-reading-from-x-server #'xlib:query-keymap) nil)
     (program-fault () t)
     (error () nil)))
