@@ -7,8 +7,8 @@
       (let ((display (environment-value "DISPLAY")))
         (and display (string/= display "")))))
 
-;;; If the X server cannot be reached, another value of DISPLAY may help. If it answers and a library
-;;; fails then, only another library does.
+;;; If the X server cannot be reached, another value of DISPLAY may help. If it answers and a
+;;; library fails then, only another library does.
 
 (deftype program-fault ()
   "Errors of a program, not of what it is connected to."
