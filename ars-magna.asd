@@ -25,7 +25,8 @@
                  (:file "exits")
                  (:file "telling") (:file "breaking-lines") (:file "ordering")
                  (:file "threads") (:file "weak")
-                 (:file "dice") (:file "random") (:file "writing") (:file "names")
+                 (:file "fixed-point") (:file "double-parts")
+                 (:file "trigonometry") (:file "exponentials") (:file "dice") (:file "random") (:file "writing") (:file "names")
                  (:file "keywords")
                  (:file "digest") (:file "sources") (:file "places-in-text")
                  (:file "variables") (:file "definitions") (:file "user-macros")
@@ -355,7 +356,7 @@
   :serial t
   :components
   ((:module "tests" :serial t
-    :components ((:file "package") (:file "base") (:file "base-doors") (:file "geometry")
+    :components ((:file "package") (:file "base") (:file "base-doors") (:file "elementary") (:file "geometry")
                  (:file "nisp") (:file "world") (:file "world-caches") (:file "world-places")
                  (:file "world-things") (:file "world-kickers") (:file "world-large") (:file "ways")
                  (:file "ways-users") (:file "floors") (:file "floors-uses")

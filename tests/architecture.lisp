@@ -217,6 +217,42 @@
                                  "get-time-of-day" "get-internal-run-time")
                                '("src/" "rpl/" "worlds/")))))
 
+(defparameter *elementary-calls*
+  (loop for name in '("sin" "cos" "tan" "asin" "acos" "atan" "sinh" "cosh" "tanh" "asinh" "acosh"
+                      "atanh" "exp" "log" "cis" "phase")
+        collect (format nil "(~A " name)
+        collect (format nil "#'~A)" name)
+        collect (format nil "#'~A " name))
+  "Calls of Lisp's functions whose last bits depend on the machine.")
+
+(defun binds-elementary-p (code place)
+  "True if what begins at PLACE in CODE binds a variable, as in (let ((sin 1)) ...)."
+  (and (char= #\( (char code place))
+       (find (char code (1- place)) "(")))
+
+(defun powers-of-floats (code)
+  "Return the calls of EXPT in CODE, but for powers of the integers 2 and 10, and for squares."
+  (loop for place = (search "(expt " code) then (search "(expt " code :start2 (1+ place))
+        while place
+        for (base exponent) = (let ((*read-eval* nil) (end (min (length code) (+ place 200))))
+                                (rest (ignore-errors
+                                       (read-from-string code nil nil :start place :end end))))
+        unless (or (member base '(2 10)) (eql 2 exponent))
+          collect (list base exponent)))
+
+(test elementary-functions.are-our-own
+  (is (equal '()
+             (loop for path in (lisp-files "src/" "rpl/" "worlds/")
+                   for code = (code-in path)
+                   when (or (some (lambda (call)
+                                    (loop for place = (search call code)
+                                            then (search call code :start2 (1+ place))
+                                          while place
+                                          thereis (not (binds-elementary-p code place))))
+                                  *elementary-calls*)
+                            (powers-of-floats code))
+                     collect (enough-namestring path (project-file ""))))))
+
 (test escape-codes.are-known-to-one-file-of-the-prompt
   ;; The line that an experiment writes over must do without the prompt.
   (is (equal '("src/experiment/running/progress.lisp" "cli/terminal/escapes.lisp")

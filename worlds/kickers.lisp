@@ -18,7 +18,7 @@
 (defun random-step (length)
   "Return a step of LENGTH metres in any direction, as a list (dx dy)."
   (let ((angle (roll-between 0 2pi (user-dice))))
-    (list (* length (cos angle)) (* length (sin angle)))))
+    (list (* length (cosine angle)) (* length (sine angle)))))
 
 (defun scale-step (factor step)
   "Return STEP, a list (dx dy), FACTOR times as long."

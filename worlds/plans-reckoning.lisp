@@ -61,7 +61,7 @@ MISUSE if ME is over: see BEGIN-RECKONING."
   (let* ((odometer (reckoning-odometer me))
          (moved (nominal (get-odometer-pos odometer)))
          (turned (nominal (get-odometer-ang odometer)))
-         (cos (cos (reckoning-heading me))) (sin (sin (reckoning-heading me))))
+         (cos (cosine (reckoning-heading me))) (sin (sine (reckoning-heading me))))
     (reset-odometer odometer)
     (incf (reckoning-x me) (- (* cos (pt-x moved)) (* sin (pt-y moved))))
     (incf (reckoning-y me) (+ (* sin (pt-x moved)) (* cos (pt-y moved))))
@@ -81,8 +81,8 @@ MISUSE if ME is over: see BEGIN-RECKONING."
 (defun point-ahead (me distance)
   "Return the point DISTANCE metres ahead of the robot of ME."
   (destructuring-bind (x y) (reckon me)
-    (list (+ x (* distance (cos (reckoning-heading me))))
-          (+ y (* distance (sin (reckoning-heading me)))))))
+    (list (+ x (* distance (cosine (reckoning-heading me))))
+          (+ y (* distance (sine (reckoning-heading me)))))))
 
 ;;; The way that pictures show.
 

@@ -81,7 +81,7 @@
 (addition roll)
 (defun roll (dice)
   "Return a double-float uniform in [0, 1)."
-  (* (the double-float (float (ash (roll-word dice) -11) 1d0)) #.(expt 2d0 -53)))
+  (* (the double-float (float (ash (roll-word dice) -11) 1d0)) #.(power-of-two -53)))
 
 (addition chance)
 (defun chance (probability dice)
@@ -132,6 +132,6 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
   (check-argument roll-gaussian deviation (quantity-p deviation) "a number from -1e15 to 1e15")
   (if (zerop deviation)
       (double mean)
-      (let ((radius (sqrt (* -2d0 (log (- 1d0 (roll dice))))))
+      (let ((radius (sqrt (the (double-float 0d0) (* -2d0 (logarithm (- 1d0 (roll dice)))))))
             (angle (* 2d0 pi (roll dice))))
-        (+ (double mean) (* (double deviation) radius (cos angle))))))
+        (+ (double mean) (* (double deviation) radius (cosine angle))))))

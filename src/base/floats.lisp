@@ -33,12 +33,11 @@ number, and integers and ratios that are too large."
 (defun double-to-bits (number)
   "Return the 64 bits of NUMBER, a double-float, as an integer that is not negative."
   (declare (type double-float number))
-  (logior (ash (ldb (byte 32 0) (double-high-bits number)) 32)
-          (double-low-bits number)))
+  (ldb (byte 64 0) (double-bits number)))
 
 (defun bits-to-double (bits)
   "Return the double-float with BITS, an integer of 64 bits: DOUBLE-TO-BITS undone."
   (declare (type (unsigned-byte 64) bits))
   (let ((high (ldb (byte 32 32) bits)))
-    (make-double (if (logbitp 31 high) (- high (ash 1 32)) high)
+    (make-double (- (logxor high (ash 1 31)) (ash 1 31))
                  (ldb (byte 32 0) bits))))

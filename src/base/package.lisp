@@ -98,6 +98,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:wrapped-text)
   ;; ordering
   (:export #:name-before-p)
+  ;; trigonometry, exponentials
+  (:export #:sine #:cosine #:arctangent #:exponential #:logarithm #:%logarithm #:power)
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice

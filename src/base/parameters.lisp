@@ -50,7 +50,7 @@
 
 (defun limit-text (limit)
   "Return LIMIT, a number, as people read it: 1e9 for a thousand million."
-  (let ((power (and (integerp limit) (>= limit 1000000) (round (log limit 10)))))
+  (let ((power (and (integerp limit) (>= limit 1000000) (1- (length (princ-to-string limit))))))
     (if (and power (= limit (expt 10 power)))
         (format nil "1e~D" power)
         (princ-to-string limit))))

@@ -120,7 +120,7 @@ for TICK-QUANTUM* of them."
   (let ((probability (double probability)))
     (if (= tick-quantum* 1)
         probability
-        (- 1d0 (expt (- 1d0 probability) (double tick-quantum*))))))
+        (- 1d0 (power (- 1d0 probability) (double tick-quantum*))))))
 
 (defun ticks-for (time)
   "Return how many ticks what takes TIME, as the manual counts it in ticks, takes when a tick stands

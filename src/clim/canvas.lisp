@@ -80,8 +80,8 @@ NIL if its lines are solid."
          (count (max 4 (ceiling (* (abs extent) (sqrt (max 1 across down)))))))
     (loop for index from 0 to count
           for angle = (+ start (* extent (/ index count)))
-          collect (+ x across (* across (cos angle)))
-          collect (- (+ y down) (* down (sin angle))))))
+          collect (+ x across (* across (cosine angle)))
+          collect (- (+ y down) (* down (sine angle))))))
 
 (defun paint-ellipse (canvas gcontext x y width height fill-p)
   (clim:draw-ellipse* (canvas-medium canvas) (+ x (/ width 2)) (+ y (/ height 2))

@@ -9,7 +9,7 @@
 (defun axis (angle)
   "Return the heading along the grid's axes that is nearest to ANGLE, as a number of quarter turns
 from 0 to 3."
-  (mod (round angle (/ pi 2)) 4))
+  (mod (round (/ angle (/ pi 2))) 4))
 
 (defun neighbour-wall-p (robot quarter)
   "True if the cell next to ROBOT's, QUARTER turns from the x axis, is a wall."

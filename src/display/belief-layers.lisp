@@ -49,7 +49,7 @@ to what it denotes."
 
 (defun odometer-box (odometer)
   "Return the corners of the box that contains the position of ODOMETER, x y ..., in metres."
-  (let ((cos (cos (odometer-image-axis odometer))) (sin (sin (odometer-image-axis odometer))))
+  (let ((cos (cosine (odometer-image-axis odometer))) (sin (sine (odometer-image-axis odometer))))
     (loop for (across down) in '((-1 -1) (1 -1) (1 1) (-1 1) (-1 -1))
           for dx = (* across 1/2 (odometer-image-width odometer))
           for dy = (* down 1/2 (odometer-image-height odometer))

@@ -13,14 +13,14 @@
   (let ((value (/ byte 255d0)))
     (if (<= value 0.04045d0)
         (/ value 12.92d0)
-        (expt (/ (+ value 0.055d0) 1.055d0) 2.4d0))))
+        (power (/ (+ value 0.055d0) 1.055d0) 2.4d0))))
 
 (defun byte-of-light (light)
   "Return the value of a primary that means LIGHT."
   (let ((light (clamp light 0d0 1d0)))
     (round (* 255 (if (<= light 0.0031308d0)
                       (* 12.92d0 light)
-                      (- (* 1.055d0 (expt light (/ 2.4d0))) 0.055d0))))))
+                      (- (* 1.055d0 (power light (/ 2.4d0))) 0.055d0))))))
 
 (defun primaries (color)
   "Return the light of red, green and blue in COLOR, as a list."

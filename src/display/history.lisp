@@ -107,7 +107,7 @@ known; NIL if none of it is. Where a fork has gone nobody notes, but it came to 
   "Return, as two values, where what a camera at X, Y can see of MAP in direction ANGLE ends.
 OPAQUE-P is a function of the index of a cell."
   (declare (type function opaque-p))
-  (let* ((dx (cos angle)) (dy (sin angle))
+  (let* ((dx (cosine angle)) (dy (sine angle))
          (end (walk-grid (lambda (index at column)
                            (declare (ignore at column))
                            (funcall opaque-p index))

@@ -60,7 +60,7 @@ wide, with DASHES."
 
 (defun around (x y angle radius)
   "Return a list of the coordinates RADIUS from X, Y in direction ANGLE."
-  (list (+ x (* radius (cos angle))) (+ y (* radius (sin angle)))))
+  (list (+ x (* radius (cosine angle))) (+ y (* radius (sine angle)))))
 
 (defun draw-circle (canvas x y radius fill-p)
   "Draw a circle, or a line of which the middle is RADIUS away from X, Y."

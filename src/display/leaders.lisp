@@ -72,7 +72,7 @@ are around each other, and what has a place in common has its names there, too."
 ANGLE."
   (flet ((before (share size)
            (cond ((< share -1/3) size) ((< 1/3 share) 0) (t (/ size 2)))))
-    (let ((left (- x (before (cos angle) width))) (top (- y (before (sin angle) +name-height+))))
+    (let ((left (- x (before (cosine angle) width))) (top (- y (before (sine angle) +name-height+))))
       (list left top (+ left width) (+ top +name-height+)))))
 
 (defun led-boxes (spot width)
@@ -89,7 +89,8 @@ ANGLE."
   "Return the ends of the line from SPOT to BOX, as a list x y x y."
   (let ((x (spot-x spot)) (y (spot-y spot)))
     (multiple-value-bind (to-x to-y) (nearest-in box x y)
-      (append (around x y (atan (- to-y y) (- to-x x)) (spot-half spot)) (list to-x to-y)))))
+      (append (around x y (arctangent (- to-y y) (- to-x x)) (spot-half spot))
+              (list to-x to-y)))))
 
 (defun off-leaders (spot taken rivals)
   "Return those boxes of TAKEN, and of RIVALS the images of those robots, which a line from SPOT is

@@ -133,8 +133,8 @@
   (let* ((across (/ width 2)) (down (/ height 2))
          (center-x (+ x across)) (center-y (+ y down)))
     (flet ((spot (angle)
-             (write-svg canvas (+ center-x (* across (cos angle))) " "
-                        (- center-y (* down (sin angle))))))
+             (write-svg canvas (+ center-x (* across (cosine angle))) " "
+                        (- center-y (* down (sine angle))))))
       (write-svg canvas "<path d=\"M")
       (when fill-p (write-svg canvas center-x " " center-y "L"))
       (spot start)

@@ -105,7 +105,7 @@ large things are their initials, as far as can be. There may be more kinds than 
 
 (defun arrow-glyph (angle)
   "Return the arrow that points most nearly in the direction ANGLE, in radians."
-  (char ">v<^" (mod (round angle (/ pi 2)) 4)))
+  (char ">v<^" (mod (round (/ angle (/ pi 2))) 4)))
 
 (defun names-text (things)
   "Return what THINGS are called, each name once."

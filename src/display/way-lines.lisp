@@ -34,7 +34,7 @@ length are left out."
   (destructuring-bind ((x y) (to-x to-y))
       (list (spot-along pieces (- distance (/ +arrow-length+ 2)))
             (spot-along pieces (+ distance (/ +arrow-length+ 2))))
-    (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (atan (- to-y y) (- to-x x)))))
+    (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (arctangent (- to-y y) (- to-x x)))))
 
 (defun free-arrow (pieces distance arrows)
   "Return an arrowhead about DISTANCE along the way of PIECES that lies on none of ARROWS, as it may

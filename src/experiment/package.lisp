@@ -6,7 +6,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
   (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots
                 #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
-                #:save-chart)
+                #:save-chart #:power-of-ten)
   (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history

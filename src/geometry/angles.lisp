@@ -24,7 +24,7 @@
 WRONG-ARGUMENT."
   (check-finite atan2 y)
   (check-finite atan2 x)
-  (atan (double y) (double x)))
+  (arctangent (double y) (double x)))
 
 ;; Beyond that too little is left of the part of a turn.
 (defmacro check-angle (operator place)

@@ -9,7 +9,7 @@ file. No other folder names such parts of SBCL.")
   ;; wrapping
   (:export #:wrap-function #:unwrap-function #:wrapped-p)
   ;; floats
-  (:export #:double-high-bits #:double-low-bits #:make-double #:make-single)
+  (:export #:double-high-bits #:double-bits #:make-double #:make-single)
   ;; memory
   (:export #:octets-before-garbage #:scrub-stack #:dynamic-usage #:collections)
   ;; stacks

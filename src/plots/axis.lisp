@@ -19,12 +19,12 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
         (t (check-argument chart value (plusp value)
                            "more than 0 on a logarithmic axis; leave :log-x out, or make it a word")
            (let ((power (power-of-ten value)))
-             (+ power (rational (log (double (/ value (expt 10 power))) 10d0)))))))
+             (+ power (rational (/ (logarithm (/ value (expt 10 power))) (logarithm 10))))))))
 
 (defun antilogarithm (spot)
   "Return the number whose logarithm is SPOT, about."
   (multiple-value-bind (power rest) (floor spot)
-    (* (expt 10 power) (rational (expt 10d0 (double rest))))))
+    (* (expt 10 power) (rational (power 10 rest)))))
 
 (defun place (value axis)
   "Return the pixel of VALUE."

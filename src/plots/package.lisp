@@ -6,7 +6,7 @@ no experiment and no robot. Each chart is a function that returns an SVG documen
   (:use :cl :ars-magna.base :ars-magna.canvas)
   (:import-from :ars-magna.display #:picture-kind #:save-svg)
   ;; figures
-  (:export #:figure-text)
+  (:export #:figure-text #:power-of-ten)
   ;; charts
   (:export #:line-chart #:survival-chart #:difference-chart #:measure-chart)
   ;; looks

@@ -148,7 +148,7 @@ as an object descriptor (reading 127)."
 1 - (1-p)^(n+1), n of them being its supporters (manual 3.4.2; reading 224)."
   (let* ((supporters (attribute-supporters attribute))
          (given (count-if (lambda (key) (member key supporters :test #'eq)) keys)))
-    (- 1d0 (expt (- 1d0 (attribute-noticed attribute)) (1+ given)))))
+    (- 1d0 (power (- 1d0 (attribute-noticed attribute)) (1+ given)))))
 
 (defun noticeable-p (attribute value map)
   "True if there is something to be noticed when a thing of MAP has VALUE for ATTRIBUTE. A thing

@@ -18,8 +18,8 @@ So a robot can drive along the border of two cells, and stay in one of them."
     (when (plusp (length (robot-designators robot)))
       (turn-designators robot (- angle (robot-angle robot))))
     (setf (robot-angle robot) angle
-          (robot-cos robot) (component (cos angle))
-          (robot-sin robot) (component (sin angle))))
+          (robot-cos robot) (component (cosine angle))
+          (robot-sin robot) (component (sine angle))))
   robot)
 
 (defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))

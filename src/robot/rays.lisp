@@ -43,9 +43,9 @@ before BODY runs for the direction before, so that the processor divides while B
   (with-gensyms (spacing first cos sin next-x next-y next-per-x next-per-y)
     `(let* ((,spacing (/ ,width ,count))
             (,first (- ,angle (* 0.5d0 (- ,width ,spacing))))
-            (,cos (cos ,spacing)) (,sin (sin ,spacing))
-            (,next-x (cos ,first)) (,next-per-x (/ (nonzero ,next-x)))
-            (,next-y (sin ,first)) (,next-per-y (/ (nonzero ,next-y))))
+            (,cos (cosine ,spacing)) (,sin (sine ,spacing))
+            (,next-x (cosine ,first)) (,next-per-x (/ (nonzero ,next-x)))
+            (,next-y (sine ,first)) (,next-per-y (/ (nonzero ,next-y))))
        (declare (type double-float ,spacing ,first ,cos ,sin
                       ,next-x ,next-y ,next-per-x ,next-per-y))
        (loop repeat ,count

@@ -34,7 +34,7 @@
 
 (defun bearing-to (robot x y)
   "Return the true direction from ROBOT to (X,Y), in radians."
-  (atan (- y (robot-y robot)) (- x (robot-x robot))))
+  (arctangent (- y (robot-y robot)) (- x (robot-x robot))))
 
 ;;; Imagination (manual 3.4.1, chapter 4).
 
@@ -47,7 +47,7 @@
   "Return where a walk from ROBOT in the direction ANGLE ends: metre by metre, outside the robot's
 cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136)."
   (let ((map (world-map (robot-world robot)))
-        (dx (cos angle)) (dy (sin angle)))
+        (dx (cosine angle)) (dy (sine angle)))
     (loop for metres from 1d0 by 1d0
           for x = (+ (robot-x robot) (* metres dx))
           for y = (+ (robot-y robot) (* metres dy))

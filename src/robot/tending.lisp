@@ -28,8 +28,8 @@
                         (roll-within (per-tick-drift false-desig-drift-ang*) dice))))
         (setf (values (designator-x designator) (designator-y designator))
               (clip-to-map map
-                           (+ (robot-x robot) (* distance (cos bearing)))
-                           (+ (robot-y robot) (* distance (sin bearing)))))))))
+                           (+ (robot-x robot) (* distance (cosine bearing)))
+                           (+ (robot-y robot) (* distance (sine bearing)))))))))
 
 (defun refresh-designator (designator dice)
   "Bring the tracked DESIGNATOR up to date; DESIGNATOR-SWING is then how far its direction has

@@ -10,7 +10,7 @@
   (declare (type double-float y x exponent))
   (if (< x .1d0)
       (- (+ (deviance exponent (* exponent y)) (* exponent x)))
-      (* exponent (log y))))
+      (* exponent (logarithm y))))
 
 (defun log-binomial-density (a b x y)
   "Return the logarithm of gamma(A+B+1) / (gamma(A+1) gamma(B+1)) X^A Y^B: of whole numbers, that
@@ -22,12 +22,12 @@ of the probability of A successes and B failures (Loader 2000). A and B are 0 or
           ((zerop b) (log-power x y a))
           (t (+ (- (stirling-rest n) (stirling-rest a) (stirling-rest b)
                    (deviance a (* n x)) (deviance b (* n y)))
-                (/ (log (/ n (* 2 pi a b))) 2))))))
+                (/ (logarithm (/ n (* 2 pi a b))) 2))))))
 
 (defun log-rise (a b x y)
   "Return the logarithm of X^A Y^B / beta(A, B)."
   (declare (type double-float a b x y))
-  (+ (log-binomial-density a b x y) (log (/ (* a b) (+ a b)))))
+  (+ (log-binomial-density a b x y) (logarithm (/ (* a b) (+ a b)))))
 
 (defun beta-fraction (a b x y)
   "Return I_X(A, B) divided by X^A Y^B / beta(A, B), for X up to about A/(A+B) (the continued
@@ -54,8 +54,8 @@ fraction of Didonato and Morris 1992, all of whose terms are above 0 there)."
   (declare (type double-float a b x y))
   (cond ((zerop x) 0d0)
         ((zerop y) 1d0)
-        ((<= (* b x) (* a y)) (* (exp (log-rise a b x y)) (beta-fraction a b x y)))
-        (t (- 1 (* (exp (log-rise b a y x)) (beta-fraction b a y x))))))
+        ((<= (* b x) (* a y)) (* (exponential (log-rise a b x y)) (beta-fraction a b x y)))
+        (t (- 1 (* (exponential (log-rise b a y x)) (beta-fraction b a y x))))))
 
 (defun beta-quantile (p a b)
   "Return the X with I_X(A, B) = P, which is between 0 and 1, and 1 - X."
@@ -71,13 +71,13 @@ fraction of Didonato and Morris 1992, all of whose terms are above 0 there)."
   (declare (type double-float p a b))
   (flet ((share (odds)
            (declare (type double-float odds))
-           (/ (+ 1 (exp (- odds))))))
-    (loop with goal of-type double-float = (log p)
-          with odds of-type double-float = (log (/ a b))
+           (/ (+ 1 (exponential (- odds))))))
+    (loop with goal of-type double-float = (logarithm p)
+          with odds of-type double-float = (logarithm (/ a b))
           repeat 100
           do (let* ((x (share odds)) (y (share (- odds)))
                     (fraction (beta-fraction a b x y))
-                    (step (* fraction (- goal (log-rise a b x y) (log fraction)))))
+                    (step (* fraction (- goal (log-rise a b x y) (logarithm fraction)))))
                (declare (type (double-float (0d0)) fraction))
                (incf odds step)
                (when (< (abs step) 1d-10) (loop-finish)))

@@ -54,8 +54,8 @@ and Tibshirani 1993, formula 14.15, of groups if SAMPLE is large)."
          (mean (mean-of left)) (squares 0d0) (cubes 0d0))
     (loop for value across left
           do (incf squares (expt (- mean value) 2))
-             (incf cubes (expt (- mean value) 3)))
-    (if (zerop squares) 0d0 (/ cubes (* 6 (expt squares 1.5d0))))))
+             (incf cubes (* (expt (- mean value) 2) (- mean value))))
+    (if (zerop squares) 0d0 (/ cubes (* 6 (* squares (sqrt squares)))))))
 
 (defun bias (values found)
   "Return by how many deviations FOUND is off the middle of VALUES, some of which may equal it

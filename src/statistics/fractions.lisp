@@ -55,4 +55,4 @@
   (let ((v (/ (- x mean) (+ x mean))))
     (cond ((< (abs v) .3d0) (+ (* v (- x mean)) (* 2 x v (arctangent-rest v))))
           ((zerop x) mean)
-          (t (+ (* x (log (/ x mean))) (- mean x))))))
+          (t (+ (* x (logarithm (/ x mean))) (- mean x))))))

@@ -5,7 +5,7 @@
 (defun poisson-density (a x)
   "Return X^A e^-X / gamma(A+1), for A from 1/2 and X above 0."
   (declare (type double-float a x))
-  (/ (exp (- (+ (stirling-rest a) (deviance a x)))) (sqrt (* 2 pi a))))
+  (/ (exponential (- (+ (stirling-rest a) (deviance a x)))) (sqrt (* 2 pi a))))
 
 (defun gamma-series (a x)
   "Return 1 + X/(A+1) + X^2/((A+1)(A+2)) + ... (DLMF 8.11.4)."

@@ -57,7 +57,7 @@
     (if (<= (abs q) .425d0)
         (middle-quantile q)
         (let* ((tail (if (minusp q) p (- 1 p)))
-               (r (sqrt (- (log (the (double-float (0d0)) tail)))))
+               (r (sqrt (- (logarithm (the (double-float (0d0)) tail)))))
                (size (if (<= r 5) (near-tail-quantile (- r 1.6d0)) (far-tail-quantile (- r 5)))))
           (declare (type (double-float 0d0) r))
           (if (minusp q) (- size) size)))))

@@ -14,7 +14,7 @@ LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
 
 (defun log-evidence (successes trials rate)
   (declare (type double-float rate))
-  (- 0d0 (log (double (1+ trials)))
+  (- 0d0 (logarithm (double (1+ trials)))
      (log-binomial-density (double successes) (double (- trials successes)) rate (- 1 rate))))
 
 (addition rate-evidence)
@@ -37,5 +37,5 @@ it answers: whoever does so is told of a difference where there is none with a p
 most LEVEL. See RATE-EVIDENCE, also for errors; LEVEL is between 0 and 1."
   (check-trials rate-verdict successes trials)
   (let ((rate (check-share rate-verdict rate)))
-    (when (>= (log-evidence successes trials rate) (- (log (check-share rate-verdict level))))
+    (when (>= (log-evidence successes trials rate) (- (logarithm (check-share rate-verdict level))))
       (if (> successes (* rate trials)) :above :below))))

@@ -44,8 +44,8 @@
 the high one, as that was so before."
   (if (zerop survival)
       (values 0d0 highest)
-      (let ((factor (exp (/ (* z (sqrt variance)) (- (log survival))))))
-        (values (expt survival factor) (expt survival (/ factor))))))
+      (let ((factor (exponential (/ (* z (sqrt variance)) (- (logarithm survival))))))
+        (values (power survival factor) (power survival (/ factor))))))
 
 (addition survival-curve)
 (defun survival-curve (times events &key (confidence .95d0))

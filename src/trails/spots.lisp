@@ -228,7 +228,7 @@ and if possible where none of the boxes TAKEN is, nor of RATHER-NOT."
 
 (defun draw-spot (canvas x y radius place text)
   "Draw a ring of RADIUS around X, Y, and TEXT, its number, at PLACE, with a line from there."
-  (let* ((angle (atan (- (second place) y) (- (first place) x)))
+  (let* ((angle (arctangent (- (second place) y) (- (first place) x)))
          (edge (around x y angle radius)))
     (inked (black*)
       (draw-circle canvas x y radius nil)

@@ -6,7 +6,7 @@
   "Return the factor that turns the logarithm of a roll into a gap, see DRAW-GAP."
   (cond ((>= probability 1d0) 0d0)
         ((< probability 1d-12) (- (/ (max probability 1d-300))))
-        (t (/ (log (- 1d0 probability))))))
+        (t (/ (logarithm (- 1d0 probability))))))
 
 (declaim (inline draw-gap))
 (defun draw-gap (scale dice)
@@ -14,8 +14,8 @@
   (declare (type double-float scale))
   (let ((u (- 1d0 (roll dice))))
     (declare (type (double-float (0d0) 1d0) u))
-    (truncate (the (double-float 0d0 #.(expt 2d0 40))
-                   (min #.(expt 2d0 40) (* scale (log u)))))))
+    (truncate (the (double-float 0d0 #.(double (expt 2 40)))
+                   (min #.(double (expt 2 40)) (* scale (%logarithm u)))))))
 
 ;;; To know which trials will succeed, dice are rolled before their time. What they come to depends
 ;;; on their state alone: so whoever finds them in that state need not reckon it again.

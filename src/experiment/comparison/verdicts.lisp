@@ -12,12 +12,12 @@
 
 (defun hundredths-text (share trials)
   "Return SHARE, seen in TRIALS, in hundredths."
-  (decimals-text (* 100 share) (max 0 (- (ceiling (log (max 2 trials) 10)) 2))))
+  (decimals-text (* 100 share) (max 0 (- (length (princ-to-string (max 1 (1- trials)))) 2))))
 
 (defun decimals-known (low high)
   "Return how many decimals a mean between LOW and HIGH is worth."
   (if (and low (< low high))
-      (max 0 (min 6 (- 1 (floor (log (- high low) 10)))))
+      (max 0 (min 6 (- 1 (power-of-ten (rational (- high low))))))
       3))
 
 (defun number-writer (difference)

@@ -11,7 +11,7 @@ they are too large or small for that."
     (cond ((every #'integerp numbers) (if (< largest 1e9) 0 nil))
           ((every (lambda (number) (= number (round number))) numbers) (if (< largest 1e9) 0 nil))
           ((not (< 1/1000 largest 1e9)) nil)
-          (t (max 0 (- 3 (floor (log (double largest) 10d0))))))))
+          (t (max 0 (- 3 (power-of-ten (rational largest))))))))
 
 (defun number-writer-for (numbers)
   "Return a function that writes each of NUMBERS."
