@@ -69,14 +69,18 @@
   (sort (loop for symbol being the external-symbols of :ars
               when (and (fboundp symbol)
                         (not (macro-function symbol))
-                        (not (structure-reader-p symbol))
+                        (not (slot-reader-p symbol))
                         (not (member (symbol-name symbol) *not-called* :test #'string=)))
                 collect symbol)
         #'string<))
 
-(defun structure-reader-p (symbol)
-  "True if SYMBOL names a reader of a structure's slot, which Lisp itself checks the argument of."
-  (host:structure-reader-p (fdefinition symbol)))
+(defun slot-reader-p (symbol)
+  "True if SYMBOL names a reader of a structure's or condition's slot, which Lisp itself checks the
+argument of."
+  (let ((function (fdefinition symbol)))
+    (if (typep function 'generic-function)
+        (equal '(condition) (shown-lambda-list symbol))
+        (host:structure-reader-p function))))
 
 (defun shown-lambda-list (symbol)
   "Return the lambda list of the function SYMBOL. Of a generic one, its code has none of its own."

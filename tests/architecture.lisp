@@ -219,16 +219,19 @@
 
 (defparameter *elementary-calls*
   (loop for name in '("sin" "cos" "tan" "asin" "acos" "atan" "sinh" "cosh" "tanh" "asinh" "acosh"
-                      "atanh" "exp" "log" "cis" "phase")
+                      "atanh" "exp" "log" "cis")
         collect (format nil "(~A " name)
         collect (format nil "#'~A)" name)
         collect (format nil "#'~A " name))
   "Calls of Lisp's functions whose last bits depend on the machine.")
 
 (defun binds-elementary-p (code place)
-  "True if what begins at PLACE in CODE binds a variable, as in (let ((sin 1)) ...)."
-  (and (char= #\( (char code place))
-       (find (char code (1- place)) "(")))
+  "True if what begins at PLACE in CODE binds a variable, as in (let ((cos (cosine x))) ...), or
+describes a slot."
+  (let ((value (string-left-trim " " (subseq code (position #\Space code :start place)))))
+    (or (begins-with-p "(cosine " value)
+        (begins-with-p "(sine " value)
+        (and (digit-char-p (char value 0)) (search " double-float " value :end2 30)))))
 
 (defun powers-of-floats (code)
   "Return the calls of EXPT in CODE, but for powers of the integers 2 and 10, and for squares."

@@ -5,11 +5,13 @@
 ;;; CL:SIN, COS, ATAN, EXP, LOG and EXPT call the C library. Its last bits depend on its version and
 ;;; on the processor. These functions only add, subtract, multiply, divide and read tables. IEEE
 ;;; arithmetic defines each of these operations to the bit, and SBCL never fuses two of them. The
-;;; error is below 0.6 units in the last place. 99.9 % of the results are those of Debian's C library.
+;;; error is below 0.6 units in the last place. 99.9 % of the results are those of Debian's C
+;;; library.
 
-;;; Methods: for sine, cosine and arctangent those of IBM's Accurate Mathematical Library (Ziv 1991);
-;;; for exponential and logarithm Tang 1989 and 1990; for large angles Payne and Hanek 1983. A table
-;;; has the value at a point nearby, in two parts. A short series leads from there to the argument.
+;;; Methods: for sine, cosine and arctangent those of IBM's Accurate Mathematical Library (Ziv
+;;; 1991); for exponential and logarithm Tang 1989 and 1990; for large angles Payne and Hanek 1983.
+;;; A table has the value at a point nearby, in two parts. A short series leads from there to the
+;;; argument.
 
 ;;; Sine and cosine.
 

@@ -72,7 +72,8 @@ are around each other, and what has a place in common has its names there, too."
 ANGLE."
   (flet ((before (share size)
            (cond ((< share -1/3) size) ((< 1/3 share) 0) (t (/ size 2)))))
-    (let ((left (- x (before (cosine angle) width))) (top (- y (before (sine angle) +name-height+))))
+    (let ((left (- x (before (cosine angle) width)))
+          (top (- y (before (sine angle) +name-height+))))
       (list left top (+ left width) (+ top +name-height+)))))
 
 (defun led-boxes (spot width)

@@ -69,8 +69,8 @@
              "~A is beyond all bounds" robot)
   (must-hold (robot-cell-index robot) "~A is outside of its map" robot)
   ;; On another machine the last bit may be another.
-  (must-hold (and (< (abs (- (robot-cos robot) (cos (robot-angle robot)))) 1d-9)
-                  (< (abs (- (robot-sin robot) (sin (robot-angle robot)))) 1d-9))
+  (must-hold (and (< (abs (- (robot-cos robot) (cosine (robot-angle robot)))) 1d-9)
+                  (< (abs (- (robot-sin robot) (sine (robot-angle robot)))) 1d-9))
              "~A does not look where it looks" robot))
 
 (defun check-robot (robot world)
