@@ -11,7 +11,7 @@
   (:documentation "Compiling, saving the prompt's core, running the tests.")
   (:use :cl)
   (:export #:configure #:print-missing-libraries #:print-window-libraries #:get-window-libraries
-           #:load-project
+           #:load-project #:load-strictly
            #:print-library-versions #:load-tests #:save-prompt #:save-window-prompt #:run-tests
            #:record-sessions #:write-manual))
 

@@ -271,6 +271,27 @@ describes a slot."
              (files-mentioning '("sb-ext:exit" "sb-ext:quit" "uiop:quit" "end-process")
                                '("src/" "rpl/" "worlds/")))))
 
+;;; What the shell calls.
+
+(defun names-after (prefix text)
+  "Return the names that follow PREFIX in TEXT."
+  (loop for start = (search prefix text) then (search prefix text :start2 end)
+        while start
+        for end = (position-if-not #'name-char-p text :start (+ start (length prefix)))
+        collect (subseq text (+ start (length prefix)) end)))
+
+(test scripts.call-what-build-lisp-exports
+  (let ((names (loop for file in '("cli/ars-magna" "cli/setup.sh" "tests/run" "worlds/figures"
+                                   "tests/newcomer/record" "tests/benchmarks/run"
+                                   "tests/benchmarks/peers/run")
+                     append (names-after "ars-magna.build:"
+                                         (base:read-file-into-string (project-file file))))))
+    (is (< 8 (length names)))
+    (dolist (name (remove-duplicates names :test #'string=))
+      (unless (begins-with-p "$" name)
+        (is (eq :external (nth-value 1 (find-symbol (string-upcase name) :ars-magna.build)))
+            "~A is not exported" name)))))
+
 ;;; Packages.
 
 (defun project-packages ()
