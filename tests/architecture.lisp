@@ -288,7 +288,7 @@ describes a slot."
                                          (base:read-file-into-string (project-file file))))))
     (is (< 8 (length names)))
     (dolist (name (remove-duplicates names :test #'string=))
-      (unless (begins-with-p "$" name)
+      (unless (string= "" name)  ; one of the shell's variables
         (is (eq :external (nth-value 1 (find-symbol (string-upcase name) :ars-magna.build)))
             "~A is not exported" name)))))
 
