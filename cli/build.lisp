@@ -131,12 +131,17 @@ defined twice."
   (uiop:quit (if *damaged-p* 1 2)))
 
 (defun load-libraries (names)
-  "Compile and load the libraries called NAMES; anew, if what was compiled of them is damaged."
-  (handler-case (mapc #'asdf:load-system names)
-    (error (condition)
-      (note-trouble condition)
-      (forget (library-fasls))
-      (mapc #'asdf:load-system names))))
+  "Compile and load the libraries called NAMES; anew, if what was compiled of them is damaged. If
+that fails, too, end this Lisp with status 2: one of them does not compile, or is missing."
+  (flet ((load-them () (mapc #'asdf:load-system names)))
+    (handler-case (load-them)
+      (error (condition)
+        (note-trouble condition)
+        (forget (library-fasls))
+        (handler-case (load-them)
+          (error (condition)
+            (note-trouble condition)
+            (uiop:quit 2)))))))
 
 (defun load-project (system)
   "Compile and load SYSTEM, one of the project's. If that fails, end this Lisp."
