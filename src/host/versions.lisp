@@ -47,20 +47,12 @@ if that is one."
   "True if OBJECT is of the type that is the first of NAMES in SBCL's PACKAGE."
   `(typep ,object ',(apply #'internal-name package names)))
 
-(defun version-numbers (version)
-  "Return the numbers at the beginning of VERSION, such as (2 5 2) of \"2.5.2.debian\"."
-  (loop for start = 0 then (1+ end)
-        for end = (position #\. version :start start)
-        for number = (parse-integer version :start start :end end :junk-allowed t)
-        while number collect number
-        while end))
-
 (defun later-version-p (version other)
   "True if VERSION, a string such as \"2.5.2.debian\", is later than OTHER."
-  (loop for (number . more) on (version-numbers version)
-        for others = (version-numbers other) then (rest others)
-        do (cond ((null others) (return (plusp number)))
-                 ((/= number (first others)) (return (> number (first others)))))))
+  (flet ((numbers (version)
+           (let ((end (position-if-not (lambda (char) (find char ".0123456789")) version)))
+             (string-right-trim "." (subseq version 0 end)))))
+    (uiop:version< (numbers other) (numbers version))))
 
 (defun untried-host-text (&optional (version (lisp-implementation-version)))
   "Return a sentence that says so if VERSION of SBCL is later than all tried, or earlier; else NIL."
