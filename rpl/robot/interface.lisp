@@ -5,6 +5,12 @@
 ;;; Whoever lets plans react holds the interface's lock. Headless that is whoever passes ticks or
 ;;; starts plans; live a thread of their own, which exists while there are plans. The simulator
 ;;; only posts to that and never waits for it.
+;;;
+;;; One rule for what several threads read: timers, ready tasks and all else of the runner are read
+;;; and changed by the thread that holds the lock. When it gives the lock back it publishes, as one
+;;; value, the tick at which plans next need to go on; the clock reads that. Posts and the tasks
+;;; that are to end are atomic lists. The list of top-level tasks is replaced as a whole, never
+;;; altered.
 
 (addition *trace-plans*)
 (defparameter *trace-plans* nil
@@ -31,7 +37,9 @@ SAVE-PLAN-TIMELINE.")
    (wish-tick nil t "the tick in which that was"))
   (:memory
    (eras '() list "which tasks are of which era, the newest first; see handles.lisp")
-   (warned '() list "what was said of takeovers, and at which tick"))
+   (warned '() list "what was said of takeovers, and at which tick")
+   (next-tick nil (or null real (eql :ready))
+              "published: the tick at which plans next go on, :READY for at once, or NIL"))
   (:link
    (origin '() list "how messages call the plans, kept so that no tick makes it anew")
    (ender nil (or null function) "what the robot calls when its run is over")
@@ -74,13 +82,39 @@ SAVE-PLAN-TIMELINE.")
   "True if this thread is letting the plans of INTERFACE react, or looks at them."
   (and (member interface *held* :test #'eq) t))
 
+(defun publish-next-tick (interface)
+  "Tell other threads when the plans of INTERFACE, which this thread holds, next go on."
+  (let ((runner (interface-runner interface)))
+    (setf (interface-next-tick interface)
+          (and runner (if (idle-p runner) (next-wake-time runner) :ready)))))
+
 (defun call-holding (function interface)
   "Call FUNCTION, holding the plans of INTERFACE, which this thread has locked."
   (unwind-protect (let* ((held (cons interface *held*)) (*held* held))
                     (declare (dynamic-extent held))
                     (setf (interface-holder interface) (current-thread))
-                    (funcall function))
+                    (unwind-protect (funcall function)
+                      (publish-next-tick interface)))
     (setf (interface-holder interface) nil)))
+
+(defun call-with-plans-if-free (function interface)
+  "Call FUNCTION as CALL-WITH-PLANS does, and return its value and true; NIL and false if another
+thread holds the plans of INTERFACE."
+  (if (holding-p interface)
+      (values (funcall function) t)
+      (call-if-free (interface-lock interface) (lambda () (call-holding function interface)))))
+
+(defun wake-tick (interface)
+  "Return the tick at which the next plan of INTERFACE that waits for time wakes; NIL if none waits
+for that, or some plan is ready. For any thread."
+  (let ((tick (interface-next-tick interface)))
+    (and (realp tick) tick)))
+
+(defun ready-p (interface)
+  "True if plans of INTERFACE need to go on at the next tick at the latest. For any thread."
+  (and (or (interface-next-tick interface)
+           (heard-from-outside-p (interface-runner interface)))
+       t))
 
 (defun hog-of (interface)
   "Return the task that keeps the thread of the plans of INTERFACE, or NIL."

@@ -30,8 +30,8 @@
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
-                #:next-wake-time #:needs-tick-p #:set-charges #:make-plan-runner #:start-plan
-                #:rest-in-tick #:stop-plan #:plan-runner
+                #:next-wake-time #:heard-from-outside-p #:idle-p #:set-charges
+                #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-cleaning #:form-text

@@ -62,20 +62,22 @@ nothing happens."
 
 ;;; Taking part.
 
+(defun woken-by-tick-p (interface)
+  "True if a plan of INTERFACE waits for this tick, or an earlier one."
+  (let ((tick (wake-tick interface)))
+    (and tick (>= (simulation-tick (interface-simulation interface)) tick))))
+
 (defun time-to-wake-p (interface)
   "True if plans of INTERFACE, which wait, wait for this tick."
-  (let ((tick (next-wake-time (interface-runner interface))))
-    (or (interface-tick-wanted-p interface)
-        (and tick (>= (simulation-tick (interface-simulation interface)) tick)))))
+  (or (interface-tick-wanted-p interface) (woken-by-tick-p interface)))
 
 (defun rest-fully (interface)
-  "Let it be the next tick for the plans of INTERFACE, if they all wait, and for something else.
-True if so. Most ticks are like that."
+  "Let it be the next tick for the plans of INTERFACE, which no other thread touches, if they all
+wait, and for something else. True if so. Most ticks are like that."
   (let* ((simulation (interface-simulation interface))
          (timeline (simulation-timeline simulation)))
     (not (or (interface-closing-p interface)
              (interface-wishes interface)
-             (interface-holder interface)
              (thinking-charged-p timeline)
              (not (rest-in-tick (interface-runner interface) (timeline-tick timeline)))))))
 
@@ -95,26 +97,32 @@ True if so. Most ticks are like that."
            (wake interface)))
         ((not (thread-wanted-p interface))
          (begin-moment (simulation-timeline simulation))
-         (unless (rest-fully interface)
-           (with-plans (interface) (react-fully interface))))
+         (if (live-p simulation)
+             (with-plans (interface)
+               (unless (rest-fully interface) (react-fully interface)))
+             ;; Headless nobody else is there, and most ticks need no lock.
+             (unless (and (null (interface-holder interface)) (rest-fully interface))
+               (with-plans (interface) (react-fully interface)))))
         ((tasks-of interface) (ensure-thread interface))
         ((interface-answers interface) (apply-posts interface))))
 
 ;; What was left ready by a thread that has ended from outside waits for the next tick.
 (defmethod participant-busy-p ((interface interface) simulation)
-  (cond ((thread-of interface) (next-wake-time (interface-runner interface)))
-        ((needs-tick-p (interface-runner interface)))
+  (cond ((thread-of interface) (wake-tick interface))
+        ((ready-p interface))
         ((wish-to-serve interface) t)
         ((live-p simulation) (and (thread-wanted-p interface) (tasks-of interface) t))))
 
 (defmethod participant-reseed ((interface interface) seed)
   (reseed-runner (interface-runner interface) seed))
 
-;; What a live plan is at right now is nobody's to wait for.
+;; What a live plan is at right now is nobody's to wait for: then only its being at work counts.
 (defmethod participant-digest ((interface interface) digest)
-  (if (thread-of interface)
-      (digest-runner (interface-runner interface) digest)
-      (with-plans (interface) (digest-runner (interface-runner interface) digest))))
+  (flet ((add () (digest-runner (interface-runner interface) digest)))
+    (if (thread-of interface)
+        (unless (nth-value 1 (call-with-plans-if-free #'add interface))
+          (digest-add digest :at-work))
+        (with-plans (interface) (add)))))
 
 (defmethod participant-end ((interface interface) simulation)
   (declare (ignore simulation))

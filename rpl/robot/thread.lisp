@@ -46,7 +46,7 @@ NIL if that was aborted."
   "Have the live simulation, if it rests for want of events, go on while a plan waits for time."
   (let ((simulation (interface-simulation interface)))
     (when (and (or (interface-tick-wanted-p interface)
-                   (next-wake-time (interface-runner interface)))
+                   (wake-tick interface))
                (zerop (agenda-pending (simulation-agenda simulation))))
       (wake-owner (simulation-timeline simulation)))))
 
@@ -64,7 +64,8 @@ NIL if that was aborted."
     (let-fork-be-kept (interface-simulation interface))
     (ecase (react-in-thread interface)
       (:over (return))
-      (:idle (rest-plans interface))
+      ;; A tick may have come meanwhile for which nobody was told to wake.
+      (:idle (unless (woken-by-tick-p interface) (rest-plans interface)))
       (:budget (when (or (waits-for-tick-p interface) (wish-to-serve interface))
                  (setf (interface-tick-wanted-p interface) t)
                  (rest-plans interface)))

@@ -206,9 +206,13 @@ and nothing heard."
   (let ((timer (next-timer (runner-timers runner))))
     (and timer (timer-due timer))))
 
+(defun heard-from-outside-p (runner)
+  "True if something was posted to RUNNER, or tasks of it are to end. For any thread."
+  (and (or (runner-doomed runner) (posted-p runner)) t))
+
 (defun idle-p (runner)
   "True if no task of RUNNER is ready and nothing is posted: only time or a post can change that."
-  (not (or (any-ready-p runner) (runner-doomed runner) (posted-p runner))))
+  (not (or (any-ready-p runner) (heard-from-outside-p runner))))
 
 (defun charged-for-p (runner)
   "True if a tick may cost RUNNER something, or pay what that owes, though no task goes on."

@@ -73,7 +73,8 @@ plans nor a simulator.")
   ;; engine
   (:export #:advance-timers #:note-tick #:apply-next-batch #:close-runner #:tell-at-rest
            #:digest-runner
-           #:idle-p #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch
+           #:idle-p #:make-plan-runner #:next-wake-time #:heard-from-outside-p
+           #:plan-deadlocked-p #:post-batch
            #:needs-tick-p #:rest-in-tick #:post-call #:react #:react-to-all #:reseed-runner
            #:start-plan #:stop-plan)
   ;; blocking
