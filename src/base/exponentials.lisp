@@ -12,6 +12,8 @@
 (define-constant +steps+ (/ 128 (nearest-double (fixed-logarithm 2)))
   :documentation "How many steps of +POWERS+ a factor of e is.")
 
+;; Inline, as a call would return a box.
+(declaim (inline overflow))
 (defun overflow (number)
   "Signal FLOATING-POINT-OVERFLOW, or return infinity where that is masked; NUMBER is above 700."
   (declare (type double-float number))
@@ -88,6 +90,7 @@
         (+ high (+ (+ low (+ base-low r-low))
                    (- (logarithm-rest r square) (* 0.5d0 square))))))))
 
+(declaim (ftype (function (t t t) nil) reject-base))
 (defun reject-base (operator name number)
   "Signal WRONG-ARGUMENT: OPERATOR has been given NUMBER, a double-float, for NAME."
   (reject-argument operator name number "a number above 0"))
