@@ -213,3 +213,31 @@
     (is (equal "ALL" (first (place-at (world:rebuild-map (world:find-map 'test-map)) 1 1))))
     (is (search "doorway" (complaint-about '(world:def-place-type far (cell)
                                              :check-matchers ((((-)) 1)) :before dorway))))))
+
+(test defrobot.settled-by-several-threads-is-one-robot
+  "They all come where the robots of that name are taken out before one goes on."
+  (with-own-definitions ()
+    (world:defmap settled-yard (9 9))
+    (robot:defrobot settler (settled-yard (3 3) 0))
+    (let* ((blueprint (robot::find-blueprint 'settler))
+           (world (robot:robot-world (symbol-value 'settler)))
+           (go-on (base:make-semaphore "settle"))
+           (arrived (base:make-semaphore "arrived"))
+           (threads '()))
+      (robot::take-out-all 'settler "test")
+      (host:wrap-function 'robot::take-out-all
+                          (lambda (take-out-all &rest arguments)
+                            (apply take-out-all arguments)
+                            (base:signal-semaphore arrived)
+                            (base:wait-on-semaphore go-on 10))
+                          'test)
+      (unwind-protect
+           (progn
+             (setf threads (loop repeat 3
+                                 collect (base:start-thread
+                                          (lambda () (robot:settle-robot blueprint)) "settler")))
+             (loop repeat 3 do (base:wait-on-semaphore arrived 10))
+             (loop repeat 3 do (base:signal-semaphore go-on))
+             (mapc #'base:join-thread threads))
+        (host:unwrap-function 'robot::take-out-all 'test))
+      (is (= 1 (count 'settler (world:world-robots world) :key #'robot:robot-name))))))

@@ -48,23 +48,38 @@
 
 (defun ask-owner (world function)
   "Call FUNCTION where WORLD stands still."
-  (if (world-timeline world)
-      (ask (world-timeline world) function)
-      (funcall function)))
+  (ask (ensure-timeline world) function))
 
 (defun take-out-all (name reason)
   "Take all robots called NAME out of the worlds that top-level code works in."
   (dolist (robot (robots-called name))
     (ask-owner (robot-world robot) (lambda () (take-out robot reason)))))
 
+(defun robot-made-by (blueprint world)
+  "Return the robot in WORLD that was made by BLUEPRINT and is not retired, or NIL."
+  (find-if (lambda (robot)
+             (and (eq blueprint (robot-blueprint robot)) (null (robot-retired robot))))
+           (world-robots world)))
+
+(defun settle-in (world blueprint)
+  "Return the robot in WORLD made by BLUEPRINT, the only one of its name; this thread owns WORLD."
+  (or (robot-made-by blueprint world)
+      (progn
+        (dolist (robot (world-robots world))
+          (when (eq (robot-name robot) (blueprint-name blueprint))
+            (take-out robot "it has been defined anew")))
+        (make-robot blueprint world))))
+
+;; Another thread may settle the same robot meanwhile: who owns the world decides.
 (defun settle-robot (blueprint)
   "Put a robot made by BLUEPRINT into the resident world of its map, instead of any that was made by
-an earlier definition of its name, and return it."
+an earlier definition of its name, and return it; the one that is there already, if any."
   (let* ((world (map-resident-world (find-map (blueprint-map blueprint))))
          (robot nil))
     (check-start blueprint (world-map world))
-    (take-out-all (blueprint-name blueprint) "it has been defined anew")
-    (ask-owner world (lambda () (setf robot (make-robot blueprint world))))
+    (unless (robot-made-by blueprint world)
+      (take-out-all (blueprint-name blueprint) "it has been defined anew"))
+    (ask-owner world (lambda () (setf robot (settle-in world blueprint))))
     robot))
 
 (defmethod take-back ((blueprint blueprint))
