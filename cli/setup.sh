@@ -178,7 +178,7 @@ forget_halves() {
 compile_anew() {  # COMMAND...: do it, and once more without what was compiled before if that fails.
     "$@" && return
     [ $? -ne 2 ] || return
-    say "what was compiled before is damaged; compiling again"
+    say "what was compiled before is damaged, or of another SBCL; compiling again"
     rm -rf "$cache/project"
     "$@"
 }
