@@ -43,6 +43,25 @@
   (is-true (changes (setf (symbol-function 'question-work) (lambda () (question-help)))))
   (is-false (changes (defun question-idle () 2))))
 
+(defun tree-atoms (tree)
+  "Return a list of the atoms in TREE, vectors included."
+  (typecase tree
+    (cons (append (tree-atoms (car tree)) (tree-atoms (cdr tree))))
+    (simple-vector (loop for element across tree append (tree-atoms element)))
+    (t (list tree))))
+
+(test code.tells-what-it-was-made-of
+  "Also what leaves no trace in it: macros, constants and inline functions."
+  (eval '(progn (defconstant +question-constant+ 50)
+                (defmacro question-macro (x) `(1+ ,x))
+                (declaim (inline question-inline))
+                (defun question-inline (x) (* x 3))))
+  (eval '(defun question-made-of (n)
+          (if (< n +question-constant+) (question-macro (question-inline n)) (question-help))))
+  (let ((references (tree-atoms (base:code-references (fdefinition 'question-made-of)))))
+    (dolist (name '(+question-constant+ question-macro question-inline question-help))
+      (is (member name references) "~A is not among them" name))))
+
 (test plans.are-noticed
   (eval '(rpl:def-interp-proc question-part (n) (rpl:wait-time n)))
   (eval '(rpl:def-interp-proc question-plan () (question-part 1) t))

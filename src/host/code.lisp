@@ -3,7 +3,9 @@
 (in-package :ars-magna.host)
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. Since 2.4.10, the names of called functions are no
-;;; constants of code: it calls them through a linkage table.
+;;; constants of code: it calls them through a linkage table. The names of macros, constants and
+;;; inline functions that were used are in the cross references; SBCL 2.2 has these among the
+;;; constants, too.
 
 (defun linked-names (code)
   "Return the names of the functions that CODE calls through a linkage table."
@@ -13,15 +15,25 @@
           collect (internal (:sb-vm #:linkage-addr->name) index :index))
     (progn code '())))
 
+(defun cross-referenced-names (code)
+  "Return the names of macros, constants, variables and inline functions that CODE was made of."
+  (loop for index below (internal (:sb-kernel #:code-n-entries) code)
+        for references = (internal (:sb-kernel #:%simple-fun-xrefs)
+                                   (internal (:sb-kernel #:%code-entry-point) code index))
+        when (vectorp references)
+          append (remove-if-not (lambda (object) (typep object '(and (or symbol cons) (not null))))
+                                (coerce references 'list))))
+
 (defun code-constants (function)
-  "Return a list of what the code of FUNCTION, and of those compiled with it, has as constants, the
-names of functions that it calls included."
+  "Return a list of what the code of FUNCTION, and of those compiled with it, has as constants, and
+the names of functions that it calls and of macros, constants and inline functions that it uses."
   (let ((code (internal (:sb-kernel #:fun-code-header)
                         (internal (:sb-kernel #:%fun-fun) function))))
     (append (loop for index from (internal-value :sb-vm #:code-constants-offset)
                     below (internal (:sb-kernel #:code-header-words) code)
                   collect (internal (:sb-kernel #:code-header-ref) code index))
-            (linked-names code))))
+            (linked-names code)
+            (cross-referenced-names code))))
 
 (defun constant-meant (constant)
   "Return what CONSTANT, one of code, stands for: of a call by name that name."
