@@ -58,6 +58,12 @@
                 (defun question-inline (x) (* x 3))))
   (eval '(defun question-made-of (n)
           (if (< n +question-constant+) (question-macro (question-inline n)) (question-help))))
+  (eval '(defstruct question-structure slot))
+  (eval '(defun question-reads (object)
+          (declare (type question-structure object))
+          (question-structure-slot object)))
+  (is (member 'question-structure
+              (tree-atoms (base:code-references (fdefinition 'question-reads)))))
   (let ((references (tree-atoms (base:code-references (fdefinition 'question-made-of)))))
     (dolist (name '(+question-constant+ question-macro question-inline question-help))
       (is (member name references) "~A is not among them" name))))

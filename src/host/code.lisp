@@ -4,8 +4,8 @@
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. Since 2.4.10, the names of called functions are no
 ;;; constants of code: it calls them through a linkage table. The names of macros, constants and
-;;; inline functions that were used are in the cross references; SBCL 2.2 has these among the
-;;; constants, too.
+;;; inline functions that were used are in the cross references, those of structures in the types of
+;;; functions.
 
 (defun linked-names (code)
   "Return the names of the functions that CODE calls through a linkage table."
@@ -15,25 +15,50 @@
           collect (internal (:sb-vm #:linkage-addr->name) index :index))
     (progn code '())))
 
-(defun cross-referenced-names (code)
-  "Return the names of macros, constants, variables and inline functions that CODE was made of."
+(defun cross-referenced-names (function)
+  "Return the names of macros, constants, variables and inline functions that FUNCTION, a part of
+code, was made of."
+  (let ((references (internal (:sb-kernel #:%simple-fun-xrefs) function)))
+    (and (vectorp references)
+         (remove-if-not (lambda (object) (typep object '(and (or symbol cons) (not null))))
+                        (coerce references 'list)))))
+
+(defun names-used (code)
+  "Return what functions in CODE were made of: names, and the types of these functions."
   (loop for index below (internal (:sb-kernel #:code-n-entries) code)
-        for references = (internal (:sb-kernel #:%simple-fun-xrefs)
-                                   (internal (:sb-kernel #:%code-entry-point) code index))
-        when (vectorp references)
-          append (remove-if-not (lambda (object) (typep object '(and (or symbol cons) (not null))))
-                                (coerce references 'list))))
+        for function = (internal (:sb-kernel #:%code-entry-point) code index)
+        append (cross-referenced-names function)
+        collect (internal (:sb-kernel #:%simple-fun-type) function)))
+
+(defun code-of (function)
+  (internal (:sb-kernel #:fun-code-header) (internal (:sb-kernel #:%fun-fun) function)))
+
+(defun constants-from (code start)
+  (loop for index from start below (internal (:sb-kernel #:code-header-words) code)
+        collect (internal (:sb-kernel #:code-header-ref) code index)))
+
+;; SBCL 2.2 begins the constants with the name of each function, local ones included, and so on.
+(defparameter *described-among-constants-p*
+  (eq 'linked-names
+      (first (constants-from (code-of #'linked-names)
+                             (internal-value :sb-vm #:code-constants-offset))))
+  "True if what describes the functions of code stands before its constants.")
+
+(defun first-constant (code)
+  "Return the index of the first constant of CODE, after what only describes its functions."
+  (+ (internal-value :sb-vm #:code-constants-offset)
+     (if *described-among-constants-p*
+         (* (internal-value :sb-vm #:code-slots-per-simple-fun)
+            (internal (:sb-kernel #:code-n-entries) code))
+         0)))
 
 (defun code-constants (function)
   "Return a list of what the code of FUNCTION, and of those compiled with it, has as constants, and
-the names of functions that it calls and of macros, constants and inline functions that it uses."
-  (let ((code (internal (:sb-kernel #:fun-code-header)
-                        (internal (:sb-kernel #:%fun-fun) function))))
-    (append (loop for index from (internal-value :sb-vm #:code-constants-offset)
-                    below (internal (:sb-kernel #:code-header-words) code)
-                  collect (internal (:sb-kernel #:code-header-ref) code index))
+the names of functions that it calls and of what it was made of."
+  (let ((code (code-of function)))
+    (append (constants-from code (first-constant code))
             (linked-names code)
-            (cross-referenced-names code))))
+            (names-used code))))
 
 (defun constant-meant (constant)
   "Return what CONSTANT, one of code, stands for: of a call by name that name."
