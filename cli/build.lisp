@@ -3,7 +3,8 @@
 ;;; Loaded into a bare SBCL by those scripts, which say in the environment where compiled files
 ;;; go. For the tests, a warning of any kind, undefined functions included, ends the build with
 ;;; status 2 and leaves none of the project's compiled files behind, so that the next build finds it
-;;; again. For users, who may have another SBCL, what ASDF accepts is accepted.
+;;; again. For users, who may have another SBCL, what ASDF accepts is accepted; the tests compile
+;;; anew what was compiled so with warnings.
 
 (require "asdf")
 
@@ -110,6 +111,17 @@
 defined twice."
   (not (typep warning sb-ext:*muffled-warnings*)))
 
+(defun warned-file ()
+  "Return the file that is there while compiled files are there whose sources were warned of."
+  (merge-pathnames "warned" (project-fasls)))
+
+(defun note-warned ()
+  (when *cache*
+    (ensure-directories-exist (warned-file))
+    (with-open-file (out (warned-file) :direction :output :if-exists :append
+                                       :if-does-not-exist :create)
+      (declare (ignorable out)))))
+
 (defun count-troubles (function)
   "Call FUNCTION. Return how many warnings it signalled, and true if an error has ended it."
   (let ((count 0))
@@ -117,10 +129,12 @@ defined twice."
                    (warning (lambda (warning)
                               (when (interesting-p warning)
                                 (incf count)
+                                (note-warned)
                                 (note-trouble warning))))
                    (error (lambda (condition)
                             (note-trouble condition)
-                            (setf *damaged-p* (loading-old-p))
+                            (setf *damaged-p* (or (typep condition 'sb-ext:invalid-fasl)
+                                                  (loading-old-p)))
                             (return-from count-troubles (values count t)))))
       (funcall function))
     (values count nil)))
@@ -151,6 +165,8 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
 
 (defun load-strictly (system)
   "Do as LOAD-PROJECT does; a warning in any file of the project is an error."
+  (when (and *cache* (probe-file (warned-file)))
+    (forget (project-fasls)))
   (load-libraries (libraries system))
   (let ((uiop:*compile-file-warnings-behaviour* :error)
         (uiop:*compile-file-failure-behaviour* :error))

@@ -171,6 +171,22 @@ name, in Nisp's syntax and with a decimal fraction."
     (dolist (part (list "ARS MAGNA " (lisp-implementation-version) "bordeaux-threads "))
       (is (search part text) "~S lacks ~A" text part))))
 
+(test compiled-files.with-warnings-are-not-for-the-tests
+  "What a user's build has warned of is compiled anew where a warning is an error."
+  (call-in-new-directory
+   (lambda (directory)
+     (let* ((ars-magna.build::*cache* directory)
+            (file (merge-pathnames "project/some.fasl" directory)))
+       (flet ((kept-p ()
+                (ensure-directories-exist file)
+                (write-text "" file)
+                (ars-magna.build:load-strictly "asdf")
+                (and (probe-file file) t)))
+         (is-true (kept-p))
+         (ars-magna.build::note-warned)
+         (is-false (kept-p))
+         (is-true (kept-p)))))))
+
 ;;; Other files.
 
 (test names-of-journals.may-have-any-characters
