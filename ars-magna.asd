@@ -380,7 +380,7 @@
                  (:file "rpl-views") (:file "rpl-named-policies") (:file "rpl-goals")
                  (:file "rpl-at-location") (:file "rpl-replacing") (:file "rpl-examples")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
-                 (:file "rpl-left") (:file "rpl-robot-live") (:file "rpl-gone")
+                 (:file "rpl-left") (:file "rpl-robot-live") (:file "rpl-robot-published") (:file "rpl-gone")
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")

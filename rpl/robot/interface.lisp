@@ -111,7 +111,7 @@ for that, or some plan is ready. For any thread."
     (and (realp tick) tick)))
 
 (defun ready-p (interface)
-  "True if plans of INTERFACE need to go on at the next tick at the latest. For any thread."
+  "True if plans of INTERFACE are ready, have something to hear, or wait for time. For any thread."
   (and (or (interface-next-tick interface)
            (heard-from-outside-p (interface-runner interface)))
        t))

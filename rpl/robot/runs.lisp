@@ -53,9 +53,10 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
   "How many characters a report of plans has at most.")
 
 (defun deadlocked-p (interface)
+  "True if plans of INTERFACE wait and nothing can ever wake them. For any thread."
   (and (null (hog-of interface))
-       (plan-deadlocked-p (interface-runner interface))
-       ;; Somebody may just have been at work.
+       ;; What is published tells most cases apart without the lock.
+       (not (ready-p interface))
        (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
 
 (defun ended-by-itself-p (task)

@@ -1,0 +1,61 @@
+;;;; rpl-robot-published.lisp -- what other threads know of live plans without holding them.
+
+(in-package :ars-magna.tests)
+(in-suite rpl-robot)
+
+;;; It is published when the plans' lock is given back. While a thread holds that, the runner may be
+;;; half changed: here its heap of timers is no heap.
+
+(defun call-with-half-changed-plans (function)
+  "Call FUNCTION with an interface whose plans wait for tick 51, as last published, and the run.
+What the runner has cannot be read."
+  (let ((driver::*interface* nil))
+    (run:call-with-simulation
+     (lambda ()
+       (driver:rpl-init-robot (symbol-value 'fitter))
+       (driver:begin-plan (rpl:make-plan '(rpl:wait-time 50)))
+       (run:run-ticks 1)
+       (let* ((interface driver::*interface*)
+              (timers (tasks::runner-timers (driver::interface-runner interface)))
+              (heap (tasks::timers-heap timers)))
+         (setf (tasks::timers-heap timers) (make-array 1 :adjustable t :fill-pointer t
+                                                         :initial-element 0))
+         (unwind-protect (funcall function interface time:*simulation*)
+           (setf (tasks::timers-heap timers) heap
+                 (driver::interface-thread interface) nil))))
+     '(fitter))))
+
+(test published.the-clock-reads-no-plan-that-another-thread-holds
+  (call-with-half-changed-plans
+   (lambda (interface simulation)
+     (signals error (tasks::next-wake-time (driver::interface-runner interface)))
+     (is (eql 51 (driver::wake-tick interface)))
+     (is-true (run::participant-busy-p interface simulation))
+     (is-false (driver::time-to-wake-p interface))
+     (setf (driver::interface-thread interface) :starting)
+     (is (eql 51 (run::participant-busy-p interface simulation)))
+     (is-false (driver::time-to-wake-p interface)))))
+
+(test published.who-waits-for-a-plan-reads-none-that-another-thread-holds
+  (call-with-half-changed-plans
+   (lambda (interface simulation)
+     (declare (ignore simulation))
+     (is-false (driver::deadlocked-p interface)))))
+
+(test published.digests-leave-plans-that-are-at-work
+  (call-with-half-changed-plans
+   (lambda (interface simulation)
+     (declare (ignore simulation))
+     (setf (driver::interface-thread interface) :starting)
+     (let ((held (base:make-semaphore "held")) (go-on (base:make-semaphore "go on")))
+       (let ((thread (base:start-thread
+                      (lambda ()
+                        (base:with-lock ((driver::interface-lock interface))
+                          (base:signal-semaphore held)
+                          (base:wait-on-semaphore go-on 10)))
+                      "holds the plans")))
+         (base:wait-on-semaphore held 10)
+         (unwind-protect
+              (finishes (run::participant-digest interface (base:make-digest)))
+           (base:signal-semaphore go-on)
+           (base:join-thread thread)))))))
