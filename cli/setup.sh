@@ -151,7 +151,8 @@ with_lock() {  # COMMAND...
 }
 
 source_sums() {  # DIRECTORY...: a check sum of each source there, and its name.
-    ( cd "$root" && find ars-magna.asd "$@" \( -name '*.lisp' -o -name '*.asd' \
+    # Editors keep links that lead nowhere beside files, with names such as .#file.lisp.
+    ( cd "$root" && find ars-magna.asd "$@" ! -name '.*' \( -name '*.lisp' -o -name '*.asd' \
                 -o -name 'usage*.txt' -o -name 'spread-*.sh' -o -name '*.js' -o -name '*.css' \) -exec cksum {} + |
           LC_ALL=C sort -k 3 )
 }
