@@ -5,7 +5,7 @@
 file. No other folder names such parts of SBCL.")
   (:use :cl)
   ;; versions
-  (:export #:host-text #:untried-host-text)
+  (:export #:untried-host-text)
   ;; wrapping
   (:export #:wrap-function #:unwrap-function #:wrapped-p)
   ;; floats
