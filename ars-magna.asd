@@ -399,7 +399,7 @@
                  (:file "cli-debugger") (:file "cli-answers") (:file "cli-sessions")
                  (:file "cli-going-on")
                  (:file "experiment-replay")
-                 (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-building") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-images") (:file "cli-tasks")

@@ -49,19 +49,40 @@
        (t (,(library-fasls) :implementation))
        :ignore-inherited-configuration))))
 
-(configure)
+(defun one-line (condition)
+  "Return the text of CONDITION, or a text itself, on one line."
+  (let ((words (uiop:split-string (princ-to-string condition) :separator '(#\Space #\Newline))))
+    (format nil "~{~A~^ ~}" (remove "" words :test #'string=))))
+
+(defun call-telling (function &optional (where ""))
+  "Call FUNCTION. If an error ends it, print WHERE and the error on one line, and end this Lisp."
+  (handler-case (funcall function)
+    (error (condition)
+      (format t "~&~A~%" (one-line (format nil "~A~A" where condition)))
+      (uiop:quit 2))))
+
+(call-telling #'configure "The places where ASDF looks for libraries cannot be read
+(from CL_SOURCE_REGISTRY or files in ~/.config/common-lisp): ")
 
 (load (uiop:subpathname *root* "cli/prompt/clx.lisp"))
 
 ;;; Libraries.
 
 (defun missing-p (library)
+  "True if ASDF cannot find LIBRARY. A file that should define it, and does not, is an error."
   (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
-    (null (asdf:find-system library nil))))
+    (not (or (asdf:find-system library nil)
+             (let ((file (nth-value 2 (asdf:locate-system library))))
+               (when file
+                 (error "~A does not define ~A, and hides others that may. Mend or remove it."
+                        (uiop:native-namestring file) library)))))))
 
 (defun print-missing-libraries ()
   "Print which of the libraries named in the environment ASDF cannot find."
-  (format t "~{~A ~}" (remove-if-not #'missing-p (uiop:split-string (uiop:getenv "LIBRARIES")))))
+  (call-telling
+   (lambda ()
+     (format t "~{~A ~}"
+             (remove-if-not #'missing-p (uiop:split-string (uiop:getenv "LIBRARIES")))))))
 
 (defun project-system-p (name)
   (string= (asdf:primary-system-name name) "ars-magna"))
@@ -80,10 +101,70 @@
                    (if (missing-p name)
                        "(not installed)"
                        (or (asdf:component-version (asdf:find-system name)) "(no version)")))))
-    (format t "~{~A~^, ~}~%"
-            (mapcar #'text
-                    (remove-if (lambda (name) (eql 0 (search "sb-" name)))
-                               (sort (libraries "ars-magna/cli") #'string<))))))
+    (call-telling
+     (lambda ()
+       (format t "~{~A~^, ~}~%"
+               (mapcar #'text
+                       (remove-if (lambda (name) (eql 0 (search "sb-" name)))
+                                  (sort (libraries "ars-magna/cli") #'string<))))))))
+
+;;; What has been loaded besides the project: library_state in setup.sh looks at it at each start.
+
+(defun loaded-libraries ()
+  "Return the systems that are loaded, but for the project's and those that SBCL comes with."
+  (remove-if (lambda (system)
+               (or (null (asdf:system-source-file system))
+                   (project-system-p (asdf:component-name system))))
+             (mapcar #'asdf:find-system (asdf:already-loaded-systems))))
+
+(defun files-of (component)
+  "Return the files of COMPONENT, a system or a part of one."
+  (if (typep component 'asdf:parent-component)
+      (mapcan #'files-of (asdf:component-children component))
+      (list (asdf:component-pathname component))))
+
+(defun library-files ()
+  "Return the files of SBCL and of the libraries that are loaded, and those that say which versions
+Quicklisp has."
+  (append (list sb-ext:*runtime-pathname* sb-ext:*core-pathname*)
+          (loop for system in (loaded-libraries)
+                collect (asdf:system-source-file system)
+                append (files-of system))
+          (directory (merge-pathnames "quicklisp/dists/*/distinfo.txt" (user-homedir-pathname)))))
+
+(defun library-names ()
+  "Return how the paths of files end that decide which libraries ASDF finds."
+  (remove-duplicates
+   (cons "/source-registry.conf"
+         (loop for system in (loaded-libraries)
+               collect (format nil "/~A" (file-namestring (asdf:system-source-file system)))))
+   :test #'string=))
+
+(defun library-places ()
+  "Return lists (directory . options), as ASDF has them, that say where it looks for libraries and
+for what it is told about that, and where Quicklisp does."
+  (flet ((tree (directory) (list directory :recurse t)))
+    (append (remove *root* (uiop:symbol-call :asdf/source-registry :flatten-source-registry)
+                    :key #'first :test #'equal)
+            (mapcar #'tree (uiop:xdg-config-pathnames "common-lisp/"))
+            (mapcar #'tree (uiop:system-config-pathnames "common-lisp/"))
+            (list (tree (merge-pathnames "quicklisp/local-projects/" (user-homedir-pathname)))))))
+
+(defun write-libraries (out)
+  "Write to OUT what this Lisp depends on besides the project, as setup.sh says."
+  (flet ((note (kind path) (format out "~A ~A~%" kind (uiop:native-namestring path))))
+    (dolist (path (library-files)) (note "file" path))
+    (format out "~{name ~A~%~}" (library-names))
+    (loop for (directory . options) in (library-places)
+          do (note (if (getf options :recurse) "tree" "directory") directory))))
+
+(defun list-libraries ()
+  "Write the list of libraries into the file that the environment names, if it names one."
+  (let ((file (path-in-environment "ARS_MAGNA_LIBRARIES")))
+    (when file
+      (ensure-directories-exist file)
+      (with-open-file (out file :direction :output :if-exists :supersede)
+        (write-libraries out)))))
 
 ;;; Compiling.
 
@@ -161,7 +242,8 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
   "Compile and load SYSTEM, one of the project's. If that fails, end this Lisp."
   (load-libraries (libraries system))
   (when (nth-value 1 (count-troubles (lambda () (asdf:load-system system))))
-    (give-up)))
+    (give-up))
+  (list-libraries))
 
 (defun load-strictly (system)
   "Do as LOAD-PROJECT does; a warning in any file of the project is an error."
@@ -173,7 +255,8 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
     (multiple-value-bind (warnings failed-p)
         (count-troubles (lambda () (asdf:load-system system)))
       (when (or failed-p (plusp warnings))
-        (give-up)))))
+        (give-up))))
+  (list-libraries))
 
 (defun load-tests ()
   "Compile and load the tests, and those of the window where there is what it needs."
@@ -189,17 +272,19 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
 (defun print-window-libraries ()
   "Print by what McCLIM is to be had: asdf, quicklisp, or nothing; or why CLX, which it needs, does
 not work."
-  (write-line (cond ((uiop:symbol-call :ars-magna.clx :clx-trouble))
-                    ((not (missing-p "mcclim/looks")) "asdf")
-                    ((quicklisp-file) "quicklisp")
-                    (t "nothing"))))
+  (call-telling
+   (lambda ()
+     (write-line (cond ((uiop:symbol-call :ars-magna.clx :clx-trouble))
+                       ((not (missing-p "mcclim/looks")) "asdf")
+                       ((quicklisp-file) "quicklisp")
+                       (t "nothing"))))))
 
 (defun get-window-libraries ()
   "Let Quicklisp fetch McCLIM, if need be, and load it. If that fails, say why and end this Lisp."
   (handler-case (progn (load (quicklisp-file))
                        (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
     (error (condition)
-      (format t "~&*** ~A~%" (substitute #\Space #\Newline (princ-to-string condition)))
+      (format t "~&*** ~A~%" (one-line condition))
       (uiop:quit 1))))
 
 (defun ensure-window-libraries ()
@@ -207,64 +292,11 @@ not work."
   (when (missing-p "mcclim/looks")
     (get-window-libraries)))
 
-;;; What a core is made of besides the project: library_state in setup.sh looks at it at each start.
-
-(defun loaded-libraries ()
-  "Return the systems that are loaded, but for the project's and those that SBCL comes with."
-  (remove-if (lambda (system)
-               (or (null (asdf:system-source-file system))
-                   (project-system-p (asdf:component-name system))))
-             (mapcar #'asdf:find-system (asdf:already-loaded-systems))))
-
-(defun files-of (component)
-  "Return the files of COMPONENT, a system or a part of one."
-  (if (typep component 'asdf:parent-component)
-      (mapcan #'files-of (asdf:component-children component))
-      (list (asdf:component-pathname component))))
-
-(defun library-files ()
-  "Return the files of SBCL and of the libraries that are loaded, and those that say which versions
-Quicklisp has."
-  (append (list sb-ext:*runtime-pathname* sb-ext:*core-pathname*)
-          (loop for system in (loaded-libraries)
-                collect (asdf:system-source-file system)
-                append (files-of system))
-          (directory (merge-pathnames "quicklisp/dists/*/distinfo.txt" (user-homedir-pathname)))))
-
-(defun library-names ()
-  "Return how the paths of files end that decide which libraries ASDF finds."
-  (remove-duplicates
-   (cons "/source-registry.conf"
-         (loop for system in (loaded-libraries)
-               collect (format nil "/~A" (file-namestring (asdf:system-source-file system)))))
-   :test #'string=))
-
-(defun library-places ()
-  "Return lists (directory . options), as ASDF has them, that say where it looks for libraries and
-for what it is told about that, and where Quicklisp does."
-  (flet ((tree (directory) (list directory :recurse t)))
-    (append (remove *root* (uiop:symbol-call :asdf/source-registry :flatten-source-registry)
-                    :key #'first :test #'equal)
-            (mapcar #'tree (uiop:xdg-config-pathnames "common-lisp/"))
-            (mapcar #'tree (uiop:system-config-pathnames "common-lisp/"))
-            (list (tree (merge-pathnames "quicklisp/local-projects/" (user-homedir-pathname)))))))
-
-(defun list-libraries (file)
-  "Write into FILE what a core depends on besides the project, as setup.sh says."
-  (with-open-file (out file :direction :output :if-exists :supersede)
-    (flet ((note (kind path) (format out "~A ~A~%" kind (uiop:native-namestring path))))
-      (dolist (path (library-files)) (note "file" path))
-      (format out "~{name ~A~%~}" (library-names))
-      (loop for (directory . options) in (library-places)
-            do (note (if (getf options :recurse) "tree" "directory") directory)))))
-
 ;;; The prompt.
 
 (defun save-prompt (&optional (system "ars-magna/cli"))
   "Save a core that runs the prompt, with SYSTEM, in the file that the environment says."
   (load-project system)
-  (list-libraries (uiop:parse-native-namestring
-                   (format nil "~A.libraries" (uiop:getenv "ARS_MAGNA_CORE"))))
   ;; What is in the core is not to be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)

@@ -1,11 +1,14 @@
 # setup.sh -- what ./cli/ars-magna and ./tests/run share: what is missing, what is out of date.
 #
 # To be sourced with $root set to the project's directory. Everything that is made here lies in
-# one directory per checkout, $cache: compiled files, logs, and the saved core of the prompt.
+# $cache, one directory for each checkout and version of SBCL: compiled files, logs, saved cores.
 
 say() { printf 'ars-magna: %s\n' "$*" >&2; }
 
 give_up() { say "$*"; exit 1; }
+
+# Programs take another view of a home with a relative name.
+case ${HOME:-/} in /*) ;; *) HOME=$PWD/$HOME ;; esac
 
 # Signals. Whoever ends a start ends what it has begun too. The shell heeds a signal only when its
 # child has ended, unless it waits for one in the background.
@@ -46,18 +49,20 @@ make_private() {  # DIRECTORY: true if it is there and ours to write.
 }
 
 choose_cache() {
-    checkout=$(printf '%s' "$root" | cksum | cut -d ' ' -f 1)
-    cache=$(home_directory "${XDG_CACHE_HOME:-}" .cache)/ars-magna/$checkout
-    make_private "$cache" || choose_temporary_cache
+    version=$(sbcl --version 2>/dev/null | tr -c 'A-Za-z0-9.\n' '-')
+    own=$(printf '%s' "$root" | cksum | cut -d ' ' -f 1)/${version:-no-SBCL}
+    cache=$(home_directory "${XDG_CACHE_HOME:-}" .cache)/ars-magna/$own
+    make_private "$cache" || choose_temporary_cache "$cache"
     ARS_MAGNA_CACHE=$cache/
     export ARS_MAGNA_CACHE
 }
 
-choose_temporary_cache() {
+choose_temporary_cache() {  # DIRECTORY: it cannot be written.
     base=${TMPDIR:-/tmp}/ars-magna-$(id -u)
-    cache=$base/$checkout
+    cache=$base/$own
     make_private "$base" && make_private "$cache" ||
         give_up "cannot write to a cache directory. Set XDG_CACHE_HOME to one."
+    say "cannot write to $1; using $cache"
 }
 
 # What must be installed.
@@ -68,17 +73,25 @@ libraries() {  # SYSTEM: the libraries that its definition names, one a line.
         grep -v -e '^ars-magna' -e '^sb-' -e '[^a-z0-9.-]' || :
 }
 
-plain_sbcl() {
-    heeding sbcl --noinform --no-sysinit --no-userinit --non-interactive "$@" </dev/null
+plainly='--noinform --no-sysinit --no-userinit --non-interactive'
+
+plain_sbcl() { heeding sbcl $plainly "$@" </dev/null; }
+
+# build.lisp writes to the standard output what went wrong, SBCL to the other one.
+ask_lisp() {  # FORM: what this form of build.lisp prints.
+    plain_sbcl --load "$root/cli/build.lisp" --eval "$1"
+}
+
+no_answer() {  # TEXT: give up, as Lisp has ended with an error and printed TEXT.
+    give_up "${1:-SBCL does not run. Does sbcl --version, or sbcl alone?}"
 }
 
 missing_packages() {  # SYSTEM...: the Debian packages that it takes and that are not there.
     # Words, on purpose, here and below.
     wanted=$(echo $(for system; do libraries "$system"; done | sort -u))
     if command -v sbcl >/dev/null; then
-        wanted=$(LIBRARIES=$wanted plain_sbcl --load "$root/cli/build.lisp" \
-                     --eval '(ars-magna.build:print-missing-libraries)') ||
-            give_up "SBCL does not run: $wanted"
+        wanted=$(LIBRARIES=$wanted ask_lisp '(ars-magna.build:print-missing-libraries)') ||
+            no_answer "$wanted"
     else
         printf 'sbcl '
     fi
@@ -104,7 +117,9 @@ install_packages() {  # PACKAGE...
 
 ensure_packages() {  # SYSTEM...
     packages=$(missing_packages "$@") || exit 1
-    [ -z "$packages" ] || install_packages $packages
+    [ -n "$packages" ] || return 0
+    install_packages $packages
+    choose_cache
 }
 
 # Programs whose packages are called as they are.
@@ -113,11 +128,12 @@ ensure_programs() {  # PROGRAM...: true if all of them are there, or can be inst
     [ -z "$packages" ] || (install_packages $packages)
 }
 
-# SBCL and the libraries that a core was made of. build.lisp lists in a file beside it, one a line,
+# SBCL and the libraries that something was made of. build.lisp lists in a file, X.list, one a line,
 # their files, and where ASDF looks for libraries, by which names: `file PATH`, `tree DIRECTORY`,
 # `directory DIRECTORY`, `name ENDING`. To ask ASDF at each start would take a second; to look at
-# dates and sizes takes some hundredths. What is listed changes when a library does, when one of the
-# same name comes to another place, which may be found first, and when ASDF is told to look elsewhere.
+# dates and sizes takes some hundredths, and X.found keeps what was found. That changes when a
+# library does, when one of the same name comes to another place, which may be found first, and when
+# ASDF is told to look elsewhere.
 
 library_state() (  # LIST: size, date and path of each of these files, one a line.
     # Paths may have spaces.
@@ -137,6 +153,19 @@ library_state() (  # LIST: size, date and path of each of these files, one a lin
     printf '%s\n' "${CL_SOURCE_REGISTRY:-}"
 )
 
+libraries_current() {  # X: are the libraries of X.list as they were?
+    [ -s "$1.list" ] && [ "$(cat "$1.found" 2>/dev/null)" = "$(library_state "$1.list")" ]
+}
+
+# ASDF goes by dates: a library that was installed in the place of another one may be older than
+# what was compiled of that.
+forget_changed_libraries() {
+    for list in "$cache"/libraries/*.list; do
+        [ ! -e "$list" ] || libraries_current "${list%.list}" ||
+            { rm -rf "$cache/libraries"; return; }
+    done
+}
+
 # Compiling. Starts at the same time wait for each other, where the system has flock; also for what
 # goes on compiling when the start that wanted it has been killed.
 
@@ -153,7 +182,8 @@ with_lock() {  # COMMAND...
 source_sums() {  # DIRECTORY...: a check sum of each source there, and its name.
     # Editors keep links that lead nowhere beside files, with names such as .#file.lisp.
     ( cd "$root" && find ars-magna.asd "$@" ! -name '.*' \( -name '*.lisp' -o -name '*.asd' \
-                -o -name 'usage*.txt' -o -name 'spread-*.sh' -o -name '*.js' -o -name '*.css' \) -exec cksum {} + |
+                -o -name 'usage*.txt' -o -name 'spread-*.sh' -o -name '*.js' -o -name '*.css' \) \
+                -exec cksum {} + |
           LC_ALL=C sort -k 3 )
 }
 
@@ -177,25 +207,53 @@ forget_halves() {
 
 # What was compiled before may be damaged, so much that Lisp dies of it. With status 2 sources are.
 compile_anew() {  # COMMAND...: do it, and once more without what was compiled before if that fails.
+    before=$(ls -d "$cache/project" "$cache"/libraries/*/ 2>/dev/null)
     "$@" && return
-    [ $? -ne 2 ] || return
-    say "what was compiled before is damaged, or of another SBCL; compiling again"
-    rm -rf "$cache/project"
+    [ $? -ne 2 ] && [ -n "$before" ] && roomy || return
+    say "what was compiled before is damaged; compiling again"
+    rm -rf "$cache/project" "$cache/libraries"
     "$@"
 }
 
-evaluate_building() {  # LOG LISP-FORM
-    plain_sbcl --load "$root/cli/build.lisp" --eval "$2" >"$1" 2>&1
+roomy() {  # Is there room for another 10 MB?
+    head -c 10000000 /dev/zero 2>/dev/null >"$cache/room"
+    kept=$(wc -c <"$cache/room" 2>/dev/null)
+    rm -f "$cache/room"
+    [ "${kept:-0}" -eq 10000000 ]
 }
 
-compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.
+# The output is the child's alone: what this shell says when it is told to end is for the screen.
+into() {  # FILE COMMAND...
+    file=$1; shift
+    exec "$@" >"$file" 2>&1
+}
+
+evaluate_building() {  # LOG LISP-FORM
+    heeding into "$1" sbcl $plainly --load "$root/cli/build.lisp" --eval "$2"
+}
+
+compile() {  # NAME LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.
+    log=$cache/$1.log
+    libraries=$cache/libraries/$1
     forget_halves
+    forget_changed_libraries
     forget_changed || say "what has changed cannot be told; is $cache full?"
-    compile_anew evaluate_building "$@" &&
+    ARS_MAGNA_LIBRARIES=$libraries.list
+    export ARS_MAGNA_LIBRARIES
+    compile_anew evaluate_building "$log" "$2"
+    compiled=$?
+    unset ARS_MAGNA_LIBRARIES
+    if [ $compiled -eq 0 ]; then
+        library_state "$libraries.list" >"$libraries.found"
         # Such as that this SBCL is newer than those tried.
-        { grep -a '^ars-magna: ' "$1" >&2 || :; } &&
-        return
-    grep -a -v -e '^; compil' -e '^; wrote' -e '^$' "$1" | tail -n 60 >&2
-    say "that did not compile; all of it is in $1"
+        grep -a '^ars-magna: ' "$log" >&2 || :
+        return 0
+    fi
+    if roomy && ! grep -a -q -e 'No space left' -e 'quota exceeded' "$log"; then
+        grep -a -v -e '^; compil' -e '^; wrote' -e '^$' "$log" | tail -n 60 >&2
+        say "that did not compile; all of it is in $log"
+    else
+        say "there is no room in $cache. Make some, or set XDG_CACHE_HOME to another directory."
+    fi
     return 1
 }

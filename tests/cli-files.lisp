@@ -165,28 +165,6 @@ name, in Nisp's syntax and with a decimal fraction."
   (is (eql 1 (status-of-script "--version >/dev/full")))
   (is (eql 2 (status-of-script "--list --world \"$(printf 'caf\\351')\" </dev/null"))))
 
-(test version.tells-what-it-runs-on
-  (let ((text (nth-value 1 (base:run-command (base:native-name (project-file "cli/ars-magna"))
-                                             '("--version") :output :string))))
-    (dolist (part (list "ARS MAGNA " (lisp-implementation-version) "bordeaux-threads "))
-      (is (search part text) "~S lacks ~A" text part))))
-
-(test compiled-files.with-warnings-are-not-for-the-tests
-  "What a user's build has warned of is compiled anew where a warning is an error."
-  (call-in-new-directory
-   (lambda (directory)
-     (let* ((ars-magna.build::*cache* directory)
-            (file (merge-pathnames "project/some.fasl" directory)))
-       (flet ((kept-p ()
-                (ensure-directories-exist file)
-                (write-text "" file)
-                (ars-magna.build:load-strictly "asdf")
-                (and (probe-file file) t)))
-         (is-true (kept-p))
-         (ars-magna.build::note-warned)
-         (is-false (kept-p))
-         (is-true (kept-p)))))))
-
 ;;; Other files.
 
 (test names-of-journals.may-have-any-characters
@@ -198,54 +176,3 @@ name, in Nisp's syntax and with a decimal fraction."
                                              (format nil "replay \"~A\"" file))))
                "~A" name)
         (when (probe-file (base:native-path file)) (delete-file (base:native-path file)))))))
-
-;;; What is compiled of which sources.
-
-(defparameter *forgetting*
-  "set -e
-   root=$(mktemp -d)
-   cache=$root/cache
-   mkdir -p \"$root/src\" \"$root/rpl\" \"$root/cli\" \"$root/worlds\" \"$root/tests\"
-   mkdir -p \"$cache/project/src\"
-   touch \"$root/ars-magna.asd\"
-   for name in same changed; do
-       echo one >\"$root/src/$name.lisp\"
-       touch \"$cache/project/src/$name.fasl\"
-   done
-   . \"$1\"
-   forget_changed
-   touch \"$cache/project/src/same.fasl\" \"$cache/project/src/changed.fasl\"
-   echo two >\"$root/src/changed.lisp\"
-   touch -t 200001010000 \"$root/src/changed.lisp\"
-   forget_changed
-   ls \"$cache/project/src\"
-   rm -r \"$root\""
-  "A script that changes one of two sources, gives it an old date, and lists what is compiled.")
-
-(defparameter *damaging*
-  "root=$(mktemp -d)
-   cache=$root/cache
-   mkdir -p \"$cache/project\"
-   . \"$1\"
-   build() { echo build; [ ! -e \"$cache/project\" ] || return $1; }
-   compile_anew build 2 2>&1; echo $?
-   compile_anew build 1 2>&1; echo $?
-   rm -r \"$root\""
-  "A script that compiles where sources are at fault, and where what was compiled is damaged.")
-
-(test compiled-files.that-are-damaged-are-made-again-at-once
-  (is (equal '("build" "1" "build"
-               "ars-magna: what was compiled before is damaged, or of another SBCL; compiling again"
-               "build" "0")
-             (lines-of (nth-value 1 (base:run-command
-                                     "sh" (list "-c" *damaging* "sh"
-                                                (base:native-name (project-file "cli/setup.sh")))
-                                     :output :string))))))
-
-(test sources.with-an-old-date-count-as-changed
-  (multiple-value-bind (status text)
-      (base:run-command "sh" (list "-c" *forgetting* "sh"
-                                   (base:native-name (project-file "cli/setup.sh")))
-                        :output :string)
-    (is (eql 0 status))
-    (is (string= (format nil "same.fasl~%") text))))
