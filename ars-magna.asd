@@ -31,6 +31,7 @@
                  (:file "digest") (:file "sources") (:file "places-in-text")
                  (:file "variables") (:file "definitions") (:file "user-macros")
                  (:file "registry") (:file "own-definitions") (:file "messages")
+                 (:file "troubles")
                  (:file "askers") (:file "inquiries") (:file "user-code") (:file "parameters")
                  (:file "physics") (:file "parameters-of-runs")
                  (:file "kinds") (:file "facts") (:file "csv") (:file "digesting") (:file "copiers")
@@ -447,7 +448,7 @@
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")
-                 (:file "experiment-compare-versions") (:file "rates") (:file "projecting")
+                 (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")

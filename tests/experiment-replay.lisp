@@ -215,8 +215,8 @@
        (is (equal '(("way=badly" "failure" "no-luck" "" (1 2))
                     ("way=loudly" "error" "" "This is loud." (1 2))
                     ("way=slowly" "limit" "" "" (1 2))
-                    ("way=in-passing" "success" ""
-                     "in the continuation of robot-turn: in passing" (1 2))
+                    ("way=in-passing" "error" ""
+                     "Error in the continuation of robot-turn: in passing" (1 2))
                     ("way=breaking" "error" "" "look here" (1 2))
                     ("way=by-failing-plan" "failure" "lost" "" (1 2)))
                   (ways results)))

@@ -32,7 +32,7 @@
   "Return the names of the slots of OBJECT in which nothing is ever altered; kinds say so of them."
   (let ((kind (base:kind-of object)))
     (typecase object
-      (base:message-queue '(base::newest-first))
+      (base:message-queue '(base::newest-first base::seen))
       (run:journal '(run::newest-first run::header))
       (tasks::node '(tasks::form tasks::names tasks::states))
       (tasks::procedure '(tasks::lambda-list tasks::source))

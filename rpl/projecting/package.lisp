@@ -8,7 +8,7 @@ that a robot believes in, and choosing by that.")
   (:import-from :ars-magna.world #:*world* #:map-name #:world-map)
   (:import-from :ars-magna.time #:*simulation* #:current-simulation #:secluded)
   (:import-from :ars-magna.robot #:robot-name)
-  (:import-from :ars-magna.run
+  (:import-from :ars-magna.run #:simulation-messages
                 #:*simulation-variables* #:simulation-tick #:simulation-seed #:simulation-robots
                 #:simulation-participants #:simulation-journal #:simulation-world
                 #:fork-simulation #:call-in-fork #:release-fork #:*fork-asker*)

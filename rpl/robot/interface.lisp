@@ -43,6 +43,7 @@ SAVE-PLAN-TIMELINE.")
   (:link
    (origin '() list "how messages call the plans, kept so that no tick makes it anew")
    (ender nil (or null function) "what the robot calls when its run is over")
+   (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
    (told nil t "a pair of the last failure that the journal was told of, and that remark, or NIL")
    (closing-p nil boolean "the interface is to end")
    (closed-p nil boolean "the interface has ended")

@@ -188,7 +188,7 @@ that this failure happened, if that was just now."
   (unless (eq :succeeded (task-state task))
     (interrupt-deeds interface task)
     (remark-end interface task))
-  (report-end task))
+  (report-end task (and (member task (interface-awaited interface) :test #'eq) t)))
 
 (defun make-runner (interface)
   (let ((simulation (interface-simulation interface)))

@@ -147,6 +147,10 @@ but somebody outside can let plans go on, say so, once."
     (report-not-over interface task state)
     state))
 
+(defun await-no-longer (interface task)
+  (loop for tasks = (interface-awaited interface)
+        until (swap-if (interface-awaited interface) tasks (remove task tasks :test #'eq))))
+
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT; else
@@ -162,9 +166,13 @@ place. Signals UNKNOWN-NAME and MISUSE."
     (check-outside interface)
     (let ((task nil) (state nil))
       (in-any-case
-        (progn (begin-in interface plan arguments (lambda (begun) (setf task begun)))
+        (progn (begin-in interface plan arguments
+                         (lambda (begun)
+                           (setf task begun)
+                           (atomic-push begun (interface-awaited interface))))
                (setf state (await-plan interface task)))
-        (when (and task (not (task-over-p task))) (end-in interface task)))
+        (when (and task (not (task-over-p task))) (end-in interface task))
+        (when task (await-no-longer interface task)))
       (values (task-result task) state))))
 
 (addition plans)

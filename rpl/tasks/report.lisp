@@ -83,10 +83,18 @@ waits for its own parts."
         (write-string (cut (failure-story failure) 600) stream))
       (call-next-method)))
 
-(defun report-failure (failure)
+(defun report-failure (failure &optional awaited-p)
   "Queue an error message with all that is known of FAILURE, of a plan: where it happened, in which
-task, what was under way, and the Lisp backtrace of an error."
-  (error-set (with-output-to-string (stream) (write-failure-report failure stream))))
+task, what was under way, and the Lisp backtrace of an error. If AWAITED-P, somebody is told of it
+besides."
+  (let ((text (with-output-to-string (stream) (write-failure-report failure stream))))
+    (if awaited-p
+        (queue-message (make-message :error (list text) :told-p (not (typep failure 'lisp-failure)))
+                       *message-queue*)
+        (trouble-set failure
+                     (format nil "The plan ~A failed: ~A" (first (failure-task-path failure))
+                             (brief-failure-text failure))
+                     text))))
 
 (defvar *plan-start-hooks* '()
   "Functions, or their names, called with each top-level task before it runs.")
@@ -95,11 +103,12 @@ task, what was under way, and the Lisp backtrace of an error."
   "Functions, or their names, called with each top-level task that has ended; the report of its
 failure is left to the first that returns true. In any thread that lets plans react.")
 
-(defun report-end (task)
-  "Report the failure of TASK, a top-level task that has just ended, if it failed."
+(defun report-end (task &optional awaited-p)
+  "Report the failure of TASK, a top-level task that has just ended, if it failed. If AWAITED-P,
+somebody waits for the end."
   (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
     (when (eq (task-state task) :failed)
-      (report-failure (task-result task)))))
+      (report-failure (task-result task) awaited-p))))
 
 ;;; Deadlock.
 

@@ -126,6 +126,14 @@ author meant."
   (:report (lambda (condition stream) (write-string (misuse-text condition) stream)))
   (:documentation "An operation was asked for at a moment or in a state that forbids it."))
 
+(define-condition outlived (misuse)
+  ()
+  (:documentation "Something was asked of a run that is over, as by a program that was told so."))
+
+(defun reject-outlived (control &rest arguments)
+  "Signal OUTLIVED, a MISUSE, with a text formatted from CONTROL and ARGUMENTS."
+  (error 'outlived :text (apply #'format nil control arguments)))
+
 (defun reject-use (control &rest arguments)
   "Signal MISUSE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
   (error 'misuse :text (apply #'format nil control arguments)))

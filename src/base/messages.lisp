@@ -21,25 +21,39 @@
 (defvar *run-that-reports* (constantly nil)
   "A function that returns the run that a message queued in this thread belongs to, or NIL.")
 
-(defstruct (message (:constructor make-message (kind items)) (:copier nil))
+(defstruct (message (:constructor make-message (kind items &key cause (summary "") told-p))
+                    (:copier nil))
   "What the simulator or a user has to say: KIND is :error, :warning or :message. ASKER is a note of
 who asked for what it tells of, such as a command that has ended, or NIL; ROBOT is the name of the
 robot whose command that is, or NIL. RUN is what it belongs to, as several runs may share a queue,
-or NIL."
+or NIL. CAUSE is what is wrong with users' code, which SUMMARY says in a line, or NIL, see
+troubles.lisp. TOLD-P is true if users' code has been told of it otherwise."
   (kind :message :type (member :error :warning :message) :read-only t)
   (items '() :type list :read-only t)
   (asker *told-of* :read-only t)
   (robot *robot-told-of* :read-only t)
-  (run (funcall *run-that-reports*) :read-only t))
+  (run (funcall *run-that-reports*) :read-only t)
+  (cause nil :read-only t)
+  (summary "" :type string :read-only t)
+  (told-p nil :type boolean :read-only t))
 
-(defstruct (message-queue (:constructor make-message-queue ()) (:copier nil))
+(defstruct (message-queue (:constructor make-message-queue (&key (manner :report) echoed))
+                          (:copier nil))
   "Messages nobody has read yet. LISTENER, if any, is called (with no arguments, in the thread
-that reports) after each message is queued."
+that reports) after each message is queued. MANNER says what becomes of errors in users' code:
+TROUBLES are those that came, UNSIGNALLED is the first that is to be signalled, see troubles.lisp.
+SEEN is the end of NEWEST-FIRST that nobody needs to be shown. If ECHOED, a table, trouble is shown
+as it comes where nobody listens; the table counts it."
   (lock (make-lock "messages") :read-only t)
   (newest-first '() :type list)
   (count 0 :type fixnum)
   (forgotten 0 :type fixnum)
-  (listener nil :type (or null function)))
+  (listener nil :type (or null function))
+  (manner :report :type (member :report :signal :collect))
+  (seen '() :type list)
+  (troubles '() :type list)
+  (unsignalled nil :type (or null message))
+  (echoed nil :type (or null hash-table) :read-only t))
 
 (setf (documentation 'message-kind 'function) "Return :ERROR, :WARNING or :MESSAGE."
       (documentation 'message-items 'function) "Return the items that the message is made of."
@@ -50,23 +64,46 @@ that reports) after each message is queued."
       (documentation 'message-run 'function) "Return the run that the message belongs to, or NIL."
       (documentation 'make-message-queue 'function) "Return a new, empty queue of messages."
       (documentation 'message-queue-listener 'function)
-      "Return the function that is called after each message is queued, or NIL. Can be set.")
+      "Return the function that is called after each message is queued, or NIL. Can be set."
+      (documentation 'make-message 'function)
+      "Return a message of the kind and the list of items given, see MESSAGE."
+      (documentation 'message-cause 'function)
+      "Return the condition or failure in users' code that the message tells of, or NIL."
+      (documentation 'message-queue-manner 'function)
+      "Return :REPORT, :SIGNAL or :COLLECT: what becomes of errors in users' code. Can be set."
+      (documentation 'message-queue-unsignalled 'function)
+      "Return the first message about an error in users' code that is to be signalled, or NIL.")
 
-(defvar *message-queue* (make-message-queue)
+(defvar *message-queue* (make-message-queue :echoed (make-hash-table :test 'equal))
   "The queue that messages go to. A headless simulation binds its own.")
 
 (defun copy-message-queue (queue)
-  "Return a new queue that holds the messages of QUEUE, and has no listener."
+  "Return a new queue that holds the messages of QUEUE, as seen, and has no listener."
   (let ((copy (make-message-queue)))
     (with-lock ((message-queue-lock queue))
       (setf (message-queue-newest-first copy) (message-queue-newest-first queue)
+            (message-queue-seen copy) (message-queue-newest-first queue)
             (message-queue-count copy) (message-queue-count queue)
             (message-queue-forgotten copy) (message-queue-forgotten queue)))
     copy))
 
+(defvar *message-echo* (constantly nil)
+  "A function of a message and a queue that echoes, called when nobody listens to that.")
+
+(defun keep-trouble (message queue)
+  "Remember of MESSAGE, which tells QUEUE of an error in users' code, that it came."
+  (let ((troubles (message-queue-troubles queue)))
+    (when (null (nthcdr *message-limit* troubles))
+      (push message (message-queue-troubles queue))))
+  (when (and (eq :signal (message-queue-manner queue))
+             (null (message-queue-unsignalled queue)))
+    (setf (message-queue-unsignalled queue) message)))
+
 (defun queue-message (message queue)
   "Add MESSAGE to QUEUE, and let whoever listens to that know."
   (with-lock ((message-queue-lock queue))
+    (when (and (message-cause message) (eq :error (message-kind message)))
+      (keep-trouble message queue))
     (push message (message-queue-newest-first queue))
     (incf (message-queue-count queue))
     (when (> (message-queue-count queue) (* 2 *message-limit*))
@@ -75,7 +112,9 @@ that reports) after each message is queued."
             (subseq (message-queue-newest-first queue) 0 *message-limit*)
             (message-queue-count queue) *message-limit*)))
   (let ((listener (message-queue-listener queue)))
-    (when listener (funcall listener))))
+    (cond (listener (funcall listener))
+          ((and (message-cause message) (message-queue-echoed queue))
+           (funcall *message-echo* message queue)))))
 
 (public error-set)
 (defun error-set (&rest stuff)
@@ -151,8 +190,8 @@ line (reading 36)."
   (with-output-to-string (stream) (write-items (message-items message) stream)))
 
 (defun write-message (message stream &optional (text (message-text message)))
-  "Write MESSAGE, which says TEXT, and a new line to STREAM, marked *ERROR* -> or *WARNING* ->
-\(manual E)."
+  "Write MESSAGE, which says TEXT, and a new line to STREAM, or return that if STREAM is NIL, marked
+*ERROR* -> or *WARNING* -> (manual E)."
   (format stream "~@[*~A* -> ~]~A~%"
           (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
           text))

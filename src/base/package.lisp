@@ -72,7 +72,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:malformed-definition
            #:malformed-definition-place
            #:definition-warning #:definition-warning-text #:warn-of-definition #:doubt-definition
-           #:unknown-name #:plain-name #:misuse #:reject-use)
+           #:unknown-name #:plain-name #:misuse #:reject-use #:outlived #:reject-outlived)
   ;; exits
   (:export #:call-refusing-exits #:refuse-exits #:call-allowing-exits)
   ;; threads
@@ -141,17 +141,22 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; messages
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
-           #:copy-message-queue #:message-queue-listener
+           #:copy-message-queue #:message-queue-listener #:message-queue-manner
            #:message #:message-kind #:message-items #:message-asker
            #:message-robot #:*robot-told-of* #:message-run #:*run-that-reports* #:*told-of*
            #:take-messages #:queue-message
            #:message-text #:phrase
            #:write-message #:write-items #:out #:*message-limit*)
+  ;; troubles
+  (:export #:error-manner #:user-code-error #:user-code-error-cause #:trouble-set #:errors-in
+           #:take-unsignalled #:tell-unseen #:make-message #:*echo-output*
+           #:forgive #:overlook #:signal-trouble
+           #:message-cause #:message-queue-unsignalled)
   ;; askers
   (:export #:*asker* #:asker-note #:asker-forked-p #:*goes-on-in-forks-p* #:goes-on-in-forks-p
            #:note-of-asker #:note-text)
   ;; user code
-  (:export #:call-user-code #:*break-on-user-error* #:*user-error-listener* #:*user-error-hooks*
+  (:export #:call-user-code #:*break-on-user-error* #:*user-error-hooks*
            #:in-any-case
            #:call-each
            #:note-waiting #:report-break #:continue-inside

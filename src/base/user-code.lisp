@@ -90,21 +90,19 @@ is queued as an error message that names its origin, and the run goes on.")
   "Return ORIGIN, an item or list of items, as one text."
   (format nil "~{~A~}" (ensure-list origin)))
 
-(defvar *user-error-listener* nil
-  "A function that is called with the text of each error in users' code that is reported, or NIL.")
-
 (defvar *user-error-hooks* '()
   "Functions that are called with the text of each error in users' code that is reported.")
 
 (defun report-user-error (condition origin)
-  "Queue an error message, and tell whoever listens, that CONDITION came up in ORIGIN, an item or
-list of items."
-  (let ((text (format nil "in ~A: ~A" (text-of-origin origin) (brief-text condition))))
-    (when *user-error-listener* (funcall *user-error-listener* text))
-    (dolist (hook *user-error-hooks*)
-      (funcall hook (concatenate 'string "Error " text))))
-  (apply #'error-set "Error in "
-         (append (ensure-list origin) (list ": " (brief-text condition)))))
+  "Queue an error message, and call the hooks, as CONDITION came up in ORIGIN, an item or list of
+items. A program that goes on asking when its run is over is no trouble."
+  (let ((text (format nil "Error in ~A: ~A" (text-of-origin origin) (brief-text condition)))
+        (stuff (list* "Error in " (append (ensure-list origin)
+                                          (list ": " (brief-text condition))))))
+    (dolist (hook *user-error-hooks*) (funcall hook text))
+    (if (typep condition 'outlived)
+        (apply #'error-set stuff)
+        (apply #'trouble-set condition text stuff))))
 
 (defun report-aborted (origin)
   (apply #'error-set (append (ensure-list origin) (list " was aborted"))))

@@ -112,6 +112,14 @@ command that it cut short, or NIL"))
                 :asked (operation-asked operation)
                 :resource (resource-told operation)))
 
+(defun tell-of-failure (operation kind code text)
+  "Queue TEXT, a message of KIND, as OPERATION ends with the error CODE, which its continuation is
+told, too."
+  (queue-message (make-message kind (list text)
+                               :told-p (and (operation-continuation operation) t))
+                 *message-queue*)
+  (note-failed operation code text))
+
 (defun report (operation code results)
   "Queue the message that OPERATION ends with (reading 229)."
   (let* ((*told-of* (request-asker operation))
@@ -119,11 +127,8 @@ command that it cut short, or NIL"))
          (command (operation-command operation))
          (report (command-report command)))
     (cond ((eq code :interrupt)
-           (warning-set (interrupted-text operation))
-           (note-failed operation code (interrupted-text operation)))
-          (code (let ((text (error-text operation code)))
-                  (error-set text)
-                  (note-failed operation code text)))
+           (tell-of-failure operation :warning code (interrupted-text operation)))
+          (code (tell-of-failure operation :error code (error-text operation code)))
           (report (let ((text (apply report operation results)))
                     (when text (tell-of operation text)))))))
 

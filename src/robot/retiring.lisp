@@ -17,10 +17,10 @@
   "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
   (let ((robot (if (robot-p resource) resource (part-robot resource))))
     (when (robot-retired robot)
-      (reject-use "~(~A~): the run of this ~(~A~) is over: ~A.~@[ Command the robot that the ~
-                   variable ~(~A~) holds now.~]"
-                  operator (robot-name robot) (robot-retired robot)
-                  (and (successor robot) (robot-name robot))))))
+      (reject-outlived "~(~A~): the run of this ~(~A~) is over: ~A.~@[ Command the robot that the ~
+                        variable ~(~A~) holds now.~]"
+                       operator (robot-name robot) (robot-retired robot)
+                       (and (successor robot) (robot-name robot))))))
 
 (defun successor (robot)
   "Return the robot that is called as ROBOT, which is retired, and takes commands, or NIL."

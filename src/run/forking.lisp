@@ -177,6 +177,11 @@ and false if there is to be no fork."
     (unless (typep seed '(or null integer))
       (reject-argument *fork-asker* 'seed seed "an integer, or NIL"))))
 
+(defun hand-over-manner (simulation fork)
+  "Let what becomes of errors in users' code be in FORK as in SIMULATION."
+  (setf (message-queue-manner (simulation-messages fork))
+        (message-queue-manner (simulation-messages simulation))))
+
 (addition fork-simulation)
 (defun fork-simulation (&rest arguments)
   "Return a fork of a run: a headless twin at the same tick that goes on by itself, with a world,
@@ -200,17 +205,20 @@ of the world outside, with restarts; MAKE-NO-FORK returns NIL."
     (mapc #'check-forkable (simulation-participants simulation))
     (let ((fork (fork-deciding simulation (getf options :continuations)))
           (seed (getf options :seed)))
+      (when fork (hand-over-manner simulation fork))
       (when (and fork seed) (call-inside fork (lambda () (set-seed seed fork))))
       fork)))
 
 (addition release-fork)
 (defun release-fork (fork)
   "Let FORK, a simulation that FORK-SIMULATION returned, be over: nothing of it goes on, nobody is
-told of anything. Return nothing. Signals WRONG-ARGUMENT for what is no fork."
+told of anything, but errors that were not read go to the error output. Return nothing. Signals
+WRONG-ARGUMENT for what is no fork."
   (check-argument release-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
   (let ((fork (latest fork)))
     (unless (simulation-over fork)
+      (tell-unseen (simulation-messages fork))
       (setf (timeline-over (simulation-timeline fork)) "the fork has been released")))
   (values))
 
@@ -218,14 +226,16 @@ told of anything. Return nothing. Signals WRONG-ARGUMENT for what is no fork."
   "Call FUNCTION in a fork of the current simulation, made with OPTIONS; see WITH-FORK."
   (let ((fork (let ((*fork-asker* 'with-fork)) (apply #'fork-simulation options))))
     (when fork
-      (unwind-protect (call-inside fork function)
+      (unwind-protect (multiple-value-prog1 (call-inside fork function)
+                        (signal-trouble (simulation-messages (latest fork))))
         (release-fork fork)))))
 
 (addition with-fork)
 (define-user-macro with-fork ((&key seed continuations) &body body)
   "Run BODY in a fork of the current simulation, see FORK-SIMULATION: there the current one is the
 fork, and the robots' names are those of the fork. When BODY has ended the fork is over. Return the
-values of BODY; NIL if the fork was given up."
+values of BODY; NIL if the fork was given up. Errors in users' code are dealt with as in the run
+that it is a fork of: see WITH-SIMULATION."
   `(call-with-fork (lambda () ,@body) :seed ,seed :continuations ,continuations))
 
 (addition call-in-fork)

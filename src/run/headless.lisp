@@ -30,10 +30,12 @@ MISUSE if it passes its ticks."
               (simulation-name simulation)))
 
 (defun pass-freely (count simulation)
-  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before."
-  (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline)))
+  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
+an error in users' code is to be signalled."
+  (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline))
+         (queue (simulation-messages simulation)))
     (loop repeat count
-          until (timeline-over timeline)
+          until (or (timeline-over timeline) (message-queue-unsignalled queue))
           do (tick simulation)
              (when (custody-questions custody) (answer-questions custody)))))
 
@@ -41,14 +43,16 @@ MISUSE if it passes its ticks."
 (defun pass-gate (count simulation gate)
   "Pass COUNT ticks as PASS-FREELY does, as many at a time as the function GATE allows."
   (loop with left = count
-        until (or (zerop left) (simulation-over simulation))
+        until (or (zerop left) (simulation-over simulation)
+                  (message-queue-unsignalled (simulation-messages simulation)))
         do (let ((now (min left (funcall gate simulation))))
              (pass-freely now simulation)
              (decf left now))))
 
 (defun pass-ticks (count simulation)
-  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before.
-Nobody else can do that meanwhile, continuations neither."
+  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
+an error in users' code is to be signalled. Nobody else can do that meanwhile, not even
+continuations."
   (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
     (setf (timeline-passing-p timeline) t)
     (in-any-case
@@ -59,7 +63,9 @@ Nobody else can do that meanwhile, continuations neither."
 (defun run-ticks (count &optional (simulation (current-simulation)))
   "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. A fork
 that was rewound stands for the one that goes on in its place. Signals WRONG-ARGUMENT, and MISUSE if
-SIMULATION runs live or is inside a tick, or if another thread passes its ticks."
+SIMULATION runs live or is inside a tick, or if another thread passes its ticks; and where errors
+in users' code are to be signalled, USER-CODE-ERROR after the tick in which one came up, with a
+restart CONTINUE that lets the other ticks pass."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
   (pass-ticks-of (going-on simulation) count))
 
@@ -67,18 +73,25 @@ SIMULATION runs live or is inside a tick, or if another thread passes its ticks.
   "Return SIMULATION or, if it is a fork that was rewound, the one that goes on in its place."
   (if (fork-p simulation) (latest simulation) simulation))
 
-(defun pass-ticks-of (simulation count)
-  (check-headless simulation 'run-ticks)
-  (check-not-over simulation 'run-ticks)
-  (check-not-secluded simulation)
-  (check-passable simulation)
+(defun pass-ticks-alone (simulation count)
+  "Pass COUNT ticks of SIMULATION, as PASS-TICKS does, once no other thread looks at it."
   (flet ((pass () (pass-ticks count simulation)))
     (declare (dynamic-extent #'pass))
     (flet ((pass-inside () (call-inside simulation #'pass) t)
            (wait () (await-free simulation) nil))
       (declare (dynamic-extent #'pass-inside #'wait))
       (loop with custody = (timeline-custody (simulation-timeline simulation))
-            until (call-with-custody custody #'pass-inside #'wait))))
+            until (call-with-custody custody #'pass-inside #'wait)))))
+
+(defun pass-ticks-of (simulation count)
+  (check-headless simulation 'run-ticks)
+  (check-not-over simulation 'run-ticks)
+  (check-not-secluded simulation)
+  (check-passable simulation)
+  (loop with last = (+ (simulation-tick simulation) count)
+        do (pass-ticks-alone simulation (- last (simulation-tick simulation)))
+        while (signal-trouble (simulation-messages simulation))
+        until (or (simulation-over simulation) (<= last (simulation-tick simulation))))
   (simulation-tick simulation))
 
 (addition run-until)
@@ -133,17 +146,19 @@ mode."
         simulation))))
 
 (defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep
-                                               (thinking :free) variables)
+                                               (thinking :free) (errors :report) variables)
   "Call FUNCTION in a fresh headless simulation; see WITH-SIMULATION. VARIABLES are symbols by which
 FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking 'with-simulation thinking)
+  (check-argument with-simulation errors (typep errors 'error-manner)
+                  ":report, :signal or :collect")
   (call-with-parameters
    parameters
    (lambda ()
      (check-parameters)
      (when clean (clean-simulation))
-     (let ((*message-queue* (make-message-queue)))
+     (let ((*message-queue* (make-message-queue :manner errors)))
        (call-as-headless function
                          (fresh-simulation (ensure-list robots) :seed seed :journal journal
                                                                 :thinking thinking)
@@ -167,9 +182,28 @@ KEEP says, see KEEP-FORKS. Then the run is over."
                 (list (or (simulation-dice simulation)
                           (seeded-lisps-dice (simulation-seed simulation)))))
       (note-environment simulation)
-      (unwind-protect (progn (when keep (keep-forks keep simulation))
-                             (funcall function))
-        (end-headless simulation)))))
+      (call-telling-errors
+       (lambda ()
+         (when keep (keep-forks keep simulation))
+         (funcall function))
+       simulation))))
+
+(defun call-telling-errors (function simulation)
+  "Call FUNCTION in the headless SIMULATION, whose run is then over. What has gone wrong that nobody
+has been told is told, or signalled, as its message queue says."
+  (let ((queue (simulation-messages simulation)) (left-p t))
+    (multiple-value-prog1
+        (unwind-protect (multiple-value-prog1 (funcall function)
+                          (signal-trouble queue)
+                          (setf left-p nil))
+          (tell-unseen queue)
+          (end-headless simulation)
+          ;; What is interrupted then is not wrong.
+          (tell-unseen queue (lambda (message)
+                               (and (message-cause message)
+                                    (or left-p
+                                        (not (eq message (message-queue-unsignalled queue))))))))
+      (signal-trouble queue))))
 
 (defvar *rewound-end-hooks* '()
   "Functions of a headless run that was rewound, and of the one that went on in its place and is
@@ -199,18 +233,34 @@ over now.")
 (defun retire-robots (robots reason)
   (dolist (robot robots) (retire-robot robot reason)))
 
+(addition simulation-errors)
+(defun simulation-errors (&optional (simulation (current-simulation)))
+  "Return the errors that came up in users' code that SIMULATION has called, and the failures of
+plans that were begun, as USER-CODE-ERRORs: at most the first 1000, the oldest first. Whether they
+were signalled, shown or read makes no difference. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
+  (let ((simulation (simulation-meant simulation 'simulation-errors)))
+    (errors-in (simulation-messages simulation)
+               (lambda (run) (or (null run) (eq simulation (latest run)))))))
+
 (addition with-simulation)
 (define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal keep
-                                            (thinking :free))
+                                            (thinking :free) (errors :report))
                                     &body body)
   "Run BODY with ROBOTS, the name of a robot or a list of names, of any package, bound to fresh
 robots in a fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The
 integer SEED decides all chance. Parameters are bound to what they are here, or as the list
 PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
 journal, with KEEP forks, so that it can be rewound, see KEEP-FORKS. THINKING says how much time
-thinking costs, see SET-THINKING. Messages go to a queue of its
-own. When BODY has ended, the run is over: what the robots are doing is interrupted, and they take
-no more commands. Return the values of BODY."
+thinking costs, see SET-THINKING. Messages go to a queue of its own. When BODY has ended, the run is
+over: what the robots are doing is interrupted, and they take no more commands. Return the values of
+BODY.
+
+ERRORS says what becomes of errors in users' code that the run calls, and of failures of plans that
+were begun; the run goes on in any case. With :REPORT they are messages; those that nobody has read
+when BODY ends are written to the error output, and so are other errors, but for those of commands
+that have a continuation to tell. With :SIGNAL the first of them is an error of BODY, a
+USER-CODE-ERROR that RUN-TICKS signals when its tick is over, or WITH-SIMULATION at the end. With
+:COLLECT they are only messages; SIMULATION-ERRORS returns them."
   (let* ((robots (unquoted robots)) (variables (variables-among robots)))
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))
@@ -218,4 +268,5 @@ no more commands. Return the values of BODY."
                            ',robots
                            :variables ',variables
                            :seed ,seed :parameters ,parameters :clean ,clean
-                           :journal ,journal :keep ,keep :thinking ,thinking)))
+                           :journal ,journal :keep ,keep :thinking ,thinking
+                           :errors ,errors)))

@@ -26,7 +26,8 @@ positive number nor :FREE."
   (check-not-over simulation 'start-clock)
   (check-parameters)
   (setf (simulation-output simulation) (editors-output)
-        (simulation-plans-dice-p simulation) t)
+        (simulation-plans-dice-p simulation) t
+        *echo-output* (simulation-output simulation))
   (asking (simulation)
     (give-threads (simulation-timeline simulation) real)
     (start-pacing (simulation-timeline simulation)

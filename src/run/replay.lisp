@@ -136,6 +136,8 @@ then has been done again."
        (let ((simulation (current-simulation)))
          (when observer (add-observer observer simulation))
          (perform-journal journal simulation beginning)
+         ;; Of what is repeated nobody needs to hear again.
+         (overlook (simulation-messages simulation))
          (when observer (remove-observer observer simulation))
          (funcall function)))
      (mapcar #'blueprint-name blueprints)

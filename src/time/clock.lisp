@@ -57,7 +57,9 @@
 
 (defun pause-for (pacing trouble)
   "Pause the clock of PACING, as TROUBLE has come up that no user code answers for."
-  (error-set "The simulator failed and is paused; RESUME goes on: " (brief-text trouble))
+  (let ((text (format nil "The simulator failed and is paused; RESUME goes on: ~A"
+                      (brief-text trouble))))
+    (trouble-set trouble text text))
   (setf (pacing-paused-p pacing) t
         (pacing-trouble pacing) (brief-text trouble)))
 
@@ -84,7 +86,8 @@
   "Give back what the thread of PACING has, which ends, perhaps unasked."
   (unless (pacing-stopping-p pacing)
     (setf (pacing-stopping-p pacing) t)
-    (error-set "The simulator's thread was ended from outside. (simulator ROBOT) starts another."))
+    (let ((text "The simulator's thread was ended from outside. (simulator ROBOT) starts another."))
+      (trouble-set :ended text text)))
   (when (eq pacing (custody-pacing custody))
     (setf (custody-pacing custody) nil))
   (in-any-case

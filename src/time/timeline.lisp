@@ -84,10 +84,10 @@ given to SIMULATOR.")
   "Signal MISUSE, by OPERATOR if that is one that users call, if the run of OBJECT is over."
   (let ((timeline (timeline-of object)))
     (when (timeline-over timeline)
-      (reject-use "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. (simulator ROBOT) ~
-                   starts another."
-                  operator (timeline-name timeline) (timeline-tick timeline)
-                  (timeline-over timeline)))))
+      (reject-outlived "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. (simulator ROBOT) ~
+                        starts another."
+                       operator (timeline-name timeline) (timeline-tick timeline)
+                       (timeline-over timeline)))))
 
 (defun wake-owner (timeline)
   "Wake the thread that paces TIMELINE if it sleeps: there may be something to do."

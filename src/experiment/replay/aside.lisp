@@ -26,9 +26,10 @@
 stays so for him. What goes wrong in it is no error of the trial's."
   (let ((outside *outside*))
     (progv *surroundings* (outside-values outside)
-      (let ((*aside-p* t) (*user-error-listener* nil))
+      (let ((*aside-p* t))
         (with-debugger-hook ((outside-hook outside))
           (unwind-protect (call-allowing-exits function)
+            (forgive *message-queue*)
             (setf (outside-values outside) (mapcar #'symbol-value *surroundings*))))))))
 
 (defun call-from-outside (function)

@@ -78,6 +78,7 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
                (call-with-variables-of condition function))
              (condition-robots condition)
              :seed seed :journal journal :thinking (condition-thinking condition)
+             :errors :signal
              :variables (remove-if-not #'variable-name-p (condition-robots condition)))))))
      (experiment-package experiment))))
 
@@ -107,10 +108,29 @@ and :LIMIT if too few ticks were left."
     (return-from run-forms
       (let ((values (multiple-value-list (call-form (experiment-run experiment) condition))))
         (setf *trial-values* values)
+        (signal-trouble *message-queue*)
         (if (experiment-until experiment)
             (list (pass-until (experiment-until experiment) condition))
             values))))
   (list nil :limit))
+
+(defun failed-plan (error)
+  "Return the failure of a begun plan that ERROR, a USER-CODE-ERROR, is of; NIL if it is an error of
+Lisp."
+  (let ((cause (user-code-error-cause error)))
+    (and (typep cause 'plan-failure) (not (typep cause 'lisp-failure)) cause)))
+
+(defun run-noting-failures (experiment condition result)
+  "Return what RUN-FORMS returns; if a plan that was begun fails, and :run does not handle that,
+what RUN-PLAN would have returned of it. Enter it into RESULT as well."
+  (block run
+    (handler-bind ((user-code-error
+                     (lambda (error)
+                       (let ((failure (failed-plan error)))
+                         (when failure
+                           (add-error result (text-of-condition error))
+                           (return-from run (list failure :failed)))))))
+      (run-forms experiment condition))))
 
 (defun decide (experiment condition outcome reason)
   "Return outcome and reason of a trial of CONDITION that so far are OUTCOME and REASON. What :run
@@ -121,18 +141,15 @@ took for a success and :success does not is one that was only believed."
           ((string= outcome "success") (values "failure" "only-believed"))
           (t (values outcome reason)))))
 
-(defun texts-of-measures (experiment condition)
-  "Return the texts of what EXPERIMENT measures. Signals WRONG-ARGUMENT if a table cannot have one."
-  (loop for (name function) in (experiment-measures experiment)
-        for value = (call-form function condition)
-        do (unless (value-p value)
-             (reject-argument "measure" name value "a number, symbol, string or list of them"))
-        collect (value-text value)))
-
 (defun note-end (result)
   "Enter into RESULT how far the current simulation has come."
   (setf (result-ticks result) (simulation-tick)
         (result-digest result) (state-digest)))
+
+(defun add-error (result text)
+  "Enter into RESULT that there was an error of which TEXT tells, unless there was one before."
+  (when (string= "" (result-error result))
+    (setf (result-error result) (plain-text text))))
 
 (defun note-error (result text)
   "Let RESULT be that of a trial that broke off, as TEXT says."
@@ -141,17 +158,24 @@ took for a success and :success does not is one that was only believed."
         (result-measures result) '()
         (result-error result) (plain-text text)))
 
+(defun text-of-measure (name function condition)
+  "Return the text of what FUNCTION, the measure NAME, returns. Signals WRONG-ARGUMENT if a table
+cannot have it."
+  (let ((value (call-form function condition)))
+    (unless (value-p value)
+      (reject-argument "measure" name value "a number, symbol, string or list of them"))
+    (value-text value)))
+
 (defun conduct (experiment result)
   "Do in the current simulation what EXPERIMENT says, and enter into RESULT what comes of it."
   (let* ((condition (result-condition result))
          (*trial-values* '())
-         (values (run-forms experiment condition)))
+         (values (run-noting-failures experiment condition result)))
     (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
       (setf (values (result-outcome result) (result-reason result))
-            (decide experiment condition outcome reason)
-            (result-measures result) (texts-of-measures experiment condition))
-      (when (string= "" (result-error result))
-        (setf (result-error result) (error-in-plan values))))))
+            (decide experiment condition outcome reason))
+      (add-error result (error-in-plan values))
+      (measure experiment result))))
 
 (defvar *aside-p* nil
   "True while somebody looks at a trial that stands still: what goes wrong is not the trial's.")
@@ -169,18 +193,31 @@ NIL."
         (call-refusing-exits function)))
     nil))
 
-(defun call-noting-errors (function result)
-  "Call FUNCTION. If it breaks off, enter that into RESULT; likewise the first error of other code
-of users'."
-  (let* ((*user-error-listener* (lambda (text)
-                                  (when (string= "" (result-error result))
-                                    (setf (result-error result) (plain-text text)))))
-         (trouble (catch 'broken-off
-                    (restart-case (call-until-error function)
-                      (abort () :report "End this trial." "aborted")))))
+(defun trouble-text (function)
+  "Call FUNCTION. Return what is to be said if it breaks off, or NIL."
+  (let ((trouble (catch 'broken-off
+                   (restart-case (call-until-error function)
+                     (abort () :report "End this trial." "aborted")))))
     (when (typep trouble 'condition) (regain-room trouble))
-    (when trouble
-      (note-error result (if (stringp trouble) trouble (text-of-condition trouble))))))
+    (if (typep trouble 'condition) (text-of-condition trouble) trouble)))
+
+(defun measure (experiment result)
+  "Enter into RESULT what EXPERIMENT measures; of what breaks off, an empty text and the error."
+  (setf (result-measures result)
+        (loop with condition = (result-condition result)
+              for (name function) in (experiment-measures experiment)
+              for text = ""
+              for trouble = (trouble-text
+                             (lambda ()
+                               (setf text (text-of-measure name function condition))))
+              when trouble
+                do (add-error result (format nil "Error in the measure ~(~A~): ~A" name trouble))
+              collect text)))
+
+(defun call-noting-errors (function result)
+  "Call FUNCTION. If it breaks off, enter that into RESULT."
+  (let ((trouble (trouble-text function)))
+    (when trouble (note-error result trouble))))
 
 (defun run-trial (experiment condition trial &key gate)
   "Run TRIAL, a number, of CONDITION of EXPERIMENT. Return its result. GATE is as for
