@@ -26,6 +26,13 @@ WITH-SIMULATION signal it in a run that is to :SIGNAL errors, see WITH-SIMULATIO
 (setf (documentation 'user-code-error-cause 'function)
       "Return the condition, or the failure of a plan, that a USER-CODE-ERROR is of.")
 
+;; What a REPL shows of SIMULATION-ERRORS.
+(defmethod print-object ((error user-code-error) stream)
+  (if *print-escape*
+      (print-unreadable-object (error stream :type t)
+        (write-string (cut (one-line (user-code-error-text error)) 200) stream))
+      (call-next-method)))
+
 (defun trouble-set (cause text &rest stuff)
   "Queue an error message made of the items STUFF which tells of CAUSE, a condition in users' code
 or a failure of a plan; TEXT says it in a line. Return nothing."
