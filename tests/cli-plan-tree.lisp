@@ -65,3 +65,13 @@
     (is-true (written-p "*BREAK* -> Plan failure :ICE" written) "~S" written)
     (is-true (find-if (lambda (line) (search "reason = :ice" line)) written))
     (is-true (written-p "5" written))))
+
+(test break.shows-plans-and-their-variables
+  (let* ((base:*break-on-user-error* t)
+         (written (type-at-terminal
+                   "(run-plan (interp-lambda () (let ((spade 10)) (error \"stone\") spade)))"
+                   "plan-tree" "backtrace" "leave-plan")))
+    (is-true (find-if (lambda (line) (has-words-p line "spade" "10")) written) "~S" written)
+    (is-true (find-if (lambda (line) (has-words-p line "(error \"stone\")")) written) "~S" written)
+    (is (notany (lambda (line) (search "RUN-ROUNDS" line)) written)
+        "the engine's own calls are not shown")))

@@ -76,7 +76,7 @@ expected to."
 
 (defun break-text (session breakage)
   (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
-               A number chooses. BACKTRACE tells where it is; a line in parentheses is Lisp.~%"
+               A number chooses. BACKTRACE, PLAN-TREE tell where it is; (...) is Lisp.~%"
           (break-words (breakage-condition breakage))
           (whereabouts session breakage)
           (loop for restart in (breakage-restarts breakage)

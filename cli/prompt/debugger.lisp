@@ -45,7 +45,7 @@ and syntax that are used here."
                    (starts-with-subseq (string-upcase word) (string (restart-name restart))))
                  restarts)
         (reject-line "~A is no way to go on. Give a number or name that is listed (~{~A~^, ~}), ~
-                      BACKTRACE, QUIT, or a form in parentheses."
+                      BACKTRACE, PLAN-TREE, QUIT, or a form in parentheses."
                      word (mapcar (lambda (restart) (plain-name (restart-name restart)))
                                   restarts)))))
 
@@ -57,8 +57,13 @@ user's."
          (user-calls (if start (nthcdr (1+ start) calls) calls)))
     (subseq user-calls 0 (position-if (lambda (name)
                                         (member name
-                                                '(eval-quietly call-user-code call-until-error)))
+                                                '(eval-quietly call-user-code call-until-error
+                                                  call-with-care)))
                                       user-calls :key #'first))))
+
+(defun write-plan-tree ()
+  "Print the plans of the run that has broken here, with all that they are in the middle of."
+  (print-plans *standard-output* t))
 
 (defun write-backtrace ()
   (dolist (call (broken-calls))
@@ -75,6 +80,7 @@ user's."
                                      (lambda () (evaluate session form)))))))
           ((says-p "quit") (setf (session-over-p session) t))
           ((says-p "backtrace") (order session breakage #'write-backtrace))
+          ((says-p "plan-tree") (order session breakage #'write-plan-tree))
           (t (multiple-value-bind (word rest) (split-line text)
                (choose session breakage (restart-called word breakage) rest))))))
 
