@@ -108,7 +108,8 @@
                  (:file "replaced-maps") (:file "sealed-lines")
                  (:file "journal-text") (:file "replay") (:file "redoing") (:file "rewinding")
                  (:file "outer-names") (:file "inventory") (:file "saved-values") (:file "saving")
-                 (:file "restoring") (:file "loading") (:file "status")))
+                 (:file "restoring") (:file "loading") (:file "saved-files")
+                 (:file "status")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "contrast") (:file "gcontext")
                  (:file "canvas") (:file "blank-canvas") (:file "drawing")
@@ -415,7 +416,7 @@
                  (:file "outliving") (:file "outliving-live") (:file "users-parts")
                  (:file "user-package") (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps") (:file "homes")
-                 (:file "saving") (:file "saving-hostile")
+                 (:file "saving") (:file "saving-hostile") (:file "saving-refused")
                  (:file "mutators") (:file "abuse-outcomes") (:file "abuse-definers")
                  (:file "abuse-data") (:file "abuse-calls") (:file "abuse") (:file "listings")
                  (:file "cli-door") (:file "cli-libraries")

@@ -69,7 +69,9 @@
       (run:run-ticks 2)
       (let ((journal (end-journal time:*simulation*)))
         (setf (getf (run:journal-header journal) :thinking) '(:charged :budget 0))
-        (run:write-journal journal file)))
+        (signals base:misuse (run:write-journal journal file))
+        (base:write-file-anew (lambda (out) (run::write-data (run::journal-data journal) out))
+                              file "a forged journal")))
     (signals run:damaged-journal (run:load-journal file))))
 
 (test mode.is-state-where-it-costs-ticks

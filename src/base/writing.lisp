@@ -17,11 +17,12 @@ the name is illegible."
       (error "there is no such directory"))
     path))
 
-(defun call-replacing-file (function file &key (external-format :utf-8))
+(defun call-replacing-file (function file &key (external-format :utf-8) (check #'identity))
   "Call FUNCTION with a stream to a new file of UTF-8, which takes the place of FILE at one stroke
 when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename.
 What FUNCTION writes does not follow the printer's variables. In the EXTERNAL-FORMAT :LATIN-1 each
-character that is written is an octet."
+character that is written is an octet. CHECK is called with the path of the new file when that is
+written; if it signals an error, FILE is as it was."
   (let ((path (new-file-for file)))
     ;; The new file's name is rolled for: whoever writes a file rolls on as if he had not.
     (call-with-own-lisps-dice
@@ -31,6 +32,7 @@ character that is written is an octet."
                                   :prefix "ars-magna" :type :unspecific)
          (printing-plainly () (funcall function out))
          :close-stream
+         (funcall check new)
          (replace-file path new))))
     (truename path)))
 
@@ -44,10 +46,10 @@ Lisp says only the system's own words, without streams and names that its user d
           ((and words (notany (lambda (char) (find char "\"/")) words)) (string-downcase words))
           (t "no file can be made in that directory"))))
 
-(defun write-file-anew (function file what)
-  "Do as CALL-REPLACING-FILE does with FUNCTION and FILE. Signals MISUSE if WHAT, such as
+(defun write-file-anew (function file what &key (check #'identity))
+  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals MISUSE if WHAT, such as
 \"the run\", cannot be written there; then FILE is as it was."
-  (handler-case (call-replacing-file function file)
+  (handler-case (call-replacing-file function file :check check)
     (ars-magna-error (trouble) (error trouble))
     (error (trouble)
       (reject-use "~@(~A~) cannot be written to ~A: ~A. What was there is as before; give the name ~

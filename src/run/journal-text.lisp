@@ -62,13 +62,6 @@
   (let ((sum 0))
     (dolist (datum data) (setf sum (write-sealed (datum-text datum) sum out)))))
 
-(defun write-journal (journal file)
-  "Write JOURNAL to FILE, replacing it when all is written. Return the file's truename. Signals
-MISUSE if that cannot be, as when an entry holds a function, or another object without a readable
-form; then FILE is as it was."
-  (check-printable journal)
-  (write-file-anew (lambda (out) (write-data (journal-data journal) out)) file "the journal"))
-
 ;;; Reading.
 
 (defun check-head-line (line)
@@ -220,3 +213,21 @@ incomplete, and says which entry is to blame; WRONG-ARGUMENT unless FILE is a na
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file "a journal, or the name of a file that holds one"))
   (reading-file (file 'damaged-journal) (read-journal-file file)))
+
+;;; Writing, and reading on trial: so saving refuses what loading would refuse, by the same checks.
+
+(defun check-readable (path)
+  "Signal MISUSE unless the journal in the file PATH can be read."
+  (handler-case (read-journal path)
+    ((or damaged-journal unknown-name) (trouble)
+      (reject-use "The journal cannot be written to a file, since it could not be read again: ~A. ~
+                   What was there is as before; (simulator ROBOT) starts a run with another."
+                  (reason-of-refusal trouble)))))
+
+(defun write-journal (journal file)
+  "Write JOURNAL to FILE, replacing it when all is written and has been read on trial. Return the
+file's truename. Signals MISUSE if that cannot be, as when an entry holds a function, or another
+object without a readable form; then FILE is as it was."
+  (check-printable journal)
+  (write-file-anew (lambda (out) (write-data (journal-data journal) out)) file "the journal"
+                   :check #'check-readable))

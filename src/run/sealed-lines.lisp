@@ -100,6 +100,12 @@ class DAMAGE, which says that FILE is to blame."
     ((or error storage-condition) (trouble)
       (error damage :file file :reason (one-line-text trouble)))))
 
+(defun reason-of-refusal (trouble)
+  "Return why READING-FILE has refused a file, by the condition TROUBLE, as a part of a sentence."
+  (if (typep trouble 'damaged-file)
+      (damaged-file-reason trouble)
+      (string-right-trim "." (one-line-text trouble))))
+
 (defmacro reading-file ((file damage) &body body)
   "Run BODY as CALL-READING-FILE would a function."
   `(call-reading-file (lambda () ,@body) ,file ,damage))

@@ -1,0 +1,55 @@
+;;;; saving-refused.lisp -- what could not be loaded again is not saved.
+
+(in-package :ars-magna.tests)
+(in-suite saving)
+
+;;; Each of these states could be saved, and no file of it loaded.
+
+(defun text-of-refusal (function)
+  "Call FUNCTION, which must signal MISUSE. Return what that says."
+  (handler-case (progn (funcall function) (fail "It was saved.") "")
+    (base:misuse (trouble) (princ-to-string trouble))))
+
+(defun check-refused (save reason file)
+  "Check that SAVE, a function of a file's name, says that it cannot save for REASON, and leaves
+FILE as it is."
+  (with-open-file (out file :direction :output :if-exists :supersede) (declare (ignorable out)))
+  (let ((text (text-of-refusal (lambda () (funcall save file)))))
+    (is (search reason text) "~A" text)
+    (is (search "(simulator ROBOT) starts" text) "~A" text)
+    (with-open-file (in file) (is (zerop (file-length in))))))
+
+(defmacro with-hermits (() &body body)
+  "Run BODY where the robot HERMIT is in the map HERMITAGE, and nothing of that is left afterwards."
+  `(with-messages
+     (base:with-own-definitions ()
+       (handler-bind ((warning #'muffle-warning))
+         (world:define-map 'hermitage 9 9)
+         (robot:define-robot 'hermit 'hermitage '(3 3) 0)
+         ,@body))))
+
+(test saving.a-robot-that-is-twice-in-its-world-is-refused
+  (with-hermits ()
+    (with-temporary-file (file)
+      (run:with-simulation (hermit :journal t)
+        (robot:make-robot (robot:find-blueprint 'hermit) world:*world*)
+        (run:run-ticks 1)
+        (check-refused #'run:save-simulation "it names a robot twice" file)
+        (check-refused #'run:save-journal "it names a robot twice" file)))))
+
+(test saving.a-world-without-its-robot-is-refused
+  (with-hermits ()
+    (with-temporary-file (file)
+      (let ((simulation (run:robot-simulation (symbol-value 'hermit))))
+        (base:undefine 'robot 'hermit)
+        (check-refused (lambda (file) (run:save-simulation file simulation))
+                       "it names no robots" file)))))
+
+(test saving.a-thing-that-is-in-itself-is-refused
+  "A state that no command leads to, but that a fault of the simulator might."
+  (with-hermits ()
+    (with-temporary-file (file)
+      (run:with-simulation (hermit)
+        (let ((box (world:make-new-thing 'box '(hermitage 5 5) '((:size 1) (:capacity 5)))))
+          (setf (world::thing-location box) box)
+          (check-refused #'run:save-simulation "BOX" file))))))
