@@ -130,21 +130,33 @@ for that, or some plan is ready. For any thread."
       (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."
                   (task-label (task-top task)) (form-text (task-form task))))))
 
+;; A time limit may come at any moment: the count must come out even, or the plans' thread would
+;; make way for ever.
+(defun call-wanting-plans (function interface)
+  "Call FUNCTION, while this thread counts as one that wants the plans of INTERFACE, with a function
+that is to be called when it has them. Interrupts wait, but for the extent of ALLOWING-INTERRUPTS."
+  (let ((waiting-p t))
+    (flet ((have ()
+             (when (shiftf waiting-p nil) (atomic-decf (interface-wanted interface)))))
+      (declare (dynamic-extent #'have))
+      (deferring-interrupts
+        (atomic-incf (interface-wanted interface))
+        (unwind-protect (funcall function #'have)
+          (have))))))
+
 (defun call-with-plans (function interface)
   "Call FUNCTION while nobody else touches the plans of INTERFACE. Signals MISUSE if one of them is
 known to be at Lisp code that does not return. One that waits in a debugger can be answered here."
   (check-not-kept interface)
   (if (holding-p interface)
       (funcall function)
-      (let ((waiting-p t))
-        (atomic-incf (interface-wanted interface))
-        (unwind-protect
-             (call-when-free (interface-lock interface)
-                             (lambda ()
-                               (atomic-decf (interface-wanted interface))
-                               (setf waiting-p nil)
-                               (call-holding function interface)))
-          (when waiting-p (atomic-decf (interface-wanted interface)))))))
+      (call-wanting-plans
+       (lambda (have)
+         (call-when-free (interface-lock interface)
+                         (lambda ()
+                           (funcall have)
+                           (allowing-interrupts (call-holding function interface)))))
+       interface)))
 
 (defmacro with-plans ((interface) &body body)
   "Run BODY while nobody else touches the plans of INTERFACE."

@@ -25,8 +25,7 @@ only one, or that of the prompt. Signals MISUSE if that could be several."
 (defun ensure-interface ()
   "Return the interface in use; make one for ROBOT-TO-DRIVE if there is none."
   (or (usable-interface)
-      (progn (rpl-init-robot (robot-to-drive))
-             *interface*)))
+      (init-robot (robot-to-drive))))
 
 (defun begin-in (interface plan arguments note)
   "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been

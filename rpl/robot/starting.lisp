@@ -5,12 +5,11 @@
 (defun close-interface (interface)
   "Let INTERFACE hear no more of its simulation, and its plans end: now, or, if they react in
 another thread or around this call, when they get to it."
-  (let ((simulation (interface-simulation interface)))
-    (unless (interface-closing-p interface)
+  (unless (interface-closing-p interface)
+    (deferring-interrupts
       (setf (interface-closing-p interface) t)
       (in-any-case
-        (asking (simulation)
-          (remove-participant interface simulation))
+        (remove-participant interface (interface-simulation interface))
         (removef (robot-enders (interface-robot interface)) (interface-ender interface))
         (cond ((holding-p interface) (stop-plan (interface-runner interface)))
               ((thread-of interface) (wake interface))
@@ -48,17 +47,22 @@ simulation inside of a live one has only inherited is left alone."
 
 ;; Who repeats a run says which eras these were, so that the tasks of then are known.
 (defun drive-in-eras (robot eras)
-  "Do what RPL-INIT-ROBOT does with ROBOT, whose tasks are to be of ERAS. Return it."
-  (let ((simulation (robot-simulation robot)))
+  "Do what RPL-INIT-ROBOT does with ROBOT, whose tasks are to be of ERAS. Return the interface."
+  ;; Other threads may set the variable meanwhile.
+  (let ((simulation (robot-simulation robot)) (before *interface*))
     (note-doing simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
-    (when (and *interface* (ended-by-p *interface* simulation))
-      (close-interface *interface*))
+    (when (and before (ended-by-p before simulation)) (close-interface before))
     (make-fluents robot)
     (let ((interface (make-interface robot simulation eras)))
       (attach interface)
-      (setf *interface* interface))
-    (when (eq simulation *simulation*) (note-environment simulation))
-    robot))
+      (setf *interface* interface)
+      (when (eq simulation *simulation*) (note-environment simulation))
+      interface)))
+
+(defun init-robot (robot)
+  "Do what RPL-INIT-ROBOT does with ROBOT. Return the interface."
+  (check-world robot)
+  (drive-in-eras robot (first-eras)))
 
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)
@@ -70,17 +74,18 @@ the robot that this commands. Signals UNKNOWN-NAME, and MISUSE if the robot is i
 the current one."
   (let* ((named (fluent-value robot))
          (robot (if (robot-p named) named (find-robot named))))
-    (check-world robot)
-    (drive-in-eras robot (first-eras))))
+    (init-robot robot)
+    robot))
 
 ;;; When a simulator starts.
 
 (defun forget-interface (robot options)
   "End the plans of a simulation that is gone, now that the simulator of ROBOT has started."
   (declare (ignore options))
-  (when (and *interface*
-             (not (eq (interface-simulation *interface*) (robot-simulation robot))))
-    (unless (interface-valid-p *interface*) (close-interface *interface*))
-    (setf *interface* nil)))
+  (let ((interface *interface*))
+    (when (and interface
+               (not (eq (interface-simulation interface) (robot-simulation robot))))
+      (unless (interface-valid-p interface) (close-interface interface))
+      (when (eq interface *interface*) (setf *interface* nil)))))
 
 (pushnew 'forget-interface *simulator-hooks*)

@@ -100,9 +100,12 @@ NIL if that was aborted."
                                        (lambda () (watch-plans interface thread calls ended))))
                       (name "watcher of the plans of ~A"))))))
 
+;; A time limit may come at any moment: it must not leave plans that wait for a thread to start.
 (defun ensure-thread (interface)
   "Have a thread for the plans of a live simulation."
-  (when (and (thread-wanted-p interface)
-             (null (thread-of interface))
-             (swap-if (interface-thread interface) nil :starting))
-    (start-plans-thread interface)))
+  (when (and (thread-wanted-p interface) (null (thread-of interface)))
+    (deferring-interrupts
+      (when (swap-if (interface-thread interface) nil :starting)
+        (in-any-case
+          (start-plans-thread interface)
+          (swap-if (interface-thread interface) :starting nil))))))

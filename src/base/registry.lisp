@@ -133,10 +133,13 @@ UNKNOWN-NAME if ERRORP is true."
   (:documentation "Do again what TAKE-BACK may have undone: OBJECT is defined as it was before.")
   (:method (object) object))
 
+(defun entry-to-replace (name registry)
+  "Return the entry in REGISTRY whose place a definition of NAME would take, or NIL."
+  (find-if (lambda (entry) (same-entry-p entry name registry)) (registry-entries registry)))
+
 (defun definition-to-replace (name registry)
   "Return the object in REGISTRY whose place a definition of NAME would take, or NIL."
-  (let ((entry (find-if (lambda (entry) (same-entry-p entry name registry))
-                        (registry-entries registry))))
+  (let ((entry (entry-to-replace name registry)))
     (and entry (entry-object entry))))
 
 (defun set-entries (registry entries)
@@ -210,20 +213,28 @@ OLD had, or NAME if it is free."
 (defvar *definition-listener* nil
   "A function that is called in this thread with each object that is defined, or NIL.")
 
+(defun replace-entry (old new registry before value)
+  "Put the entry NEW into REGISTRY, in the place of OLD or before the object BEFORE, and let its
+variable, if any, hold VALUE. True unless another thread has replaced OLD meanwhile."
+  (with-lock (*registries-lock*)
+    (when (eq old (entry-to-replace (entry-name new) registry))
+      (set-entries registry (entries-with new old before registry))
+      (when (entry-variable new) (setf (global-value (entry-variable new)) value))
+      t)))
+
 (defun register (registry name object &key variable (value object) before)
   "Let NAME mean OBJECT in REGISTRY, from now on; it takes the place of what it meant before. With
 VARIABLE, the special variable NAME, if it can be one and is not in use, has VALUE from now on.
-BEFORE is an object of the registry to come directly before, instead of last. Return OBJECT."
-  (let* ((old (find-if (lambda (entry) (same-entry-p entry name registry))
-                       (registry-entries registry)))
-         (variable (and variable (variable-for name old registry)))
-         (new (make-entry name object (current-source) variable)))
-    (with-lock (*registries-lock*)
-      (set-entries registry (entries-with new old before registry))
-      (when variable (setf (global-value variable) value)))
-    (when old (say-if-replaced old new registry))
-    (when *definition-listener* (funcall *definition-listener* object))
-    object))
+BEFORE is an object of the registry to come directly before, instead of last. Return OBJECT, and the
+object whose place it has taken, or NIL: of several threads that define NAME, each gets another."
+  (loop
+    (let* ((old (entry-to-replace name registry))
+           (variable (and variable (variable-for name old registry)))
+           (new (make-entry name object (current-source) variable)))
+      (when (replace-entry old new registry before value)
+        (when old (say-if-replaced old new registry))
+        (when *definition-listener* (funcall *definition-listener* object))
+        (return (values object (and old (entry-object old))))))))
 
 ;;; Undefining.
 

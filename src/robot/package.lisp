@@ -12,7 +12,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:robot-enders #:retire-robot #:close-robot
            #:*robots* #:all-blueprints #:find-blueprint #:blueprint-robot #:blueprint-x
            #:blueprint-y
-           #:make-robot #:settle-robot
+           #:make-robot #:settle-robot #:resident-p
            #:robot-of-blueprint #:start-trouble
            #:robot-x #:robot-y #:robot-angle #:robot-cos #:robot-sin #:robot-position
            #:robot-speed #:robot-turn-angle #:robot-cameras #:robot-hands #:robot-bins

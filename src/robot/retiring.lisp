@@ -11,7 +11,7 @@
 
 (defun close-robot (robot)
   "Tell those who asked for it that the run of ROBOT is over."
-  (mapc #'funcall (shiftf (robot-enders robot) '())))
+  (call-each #'funcall (shiftf (robot-enders robot) '())))
 
 (defun check-in-run (resource operator)
   "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
@@ -70,17 +70,25 @@
             (take-out robot "it has been defined anew")))
         (make-robot blueprint world))))
 
-;; Another thread may settle the same robot meanwhile: who owns the world decides.
+(defun resident-p (world)
+  "True if WORLD is the one that top-level code works in, of a map that no other has replaced."
+  (let ((map (world-map world)))
+    (and (eq world (map-resident map))
+         (eq map (find-map (map-name map) nil)))))
+
+;; Another thread may settle the same robot meanwhile: who owns the world decides. It may also have
+;; put another world in the place of this one: then that is the one to settle in.
 (defun settle-robot (blueprint)
   "Put a robot made by BLUEPRINT into the resident world of its map, instead of any that was made by
 an earlier definition of its name, and return it; the one that is there already, if any."
-  (let* ((world (map-resident-world (find-map (blueprint-map blueprint))))
-         (robot nil))
-    (check-start blueprint (world-map world))
-    (unless (robot-made-by blueprint world)
-      (take-out-all (blueprint-name blueprint) "it has been defined anew"))
-    (ask-owner world (lambda () (setf robot (settle-in world blueprint))))
-    robot))
+  (loop
+    (let ((world (map-resident-world (find-map (blueprint-map blueprint)))) (robot nil))
+      (check-start blueprint (world-map world))
+      (unless (robot-made-by blueprint world)
+        (take-out-all (blueprint-name blueprint) "it has been defined anew"))
+      (ask-owner world (lambda ()
+                         (when (resident-p world) (setf robot (settle-in world blueprint)))))
+      (when robot (return robot)))))
 
 (defmethod take-back ((blueprint blueprint))
   (take-out-all (blueprint-name blueprint) "its definition has been taken back"))

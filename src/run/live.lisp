@@ -23,27 +23,34 @@
 RESUME. Plans have a thread as well if REAL is true and thinking is not charged for. Return
 SIMULATION. Signals MISUSE if it runs live already, WRONG-ARGUMENT for a rate that is neither a
 positive number nor :FREE."
-  (check-not-over simulation 'start-clock)
   (check-parameters)
-  (setf (simulation-output simulation) (editors-output)
-        (simulation-plans-dice-p simulation) t
-        *echo-output* (simulation-output simulation))
-  (asking (simulation)
-    (give-threads (simulation-timeline simulation) real)
-    (start-pacing (simulation-timeline simulation)
-                  (lambda () (tick simulation))
-                  (lambda () (idle-p simulation))
-                  rate
-                  ;; What users' code reads and prints there, also in a debugger, is as here.
-                  (spread-specials (lambda (function) (call-as-owner simulation function))
-                                   '*package*)
-                  :paused-p paused-p))
+  (let ((output (editors-output))
+        ;; What users' code reads and prints there, also in a debugger, is as here.
+        (caller (spread-specials (lambda (function) (call-as-owner simulation function))
+                                 '*package*)))
+    (asking (simulation)
+      (check-not-over simulation 'start-clock)
+      (setf (simulation-output simulation) output
+            *echo-output* output
+            (simulation-plans-dice-p simulation) t)
+      (give-threads (simulation-timeline simulation) real)
+      (start-pacing (simulation-timeline simulation)
+                    (lambda () (tick simulation))
+                    (lambda () (idle-p simulation))
+                    rate caller :paused-p paused-p)))
   simulation)
 
 (defun stop-clock (simulation)
   "End the thread of the live SIMULATION after its current tick and wait for that. Commands under
-way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
-  (stop-pacing (simulation-timeline simulation))
+way stay as they are; START-CLOCK goes on with them. If it was rewound, stop what goes on in its
+place. Return SIMULATION."
+  (let ((timeline (simulation-timeline simulation)))
+    (stop-pacing timeline)
+    ;; A thread that is rewinding it looks for this last, after it has let it have a successor.
+    (unclaim-pacing timeline)
+    (let ((latest (latest simulation)))
+      (unless (eq simulation latest)
+        (call-alone (simulation-timeline latest) (constantly nil)))))
   simulation)
 
 (addition await-idle)
@@ -89,6 +96,15 @@ has failed."
 
 ;;; Which robot is meant.
 
+;;; One rule for threads that start, stop and replace simulators.
+;;; - Only the thread that has a world in custody changes which run the world has, whether that is
+;;;   over, which thread passes its ticks, whether the world is resident in its map, and which robot
+;;;   there a name means. Another thread may only tell the one that passes ticks to stop.
+;;; - Worlds and runs that follow one another in a map share one custody.
+;;; - A thread that has got custody looks again. It starts and settles nothing in a run that is
+;;;   over, in a world that is no longer resident, or for a retired robot; it looks up what is there
+;;;   now.
+
 (defun blueprints-in (map)
   "Return the blueprints of the robots that are defined in MAP."
   (remove map (all-blueprints)
@@ -120,12 +136,21 @@ One whose map or definition has been replaced means the robot that is called so 
   "Let the variable of BLUEPRINT's name hold ROBOT at top level."
   (setf (global-value (blueprint-name blueprint)) robot))
 
+(defun settle-by-name (blueprint)
+  "Return the robot that SETTLE-ROBOT returns for BLUEPRINT, after letting its name mean it."
+  (loop
+    (let ((robot (settle-robot blueprint)))
+      ;; A thread that has replaced its world meanwhile has retired it.
+      (asking (robot)
+        (unless (robot-retired robot) (set-robot blueprint robot)))
+      (unless (robot-retired robot) (return robot)))))
+
 (defun find-again (name)
   "Return the robot called NAME now, made anew if that has not been possible before."
   (let* ((blueprint (find-blueprint name))
          (robot (blueprint-robot blueprint)))
     (if (or (null robot) (robot-retired robot))
-        (set-robot blueprint (settle-robot blueprint))
+        (settle-by-name blueprint)
         robot)))
 
 ;;; Starting and stopping.
@@ -171,9 +196,9 @@ told to stop."
 is what it is doing already, and FUNCTION has been called on the way."
   (when (eq (current-thread) (custody-starter custody))
     (reject-use "simulator: this world is being started already."))
-  (setf (custody-starter custody) (current-thread))
   (in-any-case
-    (funcall function)
+    (progn (setf (custody-starter custody) (current-thread))
+           (funcall function))
     ;; Another thread may have stopped it meanwhile and be starting it again.
     (swap-if (custody-starter custody) (current-thread) nil)))
 
@@ -211,9 +236,9 @@ Return the run."
 
 (defun in-replaced-map-p (robot)
   "True if ROBOT is in the world of a map that another has replaced, perhaps while it was made."
-  (let* ((world (robot-world robot)) (map (world-map world)))
-    (and (eq world (map-resident map))
-         (not (eq map (find-map (map-name map) nil))))))
+  (let ((world (robot-world robot)))
+    (and (eq world (map-resident (world-map world)))
+         (not (resident-p world)))))
 
 (defun start-live (robot rate seed journal keep thinking)
   "Run the world of ROBOT as START-WORLD does. True unless ROBOT has been replaced meanwhile."
@@ -256,6 +281,7 @@ MISUSE if the robot no longer fits into its map. See reading 238."
 (addition stop-simulator)
 (defun stop-simulator (&optional (simulation (current-simulation)))
   "Stop the live SIMULATION, which may be given as one of its robots, after its current tick. What
-is under way stays pending. Return nothing. See reading 89."
+is under way stays pending. If SIMULATION was rewound, stop what goes on in its place. Return
+nothing. See reading 89."
   (stop-clock (simulation-meant simulation 'stop-simulator))
   (values))

@@ -30,15 +30,35 @@
           (leave-out (blueprint-name blueprint)
                      (format nil "it does not fit into the new map ~(~A~), as ~A; define it anew"
                              (map-name map) trouble))
-          (set-robot blueprint (settle-robot blueprint))))))
+          (settle-by-name blueprint)))))
 
 (defun end-world (world reason)
   "End whatever run WORLD has, and let its robots take no more commands, for REASON. Nobody can
-start it meanwhile, nor afterwards."
+start it meanwhile, nor afterwards. True unless another world is resident in its map by now."
   (call-alone (ensure-timeline world)
               (lambda ()
-                (retire-robots (world-robots world) reason)
-                (end-simulation (world-simulation world) reason))))
+                (when (eq world (map-resident (world-map world)))
+                  (retire-robots (world-robots world) reason)
+                  (end-simulation (world-simulation world) reason)
+                  t))))
+
+(defun end-resident (map reason)
+  "End the resident world of MAP, which another map has replaced, for REASON."
+  ;; A thread may rewind its run meanwhile, which makes another world resident.
+  (loop until (end-world (map-resident map) reason)))
+
+;; If a time limit comes meanwhile, the old world must not be left live: nobody could find it.
+(defun end-in-any-case (map reason)
+  "Do what END-RESIDENT does, at once or, if this thread is interrupted, when the world stands
+still."
+  (let ((done-p nil))
+    (deferring-interrupts
+      (unwind-protect (allowing-interrupts
+                        (end-resident map reason)
+                        (setf done-p t))
+        (unless done-p
+          (have-done (ensure-timeline (map-resident map))
+                     (lambda () (end-resident map reason))))))))
 
 (defmethod map-replaced ((old map) new)
   (let* ((world (map-resident old))
@@ -47,7 +67,7 @@ start it meanwhile, nor afterwards."
          (reason (if new "its map has been defined anew" "its map has been taken back")))
     (when world
       (say-stopped old simulation new)
-      (end-world world reason))
+      (end-in-any-case old reason))
     (when new (move-robots new))))
 
 (defmethod map-replaced ((old null) (new map))

@@ -123,6 +123,7 @@ it, and the tick at which plans strayed on the way, or NIL."
 
 (defun hand-over-looks (new old)
   "Let NEW have what OLD has of those outside: who looks on, the gate, the messages."
+  (succeed-in-line new old)
   (setf (simulation-observers new) (simulation-observers old)
         (simulation-gate new) (simulation-gate old)
         (simulation-messages new) (simulation-messages old)
@@ -134,7 +135,6 @@ it, and the tick at which plans strayed on the way, or NIL."
   (let ((reason (format nil "it was rewound to tick ~D, and another run goes on from there: ~
                              *SIMULATION*, where it was rewound"
                         (simulation-tick new))))
-    (succeed-in-line new old)
     (retire-robots (simulation-robots old) reason)
     (end-simulation old reason)
     (setf (simulation-past old) nil)))
@@ -149,37 +149,50 @@ it, and the tick at which plans strayed on the way, or NIL."
   "Let NEW be, in all respects, what OLD, which had come to the tick FROM, was."
   (let ((resident-p (not (headless-p old)))
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
-    (hand-over-errors new old)
     (note-rewound from new)
     (when current-p (set-variables new old))
     (when resident-p (settle-in-map new))
     (unless (fork-p old)
       (setf (simulation-environment new) '()
             (simulation-variables new) (simulation-variables old)
-            (timeline-fork-p (simulation-timeline new)) nil))))
+            (timeline-fork-p (simulation-timeline new)) nil))
+    (hand-over-errors new old)))
 
 (defun take-the-place (new old then)
   "Let NEW go on in the place of OLD, which this thread has in custody; at last call THEN. Programs
-are told that OLD is over; wherever they throw, NEW goes on."
+are told that OLD is over; wherever they throw, and whatever interrupts this thread, NEW goes on."
   (check-not-over old 'rewind)
   (let ((from (simulation-tick old)))
-    (hand-over-looks new old)
+    (share-custody (simulation-timeline new) (simulation-timeline old))
     (in-any-case
+      (deferring-interrupts (hand-over-looks new old))
       (end-rewound old new)
-      (succeed-to new old from)
+      (deferring-interrupts (succeed-to new old from))
       (funcall then))))
 
+(defun start-in-place (new old rate paused-p)
+  "Let NEW, which has taken the place of OLD, be live at RATE as that was; unless somebody has
+stopped OLD meanwhile."
+  (when (claimed-p (simulation-timeline old))
+    (start-clock new :rate rate :paused-p paused-p
+                     :real (eq :real (simulation-thinking new)))))
+
 (defun replace-run (new old)
-  "Let NEW go on in the place of OLD, live if that is. Return NEW."
-  (let ((live-p (live-p old)) (rate (simulation-rate old)) (paused-p (paused-p old)))
-    (call-alone (simulation-timeline old)
-                (lambda ()
-                  (take-the-place
-                   new old
-                   (lambda ()
-                     (when live-p
-                       (start-clock new :rate rate :paused-p paused-p
-                                        :real (eq :real (simulation-thinking new))))))))
+  "Let NEW go on in the place of OLD, live if that is. Return NEW. Signals MISUSE if OLD is over,
+and releases NEW."
+  (let* ((timeline (simulation-timeline old))
+         (rate (simulation-rate old)) (paused-p (paused-p old))
+         (live-p (claim-pacing timeline))
+         (done-p nil))
+    (unwind-protect
+         (call-alone timeline
+                     (lambda ()
+                       (take-the-place new old
+                                       (lambda ()
+                                         (setf done-p t)
+                                         (when live-p
+                                           (start-in-place new old rate paused-p))))))
+      (unless done-p (release-fork new)))
     new))
 
 ;;; What the journal says of it.

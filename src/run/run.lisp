@@ -195,6 +195,16 @@ SEED. See reading 218."
   (call-each (lambda (request) (perform request timeline)) (take-requests timeline))
   (abandon timeline (mapcan #'robot-resources robots)))
 
+;; A time limit may come at any moment: that must not keep plans from hearing of the end.
+(defun tell-of-end (simulation)
+  "Let the robots and participants of SIMULATION, which is over, know that. Interrupts wait, but
+while users' code and participants are at work."
+  (in-any-case
+    (call-each #'close-robot (simulation-robots simulation))
+    (call-each (lambda (participant)
+                 (allowing-interrupts (participant-end participant simulation)))
+               (simulation-participants simulation))))
+
 (defun end-simulation (simulation reason)
   "End the run of SIMULATION for good, for REASON, a sentence without its full stop. Whatever was
 asked of its robots, and is under way or has not even begun, is interrupted; nothing can be asked of
@@ -205,11 +215,10 @@ it any more."
      timeline
      (lambda ()
        (unless (timeline-over timeline)
-         (setf (timeline-over timeline) reason)
-         (stop-pacing timeline)
          (let ((*message-queue* (simulation-messages simulation)))
-           (in-any-case
-             (call-each #'close-robot robots)
-             (call-each (lambda (participant) (participant-end participant simulation))
-                        (simulation-participants simulation))
-             (interrupt-all timeline robots))))))))
+           (deferring-interrupts
+             (setf (timeline-over timeline) reason)
+             (in-any-case
+               (stop-pacing timeline)
+               (tell-of-end simulation)
+               (allowing-interrupts (interrupt-all timeline robots))))))))))

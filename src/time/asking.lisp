@@ -32,6 +32,11 @@ world, and if FUNCTION is aborted."
   (setf (question-trouble question)
         (if (typep condition 'serious-condition) condition :aborted)))
 
+;; A user's thread that answers may itself be under a time limit: who has asked has no part in that.
+(defun for-asker-p (condition)
+  "True if CONDITION, signalled while this thread answers a question, is for the one who asked."
+  (or (own-thread-p) (not (typep condition 'time-limit))))
+
 (defun call-for-other (question)
   "Call the function of QUESTION, and note in it what comes of that."
   (setf (question-trouble question) :aborted)
@@ -46,7 +51,8 @@ world, and if FUNCTION is aborted."
                     (multiple-value-list (as-users-code ("what another thread has asked for")
                                            (funcall (question-function question))))
                     (question-trouble question) nil)))
-        (serious-condition (condition) (note-trouble question condition)))
+        ((and serious-condition (satisfies for-asker-p)) (condition)
+          (note-trouble question condition)))
     (abort () :report "Tell who asked that it was aborted.")))
 
 (defun answer (question)
@@ -93,3 +99,14 @@ world, and if FUNCTION is aborted."
       (await-answer question custody)
       (setf (question-given-up-p question) t))
     (result-of question)))
+
+(defun have-done (object function)
+  "Have FUNCTION called where the world of OBJECT stands still, as ASK does, but do not wait for
+that. Return nothing."
+  (let ((custody (timeline-custody (timeline-of object)))
+        (question (make-question (keeping-seclusion function))))
+    (deferring-interrupts
+      (atomic-push (lambda () (answer question)) (custody-questions custody))
+      ;; A thread that has custody answers before it gives that up.
+      (call-with-custody custody (constantly nil) (lambda () (wake-holder custody))))
+    (values)))

@@ -95,7 +95,8 @@
     (signal-semaphore (pacing-ended pacing))))
 
 (defun run-thread (pacing ready start)
-  "Signal READY as soon as whatever ends this thread finds it prepared; run PACING after START."
+  "Signal READY as soon as whatever ends this thread finds it prepared; run PACING after START, if
+the custody has been handed over by then."
   (let ((custody (pacing-custody pacing)))
     (let ((*held* (list custody))
           (*user-calls* (pacing-calls pacing)))
@@ -107,23 +108,40 @@
 
 ;;; Starting.
 
-(defun start-threads (pacing caller)
-  "Start the thread of PACING, and the one that watches it, which work inside CALLER."
-  (let ((custody (pacing-custody pacing))
-        (ready (make-semaphore "ready"))
-        (start (make-semaphore "start"))
-        (name (format nil "simulator of ~A" (timeline-name (pacing-timeline pacing)))))
+(defun make-threads (pacing caller ready start)
+  "Make the thread of PACING, which waits for START, and the one that watches it."
+  (let ((name (format nil "simulator of ~A" (timeline-name (pacing-timeline pacing)))))
     (setf (pacing-thread pacing)
           (start-thread (lambda ()
                           (funcall caller (lambda () (run-thread pacing ready start))))
                         name))
-    (wait-on-semaphore ready)
-    (setf (timeline-pacing (pacing-timeline pacing)) pacing
-          (custody-pacing custody) pacing)
-    (hand-over custody (pacing-thread pacing))
-    (signal-semaphore start)
     (start-thread (lambda () (funcall caller (lambda () (watch-for-hogs pacing))))
                   (format nil "watcher of the ~A" name))))
+
+(defun publish-pacing (pacing)
+  "Let others find PACING, and hand the custody of its world, which this thread has, to its thread."
+  (let ((custody (pacing-custody pacing)))
+    (setf (timeline-pacing (pacing-timeline pacing)) pacing
+          (custody-pacing custody) pacing)
+    (hand-over custody (pacing-thread pacing))))
+
+;; A time limit may come at any moment: then the threads end, or the world is live as if it had come
+;; a moment later. START is signalled in any case, so that no thread waits for it for ever.
+(defun start-threads (pacing caller)
+  "Start the thread of PACING, and the one that watches it, which work inside CALLER."
+  (let ((ready (make-semaphore "ready"))
+        (start (make-semaphore "start"))
+        (ready-p nil))
+    (deferring-interrupts
+      (in-any-case
+        (allowing-interrupts
+          (make-threads pacing caller ready start)
+          (wait-on-semaphore ready)
+          (setf ready-p t))
+        (if ready-p
+            (publish-pacing pacing)
+            (setf (pacing-stopping-p pacing) t))
+        (signal-semaphore start)))))
 
 (defun start-pacing (timeline tick idle-p rate caller &key paused-p)
   "Let a new thread pass ticks of TIMELINE at RATE by calling TICK, as long as IDLE-P is false, both

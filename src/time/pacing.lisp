@@ -30,6 +30,7 @@ what users' code the thread is in."
   (thread nil)
   (ended (make-semaphore "ended") :read-only t)
   (paused-p nil)
+  ;; True when it is to end: :REPLACED if another run is to go on and nobody has stopped this one.
   (stopping-p nil)
   ;; What it has failed by and is paused for, in words, or NIL.
   (trouble nil :type (or null string))

@@ -34,8 +34,9 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:timeline-thinking #:set-timeline-thinking
            #:give-threads #:thinking-charged-p #:thinking-budget #:timeline-real-p)
   ;; custody, asking
-  (:export #:custody-questions #:custody-starter #:answer-questions #:call-with-custody #:mine-p
-           #:ask #:asking)
+  (:export #:custody-questions #:custody-starter #:share-custody
+           #:answer-questions #:call-with-custody #:mine-p
+           #:ask #:asking #:have-done)
   ;; pacing, stopping, clock
   (:export #:answer-meanwhile)
   (:export #:timeline-thread #:pacer-p #:check-rate #:live-p #:paused-p #:clock-trouble #:pause
@@ -43,7 +44,7 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds*
            #:hog-seconds
            #:seconds-now #:users-code-under-way #:users-code-broken-p #:abort-hog #:stop-pacing
-           #:call-alone
+           #:claim-pacing #:claimed-p #:unclaim-pacing #:call-alone
            #:start-pacing)
   ;; schedule
   (:export #:schedule #:call-scheduled #:abandon #:grab-resource #:release-resource

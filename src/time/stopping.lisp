@@ -40,10 +40,26 @@ again if it does not go. Signals MISUSE if that does not help either."
 
 (defun stop (pacing)
   "End the thread of PACING after its current tick, and wait for that if it is another than this."
-  (setf (pacing-stopping-p pacing) t)
+  (swap-if (pacing-stopping-p pacing) nil t)
   (wake pacing)
   (unless (eq (pacing-thread pacing) (current-thread))
     (await-end pacing)))
+
+(defun claim-pacing (timeline)
+  "Tell the thread that paces TIMELINE to end after its current tick, as this thread is to replace
+the run. True if it was live, and nobody else had told it to end."
+  (let ((pacing (timeline-pacing timeline)))
+    (and pacing (swap-if (pacing-stopping-p pacing) nil :replaced))))
+
+(defun claimed-p (timeline)
+  "True if CLAIM-PACING has returned true for TIMELINE, and UNCLAIM-PACING was not called since."
+  (let ((pacing (timeline-pacing timeline)))
+    (and pacing (eq :replaced (pacing-stopping-p pacing)))))
+
+(defun unclaim-pacing (timeline)
+  "Let what may be about to replace the run of TIMELINE not be live: somebody has stopped that."
+  (let ((pacing (timeline-pacing timeline)))
+    (when pacing (swap-if (pacing-stopping-p pacing) :replaced t))))
 
 (defun stop-pacing (timeline)
   "End the thread that paces TIMELINE after its current tick, and wait for that if it is another

@@ -56,6 +56,11 @@ it follows another in the same world.")
   (print-unreadable-object (timeline stream :type t)
     (format stream "~A at tick ~D" (timeline-name timeline) (timeline-tick timeline))))
 
+(defun share-custody (new old)
+  "Let the timeline NEW, which no other thread knows yet, be in the custody of OLD, which it is to
+follow: a thread that has waited for that gets it when NEW is in the place of OLD."
+  (setf (timeline-custody new) (timeline-custody old)))
+
 (defgeneric timeline-of (object)
   (:documentation "Return the timeline of OBJECT: a run, a world with robots in it, a robot or a
 part of one. A timeline is its own. Signals WRONG-ARGUMENT for what has none.")

@@ -98,10 +98,10 @@ NEW if OLD was undefined. The layer above ends what goes on in OLD.")
 
 (defun register-map (map)
   "Let the name of MAP mean MAP (reading 61)."
-  (let ((old (definition-to-replace (map-name map) *maps*)))
-    (register *maps* (map-name map) map :variable t)
-    (map-replaced old map)
-    map))
+  (deferring-interrupts
+    (let ((old (nth-value 1 (register *maps* (map-name map) map :variable t))))
+      (map-replaced old map)))
+  map)
 
 (defun map-form (form environment)
   "Return a form for what FORM, given in ENVIRONMENT where a map is wanted, stands for: its value,

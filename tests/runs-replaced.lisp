@@ -1,0 +1,230 @@
+;;;; runs-replaced.lisp -- several threads start, stop and replace one world's simulator.
+
+(in-package :ars-magna.tests)
+(in-suite runs)
+
+;;; Each test puts one thread where another can come between, by a wrapper of the function that is
+;;; called there. What comes between is the same in every run.
+
+(defun call-wrapped-once (name between function)
+  "Call FUNCTION. Where NAME, a function's name, is called first, BETWEEN is called instead, with
+that function and its arguments."
+  (let ((left 1))
+    (host:wrap-function name
+                        (lambda (wrapped &rest arguments)
+                          (if (minusp (decf left))
+                              (apply wrapped arguments)
+                              (apply between wrapped arguments)))
+                        'test)
+    (unwind-protect (funcall function)
+      (host:unwrap-function name 'test))))
+
+(defmacro coming-between ((name lambda-list &body between) &body body)
+  "Run BODY. Where the function NAME is called first, run BETWEEN instead; LAMBDA-LIST binds that
+function and its arguments."
+  `(call-wrapped-once ',name (lambda ,lambda-list ,@between) (lambda () ,@body)))
+
+(defmacro interrupted (&body body)
+  "Run BODY, which LEAVE leaves, as a time limit would. Return :LEFT if it was left."
+  `(catch 'left ,@body))
+
+(defun leave () (throw 'left :left))
+
+(defun interrupt-here ()
+  "Interrupt this thread, as a time limit would: it leaves when interrupts are let in."
+  (sb-thread:interrupt-thread sb-thread:*current-thread* #'leave))
+
+(defun ends-p (thread)
+  "True if THREAD ends within some seconds."
+  (await (lambda () (not (base:thread-alive-p thread)))))
+
+(defun start-dray (&rest options)
+  (apply #'run:simulator 'dray :display nil :rate :free options))
+
+(defmacro with-yard (() &body body)
+  "Run BODY where DRAY is in a map of its own, and nothing of what BODY does is left afterwards."
+  `(with-messages
+     (base:with-own-definitions ()
+       (handler-bind ((warning #'muffle-warning))
+         (world:define-map 'coach-yard 9 9)
+         (robot:define-robot 'dray 'coach-yard '(3 3) 0)
+         ,@body))))
+
+(defun thread-of-dray ()
+  (run:simulation-thread (run:robot-simulation (symbol-value 'dray))))
+
+;;; A start that is interrupted.
+
+(test simulator.left-while-its-thread-begins-leaves-none
+  (with-yard ()
+    (let ((threads '()))
+      (is (eq :left
+              (coming-between (base:start-thread (start function name)
+                         (push (funcall start function name) threads)
+                         (leave))
+                (interrupted (start-dray)))))
+      (is (= 1 (length threads)))
+      (is-true (every #'ends-p threads))
+      (is (null (thread-of-dray)))
+      (start-dray)
+      (is-true (thread-of-dray)))))
+
+(test simulator.interrupted-at-the-hand-over-is-live
+  (with-yard ()
+    (is (eq :left
+            (coming-between (time::hand-over (hand-over &rest arguments)
+                       (interrupt-here)
+                       (apply hand-over arguments))
+              (interrupted (start-dray)))))
+    (let ((thread (thread-of-dray)))
+      (is-true thread)
+      (finishes (run:stop-simulator (symbol-value 'dray)))
+      (is-true (ends-p thread)))))
+
+(test plans.left-while-their-thread-begins-get-another
+  (with-yard ()
+    (let ((driver::*interface* nil))
+      (start-dray)
+      (driver:rpl-init-robot (symbol-value 'dray))
+      (is (eq :left
+              (coming-between (base:start-thread (start function name)
+                         (declare (ignore start function name))
+                         (leave))
+                (interrupted (driver:begin-plan (rpl:make-plan '(rpl:wait-time 1)))))))
+      (is (eq :succeeded (nth-value 1 (driver:run-plan (rpl:make-plan '(rpl:wait-time 1)))))))))
+
+;;; A rewind, and what comes between.
+
+(defun start-and-pass (ticks)
+  "Start the simulator of DRAY, let TICKS pass, and return the run, paused."
+  (start-dray :keep t :journal t)
+  (time:pause)
+  (time:let-pass ticks time:*simulation*)
+  (awaiting (= ticks (run:simulation-tick)))
+  time:*simulation*)
+
+(test rewind.robots-found-meanwhile-are-those-of-the-run-that-goes-on
+  "Another thread looks for the robot when those of the run that is over take no more commands."
+  (with-yard ()
+    (let* ((old (start-and-pass 3)) (found nil) (thread nil)
+           (custody (time:timeline-custody (run:simulation-timeline old))))
+      (coming-between (run::end-rewound (end old new)
+                 (funcall end old new)
+                 (setf thread (base:start-thread (lambda () (setf found (run::find-again 'dray)))
+                                                 "finds the robot"))
+                 (awaiting (time:custody-questions custody)))
+        (run:rewind 1))
+      (is-true (ends-p thread))
+      (is-true (world:map-resident (world:find-map 'coach-yard)))
+      (is (eq (world:map-resident (world:find-map 'coach-yard)) (robot:robot-world found)))
+      (is (eq found (symbol-value 'dray))))))
+
+(test rewind.of-a-run-that-is-stopped-meanwhile-is-not-live
+  (with-yard ()
+    (let ((old (start-and-pass 3)))
+      (coming-between (run::end-rewound (end old new)
+                 (funcall end old new)
+                 (run:stop-simulator old))
+        (run:rewind 1))
+      (is-false (time:live-p (run:latest old))))))
+
+(test stop-simulator.of-a-run-that-was-rewound-stops-what-goes-on
+  (with-yard ()
+    (let* ((old (start-and-pass 3)) (new (run:rewind 1)))
+      (is-true (time:live-p new))
+      (run:stop-simulator old)
+      (is-false (time:live-p new)))))
+
+(test rewind.that-is-interrupted-puts-all-of-the-run-in-its-place
+  (with-yard ()
+    (let ((old (start-and-pass 3)))
+      (is (eq :left
+              (coming-between (run::note-rewound (note &rest arguments)
+                         (interrupt-here)
+                         (apply note arguments))
+                (interrupted (run:rewind 1)))))
+      (let ((new (run:latest old)))
+        (is (not (eq old new)))
+        (is (eq (run:simulation-world new) (world:map-resident (world:find-map 'coach-yard))))
+        (is (eq (run:simulation-world new) (robot:robot-world (symbol-value 'dray))))
+        (run:stop-simulator (symbol-value 'dray))
+        (is-false (time:live-p new))))))
+
+(test start-clock.of-a-run-that-is-over-meanwhile-is-refused
+  (with-yard ()
+    (start-dray)
+    (run:stop-simulator)
+    (let ((old time:*simulation*))
+      (time:let-pass 0 old)
+      (coming-between (run::check-parameters (check &rest arguments)
+                 (run::end-simulation old "the test has ended it")
+                 (apply check arguments))
+        (signals base:misuse (run:start-clock old)))
+      (is-false (time:live-p old)))))
+
+;;; A map that is defined anew, and what comes between.
+
+(test defmap.by-two-threads-ends-what-is-live-in-either-map
+  "The second thread defines and starts when the first knows the map that it is to replace."
+  (with-yard ()
+    (let ((thread nil))
+      (flet ((define-and-start ()
+               (handler-bind ((warning #'muffle-warning))
+                 (world:define-map 'coach-yard 8 8)
+                 (start-dray)
+                 (setf thread (thread-of-dray)))))
+        (coming-between (base:register (register &rest arguments)
+                   (base:join-thread (base:start-thread #'define-and-start "defines"))
+                   (apply register arguments))
+          (world:define-map 'coach-yard 7 7)))
+      (is-true thread)
+      (is-true (ends-p thread))
+      (is (= 7 (world:map-width (world:find-map 'coach-yard)))))))
+
+(test defmap.that-is-interrupted-ends-what-is-live-in-the-old-map
+  (with-yard ()
+    (start-dray)
+    (let ((thread (thread-of-dray)))
+      (is (eq :left (coming-between (run::end-world (&rest arguments)
+                               (declare (ignore arguments))
+                               (leave))
+                      (interrupted (world:define-map 'coach-yard 7 7)))))
+      (is-true (ends-p thread)))))
+
+(test rewind.of-a-run-whose-map-is-defined-anew-leaves-none-live
+  "The map is defined anew when the run is about to be replaced."
+  (with-yard ()
+    (let* ((old (start-and-pass 3)) (thread nil)
+           (custody (time:timeline-custody (run:simulation-timeline old))))
+      (coming-between (run::end-rewound (end old new)
+                 (funcall end old new)
+                 (setf thread (base:start-thread
+                               (lambda ()
+                                 (handler-bind ((warning #'muffle-warning))
+                                   (world:define-map 'coach-yard 7 7)))
+                               "defines"))
+                 (awaiting (time:custody-questions custody)))
+        (run:rewind 1))
+      (is-true (ends-p thread))
+      (is-false (time:live-p (run:latest old)))
+      (is-true (run::simulation-over (run:latest old))))))
+
+;;; A time limit is that of the thread that has set it.
+
+(test asking.a-time-limit-is-not-for-whoever-asks
+  "It comes in a thread of a user's that answers another's question."
+  (with-yard ()
+    (let* ((robot (symbol-value 'dray)) (told nil) (thread nil)
+           (custody (time:timeline-custody (time:timeline-of robot))))
+      (flet ((ask ()
+               (setf told (handler-case (time:asking (robot) (error 'sb-ext:timeout))
+                            (base:misuse () :aborted)
+                            (sb-ext:timeout () :limit)))))
+        (is (eq :limit
+                (handler-case
+                    (time:asking (robot)
+                      (setf thread (base:start-thread #'ask "asks"))
+                      (awaiting (time:custody-questions custody)))
+                  (sb-ext:timeout () :limit)))))
+      (is-true (ends-p thread))
+      (is (eq :aborted told)))))
