@@ -58,7 +58,8 @@ nobody has damaged."
 (defparameter *words-of-lisp*
   '("is not of type" "unbound" "invalid number of arguments" "arguments to" "destructuring"
     "while parsing" "undefined" "The value" "not a string designator" "Malformed"
-    "odd number of &KEY" "arithmetic error" "bogus" "illegal" "Can't decode")
+    "odd number of &KEY" "arithmetic error" "divided by 0" "loating-point"
+    "bogus" "illegal" "Can't decode")
   "Words that show that Lisp speaks, of something that it was given by us.")
 
 (defun text-of (condition)

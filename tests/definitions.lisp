@@ -122,6 +122,17 @@
           (run:run-ticks 40))
         (is (plusp count) "the kicker is as it was")))))
 
+(defvar *one-thing* 1)
+(defvar *another-thing* 2)
+
+(test own-definitions.set-back-what-is-current-in-whatever-order
+  "A file that is loaded again meanwhile may list the variables in another order."
+  (let ((base:*kept-variables* (list* '*one-thing* '*another-thing* base:*kept-variables*)))
+    (base:with-own-definitions ()
+      (setf *one-thing* 3)
+      (setf base:*kept-variables* (reverse base:*kept-variables*)))
+    (is (equal '(1 2) (list *one-thing* *another-thing*)))))
+
 (test own-definitions.can-be-made-again
   (with-own-definitions
     (base:with-own-definitions () (define-all-kinds))

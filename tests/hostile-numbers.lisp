@@ -55,6 +55,7 @@
   (remove-if-not (lambda (text)
                    (some (lambda (words) (search words text))
                          '("arithmetic" "FLOATING-POINT" "DIVISION" "is not of type"
+                           "divided by 0" "floating-point"
                            "The value" "is not a ")))
                  (mapcar #'base:message-text (base:take-messages))))
 

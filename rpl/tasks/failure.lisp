@@ -77,7 +77,7 @@ innermost first.")
 (defun failure-text (failure)
   "Return what FAILURE, or another condition, reports: of what is deep, long or circular a part; its
 type if that signals an error."
-  (reporting (failure) (format-briefly nil "~A" failure)))
+  (reporting (failure) (or (our-text failure) (format-briefly nil "~A" failure))))
 
 (defun failure-type-p (object)
   (and (symbolp object)

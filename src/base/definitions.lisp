@@ -170,7 +170,7 @@ the user is asked again."
                  (or (missing-name condition)
                      (append (head (defining-form *definition*)) (list +more+)))
                  (format nil "forms that have values (~A)"
-                         (string-right-trim "." (princ-to-string condition)))))
+                         (string-right-trim "." (text-of-condition condition)))))
 
 (defun call-blaming-author (function)
   "Call FUNCTION, which carries out the definition at hand. Errors that are not ours are mistakes in

@@ -46,14 +46,15 @@ of its variable if there is one."
 
 (defun call-with-own-definitions (function)
   "Call FUNCTION; see WITH-OWN-DEFINITIONS."
-  (let ((outer (claim-definitions))
-        (values (mapcar #'symbol-value *kept-variables*))
-        (kept (loop for registry in *registries*
-                    collect (cons registry (mapcar #'keep-entry (registry-entries registry))))))
+  (let* ((outer (claim-definitions))
+         (variables *kept-variables*)
+         (values (mapcar #'symbol-value variables))
+         (kept (loop for registry in *registries*
+                     collect (cons registry (mapcar #'keep-entry (registry-entries registry))))))
     (unwind-protect (funcall function)
       (loop for (registry . entries) in kept
             do (restore-registry registry entries))
-      (mapc #'set *kept-variables* values)
+      (mapc #'set variables values)
       (setf *own-definitions-thread* outer))))
 
 (addition with-own-definitions)

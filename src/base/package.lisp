@@ -92,8 +92,9 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*heir*
            #:*debugger-refused-p*)
   ;; telling
-  (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
-           #:text-of-condition #:one-line-text #:point-in-text #:hundredths #:editors-output)
+  (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
+           #:reading-trouble #:text-of-condition #:one-line-text #:point-in-text #:hundredths
+           #:editors-output)
   ;; breaking-lines
   (:export #:wrapped-text)
   ;; ordering

@@ -86,15 +86,20 @@ streams that no user knows."
 
 (defun own-text (condition)
   "Return what CONDITION, or another object, says of itself; an empty text if it cannot."
-  (handler-case (format-briefly nil "~A" condition)
+  (handler-case (without-reference (format-briefly nil "~A" condition))
     ((or error storage-condition) () "")))
+
+(defun our-text (condition)
+  "Return what CONDITION, which Lisp itself has signalled, means to a user, in words that are the
+same on every version of SBCL; NIL if we have none."
+  (cond ((typep condition 'storage-condition) (storage-text condition))
+        ((reader-p condition)
+         (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
+        (t (lisp-error-text condition))))
 
 (defun text-of-condition (condition)
   "Return what CONDITION says, or what it is if it cannot say that."
-  (let ((text (cond ((typep condition 'storage-condition) (storage-text condition))
-                    ((reader-p condition)
-                     (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
-                    (t (own-text condition)))))
+  (let ((text (or (our-text condition) (own-text condition))))
     (if (string= text "") (string-downcase (type-of condition)) text)))
 
 (defun hundredths (number)

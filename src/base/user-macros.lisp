@@ -17,7 +17,7 @@
                  (abridged form)
                  (format nil "~A~@[ (~A)~]" expected
                          (and condition
-                              (abridged (string-right-trim "." (princ-to-string condition)))))))
+                              (abridged (string-right-trim "." (text-of-condition condition)))))))
 
 (defun call-blaming-form (function form)
   "Call FUNCTION, which expands FORM. Errors that are not ours are mistakes in what the author wrote

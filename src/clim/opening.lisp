@@ -92,8 +92,7 @@ goes on, if it does, and how it is seen again."
   (format nil "The window of ~A has closed: ~A~:[~;. The run goes on; the ~
                line WINDOW opens it anew~]"
           (shown-robot window)
-          (one-line (handler-case (princ-to-string condition)
-                      (error () (string (type-of condition)))))
+          (one-line (text-of-condition condition))
           (and (window-simulation window) (not (over-p window)))))
 
 (defun warn-of-closing (window condition)

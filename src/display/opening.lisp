@@ -27,6 +27,6 @@ to get one. The option :DISPLAY NIL of SIMULATOR leaves both out."
   (when (getf options :display t)
     (handler-case (open-display robot)
       (error (condition)
-        (out (substitute #\Space #\Newline (princ-to-string condition)) t)))))
+        (out (one-line (text-of-condition condition)) t)))))
 
 (pushnew 'announce-display *simulator-hooks*)

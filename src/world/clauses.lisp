@@ -41,7 +41,7 @@ which expected EXPECTED there."
     (error (condition)
       (reject-clause definition clause
                      (format nil "~A (~A~@[; there is ~A~])" expected
-                             (string-right-trim "." (princ-to-string condition))
+                             (string-right-trim "." (text-of-condition condition))
                              (namesake (missing-name condition)))))))
 
 (defun public-variable-p (symbol)

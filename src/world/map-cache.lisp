@@ -152,14 +152,14 @@ or damaged, or that cannot be told."
                 (warn-of-cache map path trouble)
                 (restore-map map words)))))
     (error (condition)
-      (warn-of-cache map path (format nil "cannot be read (~A)" condition))
+      (warn-of-cache map path (format nil "cannot be read (~A)" (text-of-condition condition)))
       nil)))
 
 (defun write-cache (map path key)
   (handler-case (write-words (map-words map key) path)
     (error (condition)
       (warning-set "The cache " (native-name path) " of map " (map-name map)
-                   " cannot be written: " (princ-to-string condition)))))
+                   " cannot be written: " (text-of-condition condition)))))
 
 (defun keepable-p (map)
   "True if MAP is to be kept, and its places depend on no user code."
