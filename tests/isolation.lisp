@@ -53,11 +53,19 @@
   (loop for map in (world:all-maps)
         when (world:map-resident map) collect it))
 
+;; A run whose plans were not ended would leave them with the robot, to end with a later run of it.
+(defun stop-run (timeline)
+  "Stop who paces TIMELINE. If plans take part in its run, end that, and so them."
+  (time:stop-pacing timeline)
+  (let ((run (time:timeline-run timeline)))
+    (when (and run (run:simulation-participants run))
+      (run:end-simulation run "the test that started it has ended"))))
+
 (defun stop-all ()
   "End what runs live in resident worlds, and its plans."
   (when driver::*interface* (driver::close-interface driver::*interface*))
   (dolist (world (resident-worlds))
-    (when (world:world-timeline world) (time:stop-pacing (world:world-timeline world)))))
+    (when (world:world-timeline world) (stop-run (world:world-timeline world)))))
 
 (defun renew-world (world)
   "Make the resident WORLD as if nothing had ever happened in it."

@@ -85,14 +85,14 @@
   (define-for-test (:robots ars-worlds:dot)
     (:vary (what 'type 'plan 'stack))
     (:run (ecase what
-            (type (elt (list 1 2) 'far))
+            (type (+ 1 (first (list what))))
             (plan (driver:run-plan (rpl:interp-lambda () (rpl:wait-time 1) (car 'far))))
             (stack (driver:run-plan (rpl:interp-lambda ()
                                       (rpl:wait-time 1)
                                       (labels ((dig (n) (1+ (dig n)))) (dig 1))))))))
   (let ((stack (format nil "The stack has overflowed: functions call each other too deeply, or ~
                             lists stand too deeply in lists. Mend what has no end.")))
-    (is (equal (list "The value FAR is not a number." "The value FAR is not a list." stack)
+    (is (equal (list "The value TYPE is not a number." "The value FAR is not a list." stack)
                (mapcar #'sixth (rows-of (experiment:run-experiment 'question :trials 1
                                                                              :stream nil)))))))
 

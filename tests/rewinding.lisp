@@ -329,6 +329,34 @@ as STATES say. GO-ON is called after each."
   (loop (driver:rpl-robot-turn 0.5)
         (rpl:wait-for driver:robot-stopped*)))
 
+(test rewind.is-not-kept-by-plans-of-a-run-that-nobody-ended
+  "The robot ends them with its new run, which is over by then: they withdraw no command from it."
+  (live-rover (:rate 500 :seed 2 :thinking :free)
+    (driver:rpl-init-robot rover)
+    (driver:begin-plan (rpl:interp-lambda ()
+                         (driver:rpl-robot-turn 1000)
+                         (rpl:wait-for driver:robot-stopped*)))
+    (awaiting (< 5 (tick-of-run)))
+    (run:stop-simulator)
+    (let ((driver::*interface* nil))
+      (renew-world (robot:robot-world rover))
+      (run:simulator 'rover :rate 500 :keep t :display nil)
+      (command:robot-turn rover 90)
+      (awaiting (< 5 (tick-of-run)))
+      (is (string= "no error" (trouble-of (lambda () (run:rewind 2))))))))
+
+(test isolation.ends-the-plans-of-live-runs
+  (let ((interface nil))
+    (call-isolated
+     (lambda ()
+       (run:simulator 'rover :rate 500 :display nil)
+       (driver:rpl-init-robot rover)
+       (driver:begin-plan 'turn-for-ever)
+       (setf interface (shiftf driver::*interface* nil))))
+    (is-true (run:simulation-over (driver::interface-simulation interface)))
+    (awaiting (null (driver::thread-of interface)))
+    (is (null (driver::tasks-of interface)))))
+
 (test rewind.live-plans-go-on
   (live-rover (:rate 500 :seed 2)
     (driver:rpl-init-robot rover)

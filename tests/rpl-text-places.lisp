@@ -110,7 +110,8 @@
         "~A" failure)))
 
 (test nearest-names.one-letter-is-like-no-other
-  (let ((texts (texts-of (said-compiling "(def-interp-proc n2 () (wait-time 1) (q 1))"))))
+  (let ((texts (texts-of (said-compiling "(def-interp-proc p (x) (wait-time x))
+                                          (def-interp-proc n2 () (wait-time 1) (q 1))"))))
     (is (= 1 (length texts)))
     (is (null (search "Did you mean" (first texts))) "~S" texts)))
 

@@ -23,8 +23,10 @@ like any other."
         (push symbol names)))))
 
 (defun nearest-operator (name)
-  "Return what that of the known operators is called which NAME may be meant for, or NIL."
-  (let ((nearest (nearest-name name (known-operators))))
+  "Return what that of the known operators is called which NAME may be meant for, or NIL. A single
+letter is like no other."
+  (let ((nearest (and (< 1 (length (symbol-name name)))
+                      (nearest-name name (known-operators)))))
     (and nearest (plain-name nearest))))
 
 (defun check-fit (form lambda-list)

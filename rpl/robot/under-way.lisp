@@ -198,6 +198,18 @@ the trace knows of it."
 
 ;;; When a plan ends.
 
+;; Another thread may end the run at any time, and the robot may be in another run by now: then the
+;; end of the run has interrupted the command, or will.
+(defun withdraw-deed (deed interface)
+  "Have the command of DEED interrupted, unless the run of INTERFACE is over."
+  (let ((simulation (interface-simulation interface)))
+    (flet ((over-p ()
+             (or (simulation-over simulation)
+                 (not (eq simulation (robot-simulation (interface-robot interface)))))))
+      (unless (over-p)
+        (handler-case (withdraw-command (deed-resource deed) (deed-continuation deed))
+          (misuse (condition) (unless (over-p) (error condition))))))))
+
 ;; What was issued to clean up is meant to last.
 (defun interrupt-deeds (interface task)
   "Interrupt what the top-level TASK, which has not succeeded, has asked for and is under way."
@@ -207,6 +219,5 @@ the trace knows of it."
                (eq task (task-top (deed-task deed)))
                (not (deed-cleanup-p deed))
                (not (command-instant-p (deed-command deed))))
-      (unless (simulation-over (interface-simulation interface))
-        (withdraw-command (deed-resource deed) (deed-continuation deed)))
+      (withdraw-deed deed interface)
       (tell-interrupted deed))))
