@@ -59,3 +59,30 @@ What the runner has cannot be read."
               (finishes (run::participant-digest interface (base:make-digest)))
            (base:signal-semaphore go-on)
            (base:join-thread thread)))))))
+
+;;; Plans that have stopped in a debugger.
+
+(defun call-with-editor-asking (function)
+  "Call FUNCTION, with a semaphore, as where an editor's debugger asks in a place of its own. A plan
+that breaks is stopped there until the semaphore is signalled."
+  (let ((before (base:common-debugger-hook)) (answered (base:make-semaphore "answered")))
+    (flet ((ask (condition hook)
+             (declare (ignore hook))
+             (base:wait-on-semaphore answered)
+             (continue condition)))
+      (setf (base:common-debugger-hook) #'ask)
+      (unwind-protect (base:with-debugger-hook (#'ask) (funcall function answered))
+        (setf (base:common-debugger-hook) before)))))
+
+(test published.plans-in-a-debugger-are-no-hogs
+  (call-with-editor-asking
+   (lambda (answered)
+     (live (simulation)
+       (driver:begin-plan (rpl:interp-lambda () (break "look")))
+       (let ((interface driver::*interface*))
+         (awaiting (driver::asks-p interface))
+         (let ((text (trouble-of #'driver:print-plans)))
+           (is-true (has-words-p text "stopped in a debugger" "plans of" "print-plans t t")
+                    "~A" text))
+         (base:signal-semaphore answered)
+         (awaiting (not (driver::asks-p interface))))))))

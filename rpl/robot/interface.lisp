@@ -51,6 +51,7 @@ SAVE-PLAN-TIMELINE.")
    (lock (make-lock "plans") t "what whoever touches the plans holds")
    (deeds-lock (make-lock "commands of plans") t "what whoever touches deeds or answers holds")
    (holder nil t "the thread that holds the lock, so that plans may start and end others")
+   (calls nil (or null user-calls) "what users' code that thread calls")
    (wanted 0 atomic-count "how many threads want the lock, or wait for all to rest")
    (thread nil t "the thread of plans that are live, or NIL")
    (wake-up (make-semaphore "plans") t "what wakes that thread")
@@ -117,11 +118,27 @@ for that, or some plan is ready. For any thread."
            (heard-from-outside-p (interface-runner interface)))
        t))
 
+(defun asks-p (interface)
+  "True if the thread of the plans of INTERFACE waits for an answer in a debugger. For any thread."
+  (let ((calls (interface-calls interface)))
+    (and calls (user-calls-origin calls) (user-calls-waiting-p calls))))
+
 (defun hog-of (interface)
   "Return the task that keeps the thread of the plans of INTERFACE, or NIL."
   ;; Whoever watches sees only at his next look that it has gone on.
   (let ((task (interface-hog interface)))
-    (and task (eq :running (task-state task)) task)))
+    (and task (eq :running (task-state task)) (not (asks-p interface)) task)))
+
+;; At a plain REPL whoever waits for the plans lets their debugger have the terminal. An editor has
+;; a place for that elsewhere.
+(defun check-not-asking (interface)
+  "Signal MISUSE if the plans of INTERFACE, of another thread, have stopped in an editor's debugger."
+  (when (and (asks-p interface)
+             (foreign-hook)
+             (not (eq (current-thread) (interface-thread interface))))
+    (reject-use "The plans of ~A have stopped in a debugger, in the thread ~A. Choose there how ~
+                 they go on; before that, (print-plans t t) shows them there, with their variables."
+                (interface-robot interface) (thread-name (interface-thread interface)))))
 
 (defun check-not-kept (interface)
   "Signal MISUSE if a plan keeps the thread of those of INTERFACE, which is another than this."
@@ -148,6 +165,7 @@ that is to be called when it has them. Interrupts wait, but for the extent of AL
   "Call FUNCTION while nobody else touches the plans of INTERFACE. Signals MISUSE if one of them is
 known to be at Lisp code that does not return. One that waits in a debugger can be answered here."
   (check-not-kept interface)
+  (check-not-asking interface)
   (if (holding-p interface)
       (funcall function)
       (call-wanting-plans

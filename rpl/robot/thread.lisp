@@ -84,6 +84,7 @@ NIL if that was aborted."
   (let ((simulation (interface-simulation interface))
         (calls (make-user-calls))
         (ended (make-semaphore "plans' thread ended")))
+    (setf (interface-calls interface) calls)
     (flet ((run ()
              (let ((*user-calls* calls))
                (in-any-case

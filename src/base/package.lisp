@@ -84,7 +84,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; limits, debuggers
   (:export #:time-limit #:call-with-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
-           #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
+           #:regain-room #:debugger-p #:foreign-hook #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-hook-p
            #:*editor-gone-p* #:*hook-instead*
            #:with-debugger-hook #:yield-foreground)
