@@ -132,7 +132,7 @@ for that, or some plan is ready. For any thread."
 ;; At a plain REPL whoever waits for the plans lets their debugger have the terminal. An editor has
 ;; a place for that elsewhere.
 (defun check-not-asking (interface)
-  "Signal MISUSE if the plans of INTERFACE, of another thread, have stopped in an editor's debugger."
+  "Signal MISUSE if the plans of INTERFACE, of another thread, have stopped in a debugger."
   (when (and (asks-p interface)
              (foreign-hook)
              (not (eq (current-thread) (interface-thread interface))))
