@@ -78,10 +78,10 @@
                         (uiop:native-namestring file) library)))))))
 
 (defun print-missing-libraries ()
-  "Print which of the libraries named in the environment ASDF cannot find."
+  "Print on a line which of the libraries named in the environment ASDF cannot find."
   (call-telling
    (lambda ()
-     (format t "~{~A ~}"
+     (format t "~&missing: ~{~A ~}~%"
              (remove-if-not #'missing-p (uiop:split-string (uiop:getenv "LIBRARIES")))))))
 
 (defun project-system-p (name)

@@ -49,7 +49,8 @@ make_private() {  # DIRECTORY: true if it is there and ours to write.
 }
 
 choose_cache() {
-    version=$(sbcl --version 2>/dev/null | tr -c 'A-Za-z0-9.\n' '-')
+    # Who starts SBCL by a script of his may have it print more.
+    version=$(sbcl --version 2>/dev/null | grep '^SBCL ' | tail -n 1 | tr -c 'A-Za-z0-9.\n' '-')
     own=$(printf '%s' "$root" | cksum | cut -d ' ' -f 1)/${version:-no-SBCL}
     cache=$(home_directory "${XDG_CACHE_HOME:-}" .cache)/ars-magna/$own
     make_private "$cache" || choose_temporary_cache "$cache"
@@ -92,6 +93,7 @@ missing_packages() {  # SYSTEM...: the Debian packages that it takes and that ar
     if command -v sbcl >/dev/null; then
         wanted=$(LIBRARIES=$wanted ask_lisp '(ars-magna.build:print-missing-libraries)') ||
             no_answer "$wanted"
+        wanted=$(printf '%s\n' "$wanted" | sed -n 's/^missing: //p')
     else
         printf 'sbcl '
     fi
@@ -171,6 +173,7 @@ forget_changed_libraries() {
 
 with_lock() {  # COMMAND...
     command -v flock >/dev/null || { "$@"; return; }
+    [ ! -d "$cache/lock" ] || rm -rf "$cache/lock"
     { true 9>"$cache/lock"; } 2>/dev/null || return
     exec 9>"$cache/lock"
     heeding flock 9 && "$@"
@@ -187,14 +190,14 @@ source_sums() {  # DIRECTORY...: a check sum of each source there, and its name.
           LC_ALL=C sort -k 3 )
 }
 
-# The compiler goes by dates. So that a source with an old one counts as changed, what was compiled
-# of others than those that are there is forgotten.
+# The compiler goes by dates. So that a source with an old one counts as changed, and one that is
+# gone as missing, what was compiled of others than those that are there is forgotten.
 forget_changed() {
     known=$cache/sources
     source_sums src rpl worlds cli tests >"$known.new" || return
     [ -f "$known" ] || : >"$known"
     LC_ALL=C sort "$known.new" >"$known.left" && LC_ALL=C sort "$known" >"$known.right" &&
-        LC_ALL=C comm -23 "$known.left" "$known.right" |
+        LC_ALL=C comm -3 "$known.left" "$known.right" |
             while read -r _ _ file; do rm -f "$cache/project/${file%.*}.fasl"; done
     rm -f "$known.left" "$known.right"
     mv -f "$known.new" "$known"
@@ -202,7 +205,7 @@ forget_changed() {
 
 # Half of a compiled file is what a compiler that was killed leaves.
 forget_halves() {
-    find "$cache" -name '*-tmp*.fasl' -exec rm -f {} +
+    find "$cache" \( -name '*-tmp*.fasl' -o -type d -name '*.fasl' \) -prune -exec rm -rf {} +
 }
 
 # What was compiled before may be damaged, so much that Lisp dies of it. With status 2 sources are.
@@ -235,6 +238,7 @@ evaluate_building() {  # LOG LISP-FORM
 compile() {  # NAME LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.
     log=$cache/$1.log
     libraries=$cache/libraries/$1
+    [ ! -d "$log" ] || rm -rf "$log"
     forget_halves
     forget_changed_libraries
     forget_changed || say "what has changed cannot be told; is $cache full?"

@@ -66,19 +66,20 @@ choose_cache; echo \"in ${cache#$root/}\""))
          (is-false (kept-p))
          (is-true (kept-p)))))))
 
-(test sources.with-an-old-date-count-as-changed
+(test sources.with-an-old-date-count-as-changed-and-those-that-are-gone-as-missing
   (is (equal '("same.fasl")
              (lines-of-shell "cd \"$root\"
 mkdir src rpl cli worlds tests
 mkdir -p \"$cache/project/src\"
 touch ars-magna.asd
 ln -s nowhere src/.#same.lisp
-for name in same changed; do
+for name in same changed gone; do
     echo one >src/$name.lisp
     touch \"$cache/project/src/$name.fasl\"
 done
 forget_changed
-touch \"$cache/project/src/same.fasl\" \"$cache/project/src/changed.fasl\"
+cd \"$cache/project/src\"; touch same.fasl changed.fasl gone.fasl; cd \"$root\"
+rm src/gone.lisp
 echo two >src/changed.lisp
 touch -t 200001010000 src/changed.lisp
 forget_changed
@@ -103,6 +104,15 @@ look"
              (lines-of-shell *compiling*))))
 
 ;;; What goes wrong.
+
+(test scripts.in-the-place-of-sbcl-may-print-what-they-like
+  (is (equal '("SBCL-1.2.3" "none missing")
+             (lines-of-shell "XDG_CACHE_HOME=$root/caches
+sbcl() { printf 'banner\\nSBCL 1.2.3\\n'; }
+choose_cache; basename \"$cache\"
+ask_lisp() { printf 'banner\\nmissing: \\n'; }
+root=$project
+echo \"none missing$(missing_packages ars-magna)\""))))
 
 (test compiled-files.that-are-damaged-are-made-again-at-once
   (is (equal '("build" "1" "build" "1" "build"

@@ -25,7 +25,8 @@ there."
       (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently now: ~
                    ~{its ~A is ~A, and ~A in the row~}. Either the row has been changed, or ~
                    something that is not in the fingerprint decides the trial, such as a structure ~
-                   that trials change, the clock, or a file. Mend that, and begin in another ~
+                   that trials change, the clock, a file, or a function of SBCL's that ~
+                   another version of it has otherwise. Mend that, and begin in another ~
                    directory."
                   trial (condition-name condition) (differing-column columns texts again)))))
 
