@@ -228,3 +228,22 @@ function and its arguments."
                   (sb-ext:timeout () :limit)))))
       (is-true (ends-p thread))
       (is (eq :aborted told)))))
+
+;;; Threads that were woken, or started, and interrupted before they could say so.
+
+(test stop-simulator.of-one-that-has-ended-needs-nobody-to-wake-it
+  "A thread that has waited for the end was interrupted before it could wake the next one."
+  (with-yard ()
+    (start-dray)
+    (run:stop-simulator)
+    (let ((pacing (time:timeline-pacing (run:simulation-timeline time:*simulation*))))
+      (is-true (base:wait-on-semaphore (time::pacing-ended pacing) 10))
+      (finishes (run:stop-simulator)))))
+
+(test plans.a-thread-whose-start-was-given-up-leaves-them
+  (with-yard ()
+    (let ((driver::*interface* nil) (called nil))
+      (start-dray)
+      (driver:rpl-init-robot (symbol-value 'dray))
+      (driver::call-as-thread driver::*interface* (lambda () (setf called t)))
+      (is-false called))))

@@ -41,10 +41,12 @@
 (defun take-out (robot reason)
   "Retire ROBOT, interrupt what it is doing, and take it out of its world."
   (let ((world (robot-world robot)))
-    (retire-robot robot reason)
-    (close-robot robot)
-    (interrupt-robot robot)
-    (setf (world-robots world) (remove robot (world-robots world)))))
+    (deferring-interrupts
+      (in-any-case
+        (retire-robot robot reason)
+        (close-robot robot)
+        (allowing-interrupts (interrupt-robot robot))
+        (setf (world-robots world) (remove robot (world-robots world)))))))
 
 (defun ask-owner (world function)
   "Call FUNCTION where WORLD stands still."

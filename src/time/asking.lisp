@@ -102,11 +102,12 @@ world, and if FUNCTION is aborted."
 
 (defun have-done (object function)
   "Have FUNCTION called where the world of OBJECT stands still, as ASK does, but do not wait for
-that. Return nothing."
+that. Interrupts wait, but for the extent of ALLOWING-INTERRUPTS. Return nothing."
   (let ((custody (timeline-custody (timeline-of object)))
         (question (make-question (keeping-seclusion function))))
     (deferring-interrupts
-      (atomic-push (lambda () (answer question)) (custody-questions custody))
+      (atomic-push (lambda () (deferring-interrupts (answer question)))
+                   (custody-questions custody))
       ;; A thread that has custody answers before it gives that up.
       (call-with-custody custody (constantly nil) (lambda () (wake-holder custody))))
     (values)))

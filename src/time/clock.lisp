@@ -92,6 +92,7 @@
     (setf (custody-pacing custody) nil))
   (in-any-case
     (give-up-custody custody)
+    (setf (pacing-over-p pacing) t)
     (signal-semaphore (pacing-ended pacing))))
 
 (defun run-thread (pacing ready start)

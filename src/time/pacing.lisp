@@ -28,6 +28,8 @@ what users' code the thread is in."
   (idle-p nil :type function :read-only t)
   (calls nil :type user-calls :read-only t)
   (thread nil)
+  ;; True when the thread has ended, and what then wakes one of those who wait for that.
+  (over-p nil)
   (ended (make-semaphore "ended") :read-only t)
   (paused-p nil)
   ;; True when it is to end: :REPLACED if another run is to go on and nobody has stopped this one.

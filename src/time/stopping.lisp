@@ -8,7 +8,9 @@
 (defun ended-p (pacing seconds)
   "Wait for the thread of PACING to end, for SECONDS. True if it has."
   (loop with due = (+ (seconds-now) seconds)
-        when (wait-for-other (pacing-ended pacing) (min seconds 0.2))
+        ;; A thread that was woken may have been interrupted before it could wake the next one.
+        when (or (pacing-over-p pacing)
+                 (wait-for-other (pacing-ended pacing) (min seconds 0.2)))
           ;; Others may be waiting too.
           do (signal-semaphore (pacing-ended pacing))
              (return t)
