@@ -75,8 +75,8 @@
                  (:file "lines") (:file "frames") (:file "importing") (:file "exporting")))
    (:module "src/time" :serial t
     :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
-                 (:file "interruptions") (:file "custody") (:file "timeline") (:file "thinking")
-                 (:file "asking") (:file "pacing") (:file "stopping") (:file "hogs")
+                 (:file "interruptions") (:file "custody") (:file "timeline") (:file "saying")
+                 (:file "thinking") (:file "asking") (:file "pacing") (:file "stopping") (:file "hogs")
                  (:file "clock") (:file "schedule") (:file "soundness")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "planned-way")
@@ -140,7 +140,7 @@
                  (:file "procedure") (:file "forking") (:file "report") (:file "courtesy")
                  (:file "repair") (:file "care") (:file "engine") (:file "circles")
                  (:file "gate") (:file "blocking") (:file "variables") (:file "places")
-                 (:file "alone")))
+                 (:file "stillness") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "names") (:file "items")
                  (:file "scope") (:file "suspension") (:file "checking")
@@ -169,7 +169,8 @@
                  (:file "under-way") (:file "wishes") (:file "reacting") (:file "forking")
                  (:file "handles") (:file "rewinding")
                  (:file "watching") (:file "thread") (:file "starting") (:file "accessors")
-                 (:file "outcomes") (:file "commands") (:file "runs") (:file "seeing")))
+                 (:file "outcomes") (:file "commands") (:file "runs") (:file "stranded")
+                 (:file "seeing")))
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "task-tree") (:file "saving")))
@@ -451,7 +452,7 @@
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")
-                 (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "projecting")
+                 (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "unseen") (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")

@@ -27,7 +27,7 @@
         ;; Another thread may have set it since it was looked at.
         (let ((value (fluent-value condition)))
           (when value (wake-waiter watcher value nil))))
-      (park task "what cannot change: no fluent")))
+      (park task +no-fluent+)))
 
 (defun checked-timeout (timeout)
   "Return TIMEOUT, a number of ticks or NIL, or its value. Signals WRONG-ARGUMENT."

@@ -22,7 +22,7 @@
 
 (defun await-event (task watcher)
   "Let TASK wait until WATCHER has heard something. Return what a step returns."
-  (park task (if watcher (watcher-fluent watcher) "what cannot change: no fluent"))
+  (park task (if watcher (watcher-fluent watcher) +no-fluent+))
   +parked+)
 
 (defun answer-events (watcher missed)

@@ -40,6 +40,11 @@ for each part, or T if a fluent.")
   (loop for variable being the hash-keys of *known-variables*
         when (string-equal name variable) return variable))
 
+(defun robots-fluent-p (fluent)
+  "True if FLUENT is called like a known variable, or an element of one: one that the robot changes."
+  (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
+    (and (find-known (subseq name 0 space)) t)))
+
 (declaim (inline one-fluent truth-value))
 (defun one-fluent (object)
   "Return OBJECT, a condition; of a fluent, the one that is here. Signals MISUSE if it is a vector

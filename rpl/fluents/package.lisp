@@ -31,7 +31,7 @@ no plan.")
            #:call-at-home #:in-use-p #:post #:next-entry #:posted-p)
   ;; known
   (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
-           #:one-fluent #:truth-value)
+           #:robots-fluent-p #:one-fluent #:truth-value)
   ;; propagation
   (:export #:apply-settings #:give-back-all #:repair-fluents #:pulse #:set-value)
   ;; views

@@ -4,20 +4,22 @@
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world
-                #:world-map #:*world* #:remaining-capacity)
+                #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
                 #:timeline-tick #:check-not-secluded
                 #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
-                #:hog-seconds)
+                #:hog-seconds #:warn-once)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
                 #:robot-meant #:simulation-over
                 #:simulation-seed #:simulation-plans-dice-p #:simulation-agenda #:simulation-thread
-                #:simulation-timeline #:simulation-robots #:robot-simulation
+                #:simulation-timeline #:simulation-robots #:simulation-observers
+                #:simulation-world #:robot-simulation
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
-                #:remove-participant #:participant-after-tick #:participant-origin
+                #:remove-participant #:participant-after-tick #:participant-after-ticks
+                #:participant-origin
                 #:participant-busy-p #:participant-reseed #:participant-digest #:participant-end
                 #:participant-copy #:participant-at-rest #:check-forkable
                 #:call-as-participant-makes-way #:participant-unsavable
@@ -36,6 +38,8 @@
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
+                #:waiting-parts #:text-of-plans #:advice-on-stillness #:fluents-awaited
+                #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer

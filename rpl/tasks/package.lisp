@@ -67,7 +67,7 @@ plans nor a simulator.")
   ;; blame
   (:export #:*failure-hook* #:failure-of #:plan-backtrace)
   ;; report
-  (:export #:*plan-end-hooks* #:report-deadlock #:report-stillness #:report-end #:report-failure
+  (:export #:*plan-end-hooks* #:report-end #:report-failure
            #:task-awaits #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
            #:write-task-tree)
   ;; engine
@@ -90,6 +90,9 @@ plans nor a simulator.")
            #:task-variable-p)
   ;; places
   (:export #:find-task #:task-place #:task-source)
+  ;; stillness
+  (:export #:report-deadlock #:report-stillness #:+no-fluent+ #:waiting-parts #:text-of-plans
+           #:advice-on-stillness #:fluents-awaited)
   ;; alone
   (:export #:run-plan-alone)
   ;; stepping

@@ -109,27 +109,3 @@ somebody waits for the end."
   (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
     (when (eq (task-state task) :failed)
       (report-failure (task-result task) awaited-p))))
-
-;;; Deadlock.
-
-(defun tree-text (runner)
-  "Return all tasks of RUNNER as a text of bounded length."
-  (cut (with-output-to-string (stream)
-         (dolist (task (plan-runner-tasks runner))
-           (write-task-tree task 0 stream)))
-       4000))
-
-(defun report-stillness (runner)
-  "Queue a warning that says that the tasks of RUNNER wait for what only somebody outside of them
-and of the simulator can bring about."
-  (warning-set "At tick " (runner-tick runner)
-               " all plans wait for what neither the robot nor time will bring about, but somebody "
-               "may, by SET-VALUE or WAKE-UP:" t
-               (tree-text runner)))
-
-(defun report-deadlock (runner)
-  "Queue an error message that says that no task of RUNNER can go on, with the tasks and what they
-wait for."
-  (error-set "Deadlock at tick " (runner-tick runner)
-             ": nothing can wake these tasks." t
-             (tree-text runner)))

@@ -21,13 +21,16 @@
 (defvar *run-that-reports* (constantly nil)
   "A function that returns the run that a message queued in this thread belongs to, or NIL.")
 
-(defstruct (message (:constructor make-message (kind items &key cause (summary "") told-p))
+(defstruct (message (:constructor make-message
+                        (kind items &key cause (summary "") told-p notable-p))
                     (:copier nil))
   "What the simulator or a user has to say: KIND is :error, :warning or :message. ASKER is a note of
 who asked for what it tells of, such as a command that has ended, or NIL; ROBOT is the name of the
 robot whose command that is, or NIL. RUN is what it belongs to, as several runs may share a queue,
 or NIL. CAUSE is what is wrong with users' code, which SUMMARY says in a line, or NIL, see
-troubles.lisp. TOLD-P is true if users' code has been told of it otherwise."
+troubles.lisp. TOLD-P is true if users' code has been told of it otherwise. NOTABLE-P is true of a
+warning that is shown like an error if nobody reads it; or a function that returns that in the
+end."
   (kind :message :type (member :error :warning :message) :read-only t)
   (items '() :type list :read-only t)
   (asker *told-of* :read-only t)
@@ -35,7 +38,8 @@ troubles.lisp. TOLD-P is true if users' code has been told of it otherwise."
   (run (funcall *run-that-reports*) :read-only t)
   (cause nil :read-only t)
   (summary "" :type string :read-only t)
-  (told-p nil :type boolean :read-only t))
+  (told-p nil :type boolean :read-only t)
+  (notable-p nil :type (or boolean function) :read-only t))
 
 (defstruct (message-queue (:constructor make-message-queue (&key (manner :report) echoed))
                           (:copier nil))
@@ -113,7 +117,8 @@ as it comes where nobody listens; the table counts it."
             (message-queue-count queue) *message-limit*)))
   (let ((listener (message-queue-listener queue)))
     (cond (listener (funcall listener))
-          ((and (message-cause message) (message-queue-echoed queue))
+          ((and (or (message-cause message) (eq t (message-notable-p message)))
+                (message-queue-echoed queue))
            (funcall *message-echo* message queue)))))
 
 (public error-set)

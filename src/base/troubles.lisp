@@ -83,8 +83,11 @@ there is one. True if there was, and whoever handled it wants to go on."
 (defun to-be-seen-p (message)
   "True if MESSAGE tells of an error, or of what is wrong with users' code, and nobody was told of
 it otherwise."
-  (and (not (message-told-p message))
-       (or (message-cause message) (eq :error (message-kind message)))))
+  (let ((notable (message-notable-p message)))
+    (and (not (message-told-p message))
+         (or (message-cause message)
+             (eq :error (message-kind message))
+             (if (functionp notable) (funcall notable) notable)))))
 
 (defun take-unseen (queue wanted)
   "Return the messages in QUEUE that are to be seen, that nobody has seen, and for which WANTED is

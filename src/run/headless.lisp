@@ -67,7 +67,14 @@ SIMULATION runs live or is inside a tick, or if another thread passes its ticks;
 in users' code are to be signalled, USER-CODE-ERROR after the tick in which one came up, with a
 restart CONTINUE that lets the other ticks pass."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
-  (pass-ticks-of (going-on simulation) count))
+  (let ((simulation (going-on simulation)))
+    (prog1 (pass-ticks-of simulation count)
+      (look-after-ticks simulation))))
+
+(defun look-after-ticks (simulation)
+  "Let those who take part in SIMULATION look at what the ticks have brought that have passed."
+  (dolist (participant (simulation-participants simulation))
+    (participant-after-ticks participant simulation)))
 
 (defun going-on (simulation)
   "Return SIMULATION or, if it is a fork that was rewound, the one that goes on in its place."
@@ -109,7 +116,8 @@ Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
     (let ((answer (loop for left downfrom limit
                         thereis (funcall predicate)
                         until (zerop left)
-                        do (run-ticks 1 simulation))))
+                        do (pass-ticks-of (going-on simulation) 1))))
+      (look-after-ticks (going-on simulation))
       (values answer (simulation-tick simulation)))))
 
 (addition step-ticks)

@@ -12,6 +12,12 @@
     (declare (ignore participant simulation))
     (values)))
 
+(defgeneric participant-after-ticks (participant simulation)
+  (:documentation "Let PARTICIPANT look at SIMULATION, headless, when somebody has let ticks pass.")
+  (:method (participant simulation)
+    (declare (ignore participant simulation))
+    (values)))
+
 (defgeneric participant-origin (participant)
   (:documentation "Return how messages and restarts call PARTICIPANT, as for CALL-USER-CODE.")
   (:method (participant)

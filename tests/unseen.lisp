@@ -1,0 +1,84 @@
+;;;; unseen.lisp -- what is most likely a mistake is told, once, and what is right is not.
+
+(in-package :ars-magna.tests)
+
+(def-suite* unseen :in ars-magna)
+
+(defmacro rover-writes ((&rest options) &body body)
+  "Run BODY in a headless simulation of ROVER with OPTIONS. Return what it writes to the error
+output."
+  `(error-output (run:with-simulation (rover ,@options) ,@body)))
+
+(defmacro plan-of (&body body)
+  "Return a plan that does BODY."
+  `(rpl:interp-lambda () ,@body))
+
+(rpl:def-interp-proc forlorn ()
+  (rpl:par (rpl:wait-for (svref driver:camera-moved* 0))
+           (rpl:wait-for driver:robot-stopped*)))
+
+;;; Plans that nothing will wake.
+
+(test deadlock.names-the-plan-what-it-waits-for-and-a-remedy
+  (is-true (has-words-p (rover-writes () (driver:run-plan 'forlorn))
+                        "the plan forlorn waits for camera-moved* 0, robot-stopped*"
+                        "change when a command of the robot ends"
+                        "give one before you wait"))
+  (is-true (has-words-p (rover-writes ()
+                          (let ((level (rpl:create-fluent 'level 0)))
+                            (driver:run-plan (plan-of (rpl:wait-for (> level 3))))))
+                        "waits for (> level 3)"
+                        "Only SET-VALUE and PULSE change level"))
+  (is-true (has-words-p (rover-writes ()
+                          (driver:run-plan (plan-of (rpl:wait-for (car (list nil))))))
+                        "a value that is no fluent"
+                        "Give it the fluent itself")))
+
+(test stranded.a-plan-that-was-begun-is-told-once
+  (let ((text (rover-writes ()
+                (driver:begin-plan 'forlorn)
+                (driver:begin-plan 'forlorn)
+                (run:run-ticks 10)
+                (run:run-ticks 10))))
+    (is (= 1 (length (lines-of text))) "~A" text)
+    (is-true (has-words-p text "*WARNING* -> At tick 10 the plan forlorn waits for"
+                          "camera-moved* 0, robot-stopped*" "nothing in the run will change")))
+  (is (string= "" (rover-writes (:errors :signal)
+                    (driver:begin-plan 'forlorn)
+                    (run:run-until (constantly nil) :limit 5)
+                    (is-true (has-words-p (displayed) "the plan forlorn")))))
+  (is-true (has-words-p (rover-writes ()
+                          (driver:begin-plan (plan-of (rpl:wait-for (car (list nil)))))
+                          (run:run-ticks 1))
+                        "a value that is no fluent")))
+
+(test stranded.what-programs-may-set-is-told-to-who-reads-messages
+  (let ((level (rpl:create-fluent 'level 0)))
+    (is (string= "" (rover-writes ()
+                      (driver:begin-plan (plan-of (rpl:wait-for (> level 3))))
+                      (run:run-ticks 1))))
+    (rover-writes ()
+      (driver:begin-plan (plan-of (rpl:wait-for (> level 3))))
+      (run:run-ticks 1)
+      (is-true (has-words-p (displayed) "waits for (> level 3)" "nothing in the run")))))
+
+(test stranded.no-plan-that-goes-on-or-is-to-wait
+  (flet ((quiet-p (plan &optional (after (constantly nil)))
+           (string= "" (rover-writes ()
+                         (driver:begin-plan plan)
+                         (run:run-ticks 3)
+                         (funcall after)
+                         (is (string= "" (displayed)))))))
+    (is-true (quiet-p (plan-of (driver:rpl-robot-turn 1)
+                               (rpl:wait-for driver:robot-stopped*))))
+    (is-true (quiet-p (plan-of (rpl:wait-time 50))))
+    (is-true (quiet-p (plan-of (rpl:whenever driver:robot-stopped* (rpl:wait-time 1)))))
+    (is-true (quiet-p (plan-of (loop (rpl:wait-for driver:robot-stopped*)))))
+    (is-true (quiet-p (plan-of (rpl:wait-for driver:robot-stopped* :timeout 50)))))
+  (is (string= "" (rover-writes ()
+                    (driver:rpl-init-robot rover)
+                    (driver:begin-plan (plan-of (rpl:wait-for driver:robot-stopped*)))
+                    (run:run-ticks 3)
+                    (driver:rpl-robot-turn 1)
+                    (run:run-ticks 30)))
+      "what went on in the end"))
