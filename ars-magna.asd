@@ -62,8 +62,8 @@
                  (:file "world") (:file "access")
                  (:file "kickers") (:file "reading-ahead") (:file "gaps") (:file "kicker-groups")
                  (:file "attaching") (:file "failing-kickers") (:file "placing") (:file "setting-attributes")
-                 (:file "recipes") (:file "undeclared") (:file "forking") (:file "residents")
-                 (:file "new-thing") (:file "kicking") (:file "defmap") (:file "check")
+                 (:file "recipes") (:file "saying") (:file "undeclared") (:file "forking")
+                 (:file "residents") (:file "new-thing") (:file "kicking") (:file "defmap") (:file "check")
                  (:file "soundness") (:file "facts")))
    (:module "src/ways" :serial t
     :components ((:file "package") (:file "terrain") (:file "queue") (:file "crossing")
@@ -75,8 +75,8 @@
                  (:file "lines") (:file "frames") (:file "importing") (:file "exporting")))
    (:module "src/time" :serial t
     :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
-                 (:file "interruptions") (:file "custody") (:file "timeline") (:file "saying")
-                 (:file "thinking") (:file "asking") (:file "pacing") (:file "stopping") (:file "hogs")
+                 (:file "interruptions") (:file "custody") (:file "timeline") (:file "thinking")
+                 (:file "asking") (:file "pacing") (:file "stopping") (:file "hogs")
                  (:file "clock") (:file "schedule") (:file "soundness")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "planned-way")
@@ -89,7 +89,8 @@
                  (:file "tending") (:file "soundness")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command") (:file "steps") (:file "error-codes")
-                 (:file "failing") (:file "operation") (:file "ownership") (:file "failures")
+                 (:file "failing") (:file "operation") (:file "ownership")
+                 (:file "failures")
                  (:file "define-command") (:file "turning") (:file "places") (:file "driving")
                  (:file "following") (:file "handling") (:file "hands") (:file "inserting")
                  (:file "bins") (:file "patterns") (:file "manipulations")

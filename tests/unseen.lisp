@@ -82,3 +82,19 @@ output."
                     (driver:rpl-robot-turn 1)
                     (run:run-ticks 30)))
       "what went on in the end"))
+
+;;; Options of things among their attributes.
+
+(test descriptors.warn-of-options-of-things
+  (is-true (has-words-p (warning-about
+                         '(world:defmap cluttered (9 9)
+                           (obj ball (3 3) ((:size 1) (:kickers (wobble)) (:prototype crate)))))
+                        "ball has :kickers among its attributes, where it does nothing"
+                        "write (obj (ball :kickers (sway)) ...)"
+                        "write (obj (ball :prototype box) ...)"))
+  (is-true (has-words-p (warning-about '(world:new-thing ball nil ((:size 1) (:prototype crate))))
+                        "(new-thing ball place (...) :prototype box)"))
+  (rover-writes ()
+    (loop repeat 2
+          do (world:make-new-thing 'ball (list (world:find-map 'arena) 3 3) '((:kickers (wobble)))))
+    (is (= 1 (length (lines-of (displayed)))))))

@@ -41,7 +41,7 @@ for each part, or T if a fluent.")
         when (string-equal name variable) return variable))
 
 (defun robots-fluent-p (fluent)
-  "True if FLUENT is called like a known variable, or an element of one: one that the robot changes."
+  "True if FLUENT is called like a known variable, or an element of one: the robot changes it."
   (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
     (and (find-known (subseq name 0 space)) t)))
 

@@ -4,13 +4,13 @@
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world
-                #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p)
+                #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p #:warn-once)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
                 #:timeline-tick #:check-not-secluded
                 #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
-                #:hog-seconds #:warn-once)
+                #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
                 #:robot-meant #:simulation-over
@@ -39,6 +39,7 @@
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
                 #:waiting-parts #:text-of-plans #:advice-on-stillness #:fluents-awaited
+                #:fluent-text
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure

@@ -32,7 +32,8 @@
 (defun warn-of-stranded (interface task parts)
   "Say once that TASK, of the plans of INTERFACE, will not go on, as PARTS of it wait in vain."
   (let ((awaited (mapcar #'task-awaiting parts)))
-    (warn-once (interface-simulation interface) :stranded (task-label task)
+    (warn-once (list :stranded (task-label task))
+               (simulation-world (interface-simulation interface))
                (list "At tick " (simulation-tick (interface-simulation interface)) " "
                      (text-of-plans (list task)) ", which nothing in the run will change."
                      (advice-on-stillness parts))

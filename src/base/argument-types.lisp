@@ -55,3 +55,19 @@ wrong with VALUE."
   "a name, a symbol or string")
 (define-argument-type 'keyword #'keywordp "a keyword")
 (define-argument-type 'function #'functionp "a function")
+
+;;; Radians.
+
+(defun perhaps-degrees-p (angle)
+  "True if ANGLE, in radians, is more than a whole turn, and was perhaps meant in degrees: it is no
+whole number of these, as what was said in degrees, or by pi, is."
+  (and (< (* 2 pi) (abs angle))
+       (let ((degrees (* angle (/ 180 pi))))
+         (< 1d-6 (abs (- degrees (fround degrees)))))))
+
+(defun degrees-advice (angle)
+  "Return in words what ANGLE, in radians and perhaps meant in degrees, is, and what to write."
+  (let ((number (if (integerp angle) angle (format nil "~,2F" angle))))
+    (format nil "~A radians are ~,1F whole turns. If ~A degrees are meant, write ~
+                 (* ~A (/ pi 180)), or at the prompt ~A deg."
+            number (/ (abs angle) 2 pi) number number number)))

@@ -83,11 +83,15 @@ there is one. True if there was, and whoever handled it wants to go on."
 (defun to-be-seen-p (message)
   "True if MESSAGE tells of an error, or of what is wrong with users' code, and nobody was told of
 it otherwise."
+  (and (not (message-told-p message))
+       (or (message-cause message) (eq :error (message-kind message)))))
+
+(defun notable-now-p (message queue)
+  "True if MESSAGE, in QUEUE, is a warning to be shown like an error. Where errors are signalled, as
+in tests and the trials of experiments, warnings are only messages."
   (let ((notable (message-notable-p message)))
-    (and (not (message-told-p message))
-         (or (message-cause message)
-             (eq :error (message-kind message))
-             (if (functionp notable) (funcall notable) notable)))))
+    (and (eq :report (message-queue-manner queue))
+         (if (functionp notable) (funcall notable) notable))))
 
 (defun take-unseen (queue wanted)
   "Return the messages in QUEUE that are to be seen, that nobody has seen, and for which WANTED is
@@ -96,7 +100,8 @@ true, the oldest first. All in it counts as seen."
     (let* ((newest-first (message-queue-newest-first queue))
            (unseen (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))
       (reverse (remove-if-not (lambda (message)
-                                (and (to-be-seen-p message) (funcall wanted message)))
+                                (and (or (to-be-seen-p message) (notable-now-p message queue))
+                                     (funcall wanted message)))
                               unseen)))))
 
 (defun overlook (queue)

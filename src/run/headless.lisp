@@ -266,9 +266,10 @@ BODY.
 ERRORS says what becomes of errors in users' code that the run calls, and of failures of plans that
 were begun; the run goes on in any case. With :REPORT they are messages; those that nobody has read
 when BODY ends are written to the error output, and so are other errors, but for those of commands
-that have a continuation to tell. With :SIGNAL the first of them is an error of BODY, a
-USER-CODE-ERROR that RUN-TICKS signals when its tick is over, or WITH-SIMULATION at the end. With
-:COLLECT they are only messages; SIMULATION-ERRORS returns them."
+that have a continuation to tell, and warnings that come once in a run, as of degrees for radians.
+With :SIGNAL the first of them is an error of BODY, a USER-CODE-ERROR that RUN-TICKS signals when
+its tick is over, or WITH-SIMULATION at the end. With :COLLECT they are only messages;
+SIMULATION-ERRORS returns them."
   (let* ((robots (unquoted robots)) (variables (variables-among robots)))
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))

@@ -8,7 +8,8 @@ takes part in it. Manual 2.3 and appendix A.")
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
   ;; participant
-  (:export #:participant-after-tick #:participant-after-ticks #:participant-origin #:participant-busy-p
+  (:export #:participant-after-tick #:participant-after-ticks #:participant-origin
+           #:participant-busy-p
            #:participant-reseed #:participant-digest
            #:participant-copy #:participant-end #:participant-unsavable)
   ;; run

@@ -29,8 +29,6 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:*simulation* #:current-simulation
            #:wake-owner #:post #:post-again #:take-requests #:owner-p
            #:notify-later #:deliver-notifications)
-  ;; saying
-  (:export #:first-time-p #:warn-once)
   ;; thinking
   (:export #:check-thinking #:thinking-modes-text #:thinking-mode-p
            #:timeline-thinking #:set-timeline-thinking

@@ -24,8 +24,6 @@
   (:state
    (agenda (make-agenda) agenda "the events that wait for their ticks" :part)
    (charge '() list "what thinking costs: NIL for no ticks, or a plist; see thinking.lisp"))
-  (:memory
-   (said '() t "what has been said once, lists (topic . name)" :shared))
   ;; What is asked of a run is no part of its state before it is taken.
   (:scratch
    (inbox '() t "the requests that wait for the next tick, newest first")

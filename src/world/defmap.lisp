@@ -91,7 +91,7 @@ signals, the user may replace the clause by another, of which COMPILER makes a f
 
 (defun clause-recipe (definition clause name descriptor &rest options)
   "Return the recipe for CLAUSE; trouble is the definition's."
-  (warn-of-slips definition name descriptor)
+  (warn-of-slips definition name descriptor :map-p t)
   (handler-case (apply #'write-recipe 'defmap name descriptor options)
     ((or wrong-argument unknown-name) (condition)
       (reject-clause definition clause

@@ -75,6 +75,8 @@
   (:export #:note-unknown-substance)
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing
            #:destroyed-thing #:tell-if-in-wall)
+  ;; saying
+  (:export #:first-time-p #:warn-once #:doubt-angle)
   ;; undeclared
   (:export #:note-strange-name #:warn-of-slips #:value-like)
   ;; kickers

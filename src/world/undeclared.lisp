@@ -6,35 +6,51 @@
 ;;; A name that looks like a declared one is remarked on where a thing is defined; one that no
 ;;; thing of the world has, where it is asked for, once in a run.
 
+(defparameter *options-of-things*
+  '((:prototype "(obj (~A :prototype box) ...)" "(new-thing ~A place (...) :prototype box)")
+    (:kickers "(obj (~A :kickers (sway)) ...)" "(make-new-thing '~A place '(...) :kickers '(sway))")
+    (:contents "(obj ~A (x y) (...) thing...)" "(make-new-thing '~A place '(...) :contents list)"))
+  "What is said of a thing beside its attributes: the option, and how it is written in a map and on
+the fly.")
+
 (defun slips-in (descriptor)
   "Return a list of lists (name like): the names in the object DESCRIPTOR that are not declared, but
-may be slips for the declared name LIKE."
+may be slips for the declared name LIKE, or, if that is NIL, are options of things."
   (loop for (name) in descriptor
         for like = (declared-name-like name)
-        when like collect (list name like)))
+        when (or like (option-of-things-p name))
+          collect (list name like)))
 
-(defun slip-text (thing-name slip)
+(defun option-of-things-p (name)
+  "True if NAME, an attribute's, is that of an option, and no attribute is declared so."
+  (let ((key (attribute-key name)))
+    (and (assoc key *options-of-things*) (not (attribute-of key)))))
+
+(defun option-text (thing-name option map-p)
+  "Return in words that the thing has OPTION among its attributes, where it does nothing, and how it
+is written, in a map if MAP-P."
+  (destructuring-bind (in-map on-the-fly) (rest (assoc (attribute-key option) *options-of-things*))
+    (format nil "~(~A~) has ~(~S~) among its attributes, where it does nothing; write ~@?"
+            thing-name option (if map-p in-map on-the-fly) (string-downcase thing-name))))
+
+(defun slip-text (thing-name slip &optional map-p)
   (destructuring-bind (name like) slip
-    (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
-            thing-name name like)))
+    (if like
+        (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
+                thing-name name like)
+        (option-text thing-name name map-p))))
 
-(defun warn-of-slips (definition name descriptor)
-  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION."
+(defun warn-of-slips (definition name descriptor &key map-p)
+  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION, that of a map if MAP-P."
   (dolist (slip (slips-in descriptor))
     (warn-of-definition "~A~@[ (~A)~]: ~A" definition
                         (clause-place (assoc (first slip) descriptor))
-                        (slip-text name slip))))
-
-(defun warn-once-of (key world text)
-  "Queue the warning TEXT, unless one about KEY has been queued in WORLD before."
-  (unless (member key (world-noted-names world) :test #'eq)
-    (push key (world-noted-names world))
-    (warning-set text)))
+                        (slip-text name slip map-p))))
 
 (defun note-slips (name descriptor world)
   "Warn, once, of what may be slips in DESCRIPTOR of the thing NAME, made on the fly in WORLD."
   (dolist (slip (slips-in descriptor))
-    (warn-once-of (first slip) world (slip-text name slip))))
+    (warn-once (first slip) world (slip-text name slip) :notable nil)))
 
 (defun carried-p (key world)
   "True if any thing of WORLD says something of the attribute KEY."
@@ -45,12 +61,13 @@ may be slips for the declared name LIKE."
 (defun note-strange-name (key world)
   "Warn, once, if the attribute KEY of a specification is declared by nobody and had by nothing."
   (unless (or (attribute-of key)
-              (member key (world-noted-names world) :test #'eq)
+              (said-p key world)
               (carried-p key world))
-    (warn-once-of key world
-                  (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~
-                               ~(~S~)?~]"
-                          key (declared-name-like key)))))
+    (warn-once key world
+               (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~
+                            ~(~S~)?~]"
+                       key (declared-name-like key))
+               :notable nil)))
 
 ;;; An attribute that is declared anew may no longer have the values that things have.
 
