@@ -18,6 +18,11 @@
     (setf (task-signal task) (failure-of trouble task (task-frame task))))
   (wake task value))
 
+(defun wait-for-no-fluent (task)
+  "Let TASK wait for what it was given instead of a fluent, and say so."
+  (park task +no-fluent+)
+  (warn-of-no-fluent task))
+
 (defun wait-until-heard (task condition)
   "Let TASK wait until CONDITION, a fluent that is false, changes. Another object never does."
   (if (fluent-p condition)
@@ -27,7 +32,7 @@
         ;; Another thread may have set it since it was looked at.
         (let ((value (fluent-value condition)))
           (when value (wake-waiter watcher value nil))))
-      (park task +no-fluent+)))
+      (wait-for-no-fluent task)))
 
 (defun checked-timeout (timeout)
   "Return TIMEOUT, a number of ticks or NIL, or its value. Signals WRONG-ARGUMENT."
@@ -42,7 +47,7 @@ already. A pulse is enough. Return its value. After TIMEOUT ticks, if given, go 
 return NIL (manual C). TIMEOUT is a number up to 1e15."
   (:manual)
   (:arguments fluent timeout)
-  (:parts (fluent function (condition-lambda fluent scope))
+  (:parts (fluent function (awaited-lambda fluent form scope))
           (timeout function (value-lambda timeout scope)))
   (:steps
    (begin

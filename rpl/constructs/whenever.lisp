@@ -22,7 +22,9 @@
 
 (defun await-event (task watcher)
   "Let TASK wait until WATCHER has heard something. Return what a step returns."
-  (park task (if watcher (watcher-fluent watcher) +no-fluent+))
+  (if watcher
+      (park task (watcher-fluent watcher))
+      (wait-for-no-fluent task))
   +parked+)
 
 (defun answer-events (watcher missed)
@@ -56,7 +58,7 @@ true. Several such events while BODY runs count as one, as (FLUENT :missed :once
 evaporation (manual D.4)."
   (:manual)
   (:arguments (first (split-condition fluent scope)))
-  (:parts (condition function (condition-lambda (first (split-condition fluent scope)) scope))
+  (:parts (condition function (awaited-lambda (first (split-condition fluent scope)) form scope))
           (missed function (value-lambda (second (split-condition fluent scope)) scope))
           (body node (body-code body (single-scope scope))))
   (:code (block-code nil form scope #'build))

@@ -45,6 +45,56 @@
                      (format nil "one of the fluents in that vector: (vref ~(~A~) ~A)"
                              form kind)))))
 
+;;; Waits for what cannot change.
+
+(defun known-value-p (form environment)
+  "True if FORM, in ENVIRONMENT, is known to give a value and no fluent: a constant, what
+FLUENT-VALUE returns, or what a lifted operator makes of such."
+  (cond ((constantp form) t)
+        ((not (and (consp form) (symbolp (first form)) (proper-list-p form))) nil)
+        ((local-function-p (first form) environment) nil)
+        ((operator-in-p form '("FLUENT-VALUE")) t)
+        ((operator-in-p form (list* "AND" "OR" *lifted-operators*))
+         (every (lambda (argument) (known-value-p argument environment)) (rest form)))))
+
+(defun as-fluents (form)
+  "Return FORM, known to give a value, as it gives the fluent: without FLUENT-VALUE and quotes."
+  (cond ((and (consp form) (or (operator-in-p form '("FLUENT-VALUE")) (eq 'quote (first form))))
+         (second form))
+        ((and (consp form) (proper-list-p form))
+         (cons (first form)
+               (loop for argument in (rest form)
+                     collect (if (and (consp argument) (not (eq 'quote (first argument))))
+                                 (as-fluents argument)
+                                 argument))))
+        (t form)))
+
+(defun mistaken-for-fluent-p (form environment)
+  "True if FORM, in ENVIRONMENT, is known to give the value of a fluent, or is the quoted name of
+one."
+  (typecase form
+    ((cons (eql quote)) (known-fluent-p (second form) environment))
+    (cons (and (known-value-p form environment)
+               (mentions-p 'fluent-value form)))))
+
+(defun check-awaited (condition form scope)
+  "Warn if CONDITION, which FORM waits for, in SCOPE, is known to be a value, which cannot change."
+  (when (and (own-text-p form)
+             (mistaken-for-fluent-p condition (scope-environment scope)))
+    (let ((better (as-fluents condition)))
+      (call-at-place
+       form
+       (lambda ()
+         (warn-of-call #'warn-of-definition form
+                       "~(~A~) needs a fluent, and ~S is a value, which never changes. Write ~
+                        (~(~A~) ~S~:[~; ...~])."
+                       (first form) condition (first form) better (cddr form)))))))
+
+(defun awaited-lambda (condition form scope)
+  "Return the lambda expression as CONDITION-LAMBDA does, for what FORM waits for."
+  (check-awaited condition form scope)
+  (condition-lambda condition scope))
+
 ;;; Arguments.
 
 (defun takes-fluents-p (type)

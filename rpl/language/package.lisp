@@ -9,14 +9,14 @@ DEFINE-CONSTRUCT adds to it.")
                 #:matchvar-p #:matchvar-name)
   ;; source
   (:export #:author #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
-           #:misplaced-suspension #:note-own-text)
+           #:misplaced-suspension #:note-own-text #:note-expansion #:form-as-written)
   ;; names, items
   (:export #:check-variables #:plain-parameters #:item-list)
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope
            #:scope-environment #:scope-variables)
   ;; leaf
-  (:export #:condition-lambda #:value-lambda)
+  (:export #:condition-lambda #:awaited-lambda #:value-lambda)
   ;; compiler
   (:export #:define-plan-form #:hoisted-code #:plan-code #:refuse-code #:suspends-p)
   ;; steps

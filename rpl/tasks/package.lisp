@@ -91,7 +91,8 @@ plans nor a simulator.")
   ;; places
   (:export #:find-task #:task-place #:task-source)
   ;; stillness
-  (:export #:report-deadlock #:report-stillness #:+no-fluent+ #:waiting-parts #:text-of-plans
+  (:export #:report-deadlock #:report-stillness #:+no-fluent+ #:warn-of-no-fluent
+           #:waiting-parts #:text-of-plans
            #:advice-on-stillness #:fluents-awaited)
   ;; alone
   (:export #:run-plan-alone)

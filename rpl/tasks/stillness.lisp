@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(define-global +no-fluent+ "a value that is no fluent and never changes"
+(define-global +no-fluent+ "a value that is no fluent"
   "What a task waits for that was given no fluent where it was to wait for one.")
 
 (defun waiting-parts (task)
@@ -29,8 +29,9 @@
 ;;; What to do.
 
 (defun no-fluent-advice (task)
-  (format nil "~A has been given no fluent. Give it the fluent itself, as in (wait-for ~
-               robot-stopped*) or (wait-for (> level 3)), and not what FLUENT-VALUE returns."
+  (format nil "~A waits for a value that is no fluent and never changes. Give it the fluent ~
+               itself, as in (wait-for robot-stopped*) or (wait-for (> level 3)); wait-until tests ~
+               other forms in each tick."
           (form-text (task-form task))))
 
 (defun split-fluents (fluents)
@@ -52,6 +53,16 @@
               (mapcar #'fluent-text others)))))
 
 ;;; Reports.
+
+(defun warn-of-no-fluent (task)
+  "Queue a warning that TASK, which has come to wait, was given no fluent, once for each form."
+  (let ((form (task-form task)) (runner (task-runner task)))
+    (unless (member form (runner-warned runner) :test #'eq)
+      (push form (runner-warned runner))
+      (queue-message (make-message :warning (list "In the plan " (task-label (task-top task)) ", "
+                                                  (no-fluent-advice task))
+                                   :notable-p t)
+                     *message-queue*))))
 
 (defun tree-text (runner)
   "Return all tasks of RUNNER as a text of bounded length."
