@@ -89,7 +89,7 @@
                  (:file "tending") (:file "soundness")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command") (:file "steps") (:file "error-codes")
-                 (:file "failing") (:file "operation") (:file "ownership")
+                 (:file "failing") (:file "operation") (:file "issuing") (:file "ownership")
                  (:file "failures")
                  (:file "define-command") (:file "turning") (:file "places") (:file "driving")
                  (:file "following") (:file "handling") (:file "hands") (:file "inserting")
@@ -167,7 +167,7 @@
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
     :components ((:file "package") (:file "fluents") (:file "interface") (:file "takeovers")
-                 (:file "under-way") (:file "wishes") (:file "reacting") (:file "forking")
+                 (:file "under-way") (:file "unawaited") (:file "wishes") (:file "reacting") (:file "forking")
                  (:file "handles") (:file "rewinding")
                  (:file "watching") (:file "thread") (:file "starting") (:file "accessors")
                  (:file "outcomes") (:file "commands") (:file "runs") (:file "stranded")

@@ -149,3 +149,48 @@ output."
     (loop repeat 2
           do (world:make-new-thing 'ball (list (world:find-map 'arena) 3 3) '((:kickers (wobble)))))
     (is (= 1 (length (lines-of (displayed)))))))
+
+;;; Said once for each name and run.
+
+(test plans.tell-of-commands-that-go-on
+  (flet ((leave () (driver:run-plan (plan-of (driver:rpl-camera-turn 0 1)))))
+    (let ((text (rover-writes () (leave) (leave))))
+      (is (= 1 (length (lines-of text))) "~A" text)
+      (is-true (has-words-p text "succeeded while its command rpl-camera-turn was under way"
+                            "(wait-for (vref camera-moved* 0))"))))
+  (is (string= "" (rover-writes ()
+                    (driver:run-plan (plan-of (driver:rpl-robot-turn 1)
+                                              (rpl:wait-for driver:robot-stopped*)
+                                              (driver:rpl-robot-set-speed 1)
+                                              (driver:rpl-robot-stop)))))))
+
+(test angles.in-degrees-are-told-of
+  (let ((text (rover-writes ()
+                (command:robot-turn rover 90)
+                (command:robot-turn rover 45)
+                (command:camera-turn (robot:robot-camera rover 0) -30)
+                (robot:place-robot rover 5 9 7.5))))
+    (is (= 3 (length (lines-of text))) "~A" text)
+    (is-true (has-words-p text "robot-turn: 90 radians are 14.3 whole turns" "(* 90 (/ pi 180))"
+                          "camera-turn: -30" "place-robot: 7.50 radians")))
+  (is (string= "" (rover-writes ()
+                    (command:robot-turn rover (* 4 pi))
+                    (command:robot-turn rover 6)
+                    (command:robot-turn rover (* 400 (/ pi 180)))))
+      "said by pi, or in degrees"))
+
+(test commands.without-a-run-are-told-of
+  (let ((robot (robot:find-robot 'rover)))
+    (run:simulator 'rover :rate :free)
+    (run:stop-simulator)
+    (with-messages
+      (command:robot-turn robot 1)
+      (command:robot-turn robot 1)
+      (let ((text (displayed)))
+        (is (= 1 (length (lines-of text))) "~A" text)
+        (is-true (has-words-p text "robot-turn is kept for a later run" "(simulator 'rover)"))))
+    (run:simulator 'rover :rate :free)
+    (with-messages
+      (command:robot-turn robot 1)
+      (is (string= "" (displayed))))
+    (run:stop-simulator)))

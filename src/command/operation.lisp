@@ -287,21 +287,3 @@ by interrupting RIVAL, an operation: nothing, if that has not begun.")
   (cond ((robot-p resource) resource)
         ((mind-p resource) (mind-robot resource))
         (t (part-robot resource))))
-
-(defun occupied (command resource)
-  "Return what COMMAND, which is issued on RESOURCE, occupies."
-  (let ((reader (command-occupies command)))
-    (if reader (funcall reader resource) resource)))
-
-(defun issue (command resource arguments continuation)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked and of which lists are copied;
-CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
-if the robot's run is over."
-  (check-in-run resource (command-name command))
-  (let ((timeline (world-timeline (robot-world (resource-robot resource))))
-        (arguments (if (some #'consp arguments)
-                       (given (command-name command) "arguments" arguments)
-                       arguments)))
-    (note-asked (occupied command resource))
-    (post (make-operation command (occupied command resource) arguments continuation timeline)
-          timeline)))

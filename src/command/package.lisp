@@ -18,8 +18,10 @@
   ;; operation
   (:export #:operation #:operation-command #:operation-resource #:operation-arguments
            #:operation-p #:operation-world #:operation-finished-p #:operation-continuation
-           #:operation-step #:operation-subject #:operation-count #:issue #:finish #:succeed
+           #:operation-step #:operation-subject #:operation-count #:finish #:succeed
            #:fail-with #:notify #:report #:once-more #:go-on #:go-on-now)
+  ;; issuing
+  (:export #:issue)
   ;; ownership
   (:export #:under-way #:last-interruption #:under-way-text #:interruption-text)
   ;; error-codes

@@ -111,6 +111,7 @@ robot."
   (let* ((blueprint (read-blueprint name environment position angle cameras hands bins parts))
          (robot (settle-robot blueprint)))
     (register *robots* name blueprint :variable t :value robot)
+    (doubt-angle (title "defrobot" name) (robot-world robot) angle)
     robot))
 
 (defun check-robot-name (definition name)

@@ -61,6 +61,7 @@ messages. Signals WRONG-ARGUMENT (manual E). See reading 114."
   (check-of-type 'place-robot 'x x 'number)
   (check-of-type 'place-robot 'y y 'number)
   (check-of-type 'place-robot 'angle angle 'angle)
+  (doubt-angle 'place-robot (robot-world robot) angle)
   (let ((map (world-map (robot-world robot))))
     (unless (map-index map x y)
       (error 'wrong-argument :operator "pos" :name "position" :value (list x y)

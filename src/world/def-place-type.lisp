@@ -21,6 +21,10 @@
   "Return DIRECTION, which MATCHER says, as a double-float. Signals MALFORMED-DEFINITION."
   (unless (within-reason-p direction)
     (reject-clause definition matcher (argument-type-text 'angle)))
+  (when (perhaps-degrees-p direction)
+    (queue-message (make-message :warning (list definition ": " (degrees-advice direction))
+                                 :notable-p t)
+                   *message-queue*))
   (double direction))
 
 (defun matcher-form (matcher definition)

@@ -1,0 +1,41 @@
+;;;; unawaited.lisp -- commands that go on after the plan that gave them has succeeded.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; That is allowed (reading 185), but most often a wait has been forgotten. Not counted are
+;;; commands that take no time, go on in the background, stop the robot, or were given to clean up.
+
+(defun unawaited-deeds (interface task)
+  "Return what the top-level TASK, of INTERFACE, has asked for and is under way."
+  (remove-if-not (lambda (deed)
+                   (and (deed-open-p deed)
+                        (ends-by-command-p deed)
+                        (not (eq 'robot-stop (command-name (deed-command deed))))
+                        (not (deed-cleanup-p deed))
+                        (deed-task deed)
+                        (eq task (task-top (deed-task deed)))))
+                 (interface-deeds interface)))
+
+(defun fluent-form-text (fluent)
+  "Return how plans write FLUENT, one of the robot's or of a part's."
+  (let* ((name (fluent-text fluent)) (space (position #\Space name)))
+    (if space
+        (format nil "(vref ~A)" name)
+        name)))
+
+(defun wait-text (deed)
+  "Return how a plan waits for the end of DEED, or NIL if nothing tells of that."
+  (let ((pulse (assoc :pulse (funcall (deed-outcome deed) (deed-resource deed) :interrupt))))
+    (and pulse (format nil "(wait-for ~A)" (fluent-form-text (second pulse))))))
+
+(defun tell-of-unawaited (interface task)
+  "Say once if commands of TASK, a plan of INTERFACE that has succeeded, are under way."
+  (let ((deed (first (unawaited-deeds interface task))))
+    (when deed
+      (warn-once (list :unawaited (task-label task))
+                 (simulation-world (interface-simulation interface))
+                 (format nil "The plan ~A succeeded while its command rpl-~(~A~) was under way, ~
+                              which goes on.~@[ If the plan is to end with it, let it ~A.~]"
+                         (task-label task)
+                         (command-name (deed-command deed))
+                         (wait-text deed))))))
