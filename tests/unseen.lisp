@@ -194,3 +194,15 @@ output."
       (command:robot-turn robot 1)
       (is (string= "" (displayed))))
     (run:stop-simulator)))
+
+;;; What is of another run.
+
+(test another-run.its-designators-and-things-are-refused
+  (let ((designator nil) (thing nil))
+    (run:with-simulation (rover :clean t)
+      (setf thing (world:find-thing 'pillar)
+            designator (robot::make-designator :robot rover :type :non-local)))
+    (run:with-simulation (rover)
+      (signals base:misuse (command:camera-track (robot:robot-camera rover 0) designator))
+      (signals base:misuse (world:move-thing thing '(3 3)))
+      (signals base:misuse (world:set-attribute thing :color 'red)))))

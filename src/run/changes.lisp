@@ -12,6 +12,15 @@
   (unless (simulation-over simulation)
     (note simulation operator arguments)))
 
+(defun check-not-of-past-run (timeline operator)
+  "Signal MISUSE if what OPERATOR is to change belongs to TIMELINE, which is over, and this code
+works in another run."
+  (let ((own (and *simulation* (timeline-of *simulation*))))
+    (when (and own (timeline-over timeline) (not (eq own timeline)))
+      (reject-outlived "~(~A~): that is of another run in ~(~A~), which is over: ~A. FIND-THING ~
+                        and robots' names lead to those of the run at hand."
+                       operator (timeline-name timeline) (timeline-over timeline)))))
+
 (defun change-again (world operator arguments)
   "Do to WORLD, which this thread has in custody, what OPERATOR does with ARGUMENTS, if that makes
 sense now."
@@ -21,6 +30,7 @@ sense now."
 
 (defmethod change-world ((timeline timeline) world function operator arguments)
   (check-own-run timeline)
+  (check-not-of-past-run timeline operator)
   (if (owner-p timeline)
       (deferring-interrupts
         (note-change (world-simulation world) operator arguments)
