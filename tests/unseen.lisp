@@ -206,3 +206,10 @@ output."
       (signals base:misuse (command:camera-track (robot:robot-camera rover 0) designator))
       (signals base:misuse (world:move-thing thing '(3 3)))
       (signals base:misuse (world:set-attribute thing :color 'red)))))
+
+;;; Calls from Lisp, and names.
+
+(test plans.called-by-lisp-name-run-plan
+  (is-true (has-words-p (handler-case (funcall 'forlorn)
+                          (base:misuse (trouble) (princ-to-string trouble)))
+                        "(run-plan '" "FORLORN)")))

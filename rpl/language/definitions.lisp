@@ -41,8 +41,7 @@
 (defun stub-lambda (name)
   "Return the lambda expression for what Lisp code gets that calls the plan procedure NAME."
   `(lambda (&rest arguments)
-     (declare (ignore arguments))
-     (reject-lisp-call ',name)))
+     (reject-lisp-call ',name arguments)))
 
 (defun check-plan-name (definition name)
   "Signal MALFORMED-DEFINITION unless NAME, of DEFINITION, is a symbol that users can define."

@@ -105,10 +105,15 @@ LAMBDA-LIST."
   (loop for name being the hash-keys of *declared-procedures*
         when (procedure-name-p name) collect name))
 
-(defun reject-lisp-call (name)
-  "Signal MISUSE: Lisp code has called NAME."
-  (reject-use "~S is a plan procedure and was called by Lisp code. Call it from a plan, outside of ~
-               any lambda; at top level run it: (run-plan-alone '~S ...)." name name))
+(defun reject-lisp-call (name arguments)
+  "Signal MISUSE: Lisp code has called NAME with the list ARGUMENTS."
+  (let ((more (if arguments " ..." "")))
+    (reject-use "~S is a plan, and Lisp code called it as a function. Run it on a robot by ~
+                 (run-plan '~S~A), or without one by (run-plan-alone '~S~@[ :arguments ~
+                 (list ...)~]). ~
+                 A plan calls it as it is here, but outside of lambda and other forms that only ~
+                 Lisp runs."
+                name name more name arguments)))
 
 (defun set-lambda-list (procedure lambda-list)
   "Let PROCEDURE take what LAMBDA-LIST says."
