@@ -213,3 +213,22 @@ output."
   (is-true (has-words-p (handler-case (funcall 'forlorn)
                           (base:misuse (trouble) (princ-to-string trouble)))
                         "(run-plan '" "FORLORN)")))
+
+(test failures.show-forms-as-they-were-written
+  (flet ((text (plan) (rover-writes () (driver:run-plan plan))))
+    (is-true (has-words-p (text (plan-of (rpl:wait-until (> (symbol-value 'nonsuch) 3))))
+                          "in (wait-until (> (symbol-value"))
+    (let ((text (text (plan-of (if (= (rpl:wait-time 1) (symbol-value 'nonsuch))
+                                   (rpl:wait-time 1)
+                                   (rpl:wait-time 2))))))
+      (is-true (has-words-p text "in (= (wait-time 1) (symbol-value (quote nonsuch)))"
+                            "(if (= (wait-time 1)"))
+      (is (not (search "part" text)))
+      (is (not (search "value2" text))))))
+
+(test undefined-variables.are-told-of-in-what-was-written
+  (let ((told (error-output
+                (call-with-files #'compiled
+                                 '("(def-interp-proc idle () (wait-for no-such-fluent*))")))))
+    (is-true (has-words-p told "WAIT-FOR" "undefined variable" "NO-SUCH-FLUENT*"))
+    (is (not (search "ONE-FLUENT" told)) "~A" told)))

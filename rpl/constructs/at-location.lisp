@@ -101,5 +101,5 @@ ours, where CRAM asks its process modules.)"
   (:code (progn
            (unless (and (given-p :there form) (given-p :go form))
              (reject-clause (author) form "(at-location (place :there test :go form) form...)"))
-           (plan-code (note-own-text (at-location-text place there go (or attempts 10) body))
+           (plan-code (note-expansion (at-location-text place there go (or attempts 10) body) form)
                       scope))))

@@ -12,4 +12,5 @@
 (define-plan-form "FAIL" :may (&rest arguments) (form scope)
   (if (some (lambda (argument) (suspends-p argument scope)) arguments)
       (hoisted-code form scope)
-      `(make-failing :form ',form :arguments ,(value-lambda `(list ,@arguments) scope))))
+      `(make-failing :form ',(form-as-written form)
+                      :arguments ,(value-lambda `(list ,@arguments) scope))))

@@ -89,5 +89,5 @@ at the handler's end the failure goes on. Return all values of BODY."
   "In a handler of WITH-FAILURE-HANDLING: run its body anew."
   (:code
    (if (scope-retry scope)
-       `(make-leave :form ',form :target ,(scope-retry scope) :result +nothing+)
+       `(make-leave :form ',(form-as-written form) :target ,(scope-retry scope) :result +nothing+)
        (reject-clause (author) form "retry only in a handler of handle-failure"))))

@@ -203,13 +203,13 @@ the variables around it. (CRAM's, where it takes a name.)"
   "Run BODY in a plan while POLICY, a policy or its name, is in force with ARGUMENTS, a list of
 forms. See DEFINE-POLICY. Return the value of BODY. (CRAM's; the manual's WITH-POLICY takes plan
 text as its policy.)"
-  (:code (plan-code (note-own-text (policies-text `((,policy ,arguments)) body form)) scope)))
+  (:code (plan-code (note-expansion (policies-text `((,policy ,arguments)) body form) form) scope)))
 
 (define-construct with-policies (policies &body body)
   "Run BODY in a plan while POLICIES, each (policy (argument...)) as in WITH-NAMED-POLICY, are in
 force: the first comes into force first and takes precedence over those after it. (CRAM's.)"
-  (:code (plan-code (note-own-text (policies-text policies body form)) scope)))
+  (:code (plan-code (note-expansion (policies-text policies body form) form) scope)))
 
 (define-construct with-named-policies (policies &body body)
   "Do as WITH-POLICIES. (CRAM's.)"
-  (:code (plan-code (note-own-text (policies-text policies body form)) scope)))
+  (:code (plan-code (note-expansion (policies-text policies body form) form) scope)))

@@ -18,4 +18,4 @@
   "Wait in a plan until the form CONDITION is true; return its value. If it gives a fluent or a
 network, as (< level 46) does of a fluent, that is waited for; anything else is tested anew at each
 tick. CONDITION may itself wait. (Ours: what policies and AT-LOCATION watch is watched so.)"
-  (:code (plan-code (note-own-text (wait-until-text condition)) scope)))
+  (:code (plan-code (note-expansion (wait-until-text condition) form) scope)))

@@ -79,11 +79,11 @@ parts begun; its memory is the environment to be."
                                body (binding-scope scope variables bindings body
                                               sequential))))
                (if (some #'suspends-p values scopes)
-                   `(make-filling :form ',form
+                   `(make-filling :form ',(form-as-written form)
                                   :parts (vector ,@(mapcar #'plan-code values scopes))
                                   :sequential ,sequential
                                   :body ,body-code)
-                   `(make-binding :form ',form
+                   `(make-binding :form ',(form-as-written form)
                                   :fill ,(fill-lambda values scopes sequential)
                                   :body ,body-code)))))))
 
@@ -112,7 +112,7 @@ parts begun; its memory is the environment to be."
   (check-distinct variables form)
   (cond ((binds-special-p variables body scope) (refuse-code form scope))
         (t (check-use variables body form)
-           `(make-value-binding :form ',form
+           `(make-value-binding :form ',(form-as-written form)
                                 :count ,(length variables)
                                 :source ,(plan-code source (several-scope scope))
                                 :body ,(binding-body-code body

@@ -15,10 +15,11 @@
   "Return code for a choice by TEST, whose source is FORM. THEN and ELSE are lists of forms."
   (if (suspends-p test scope)
       (with-gensyms (value)
-        (plan-code (note-own-text `(let ((,value ,test))
-                                     (if ,value (progn ,@then) (progn ,@else))))
+        (plan-code (note-expansion `(let ((,value ,test))
+                                      (if ,value (progn ,@then) (progn ,@else)))
+                                   form)
                    scope))
-      `(make-branch :form ',form
+      `(make-branch :form ',(form-as-written form)
                     :chooser ,(leaf-lambda
                                (as-lisp `(if ,(condition-form test (scope-environment scope)) 0 1)
                                           scope)
@@ -46,7 +47,7 @@
 (defun case-code (form operator key clauses scope)
   "Return code for FORM, by OPERATOR, such as CASE, of the value of KEY."
   (hoisting (key) form scope
-    `(make-branch :form ',form
+    `(make-branch :form ',(form-as-written form)
                   :chooser ,(value-lambda `(,operator (fluent-value ,key)
                                                       ,@(loop for (keys) in clauses
                                                               for index from 0
@@ -72,7 +73,8 @@
 (define-plan-form "OR" nil (&rest forms) (form scope)
   (if (rest forms)
       (with-gensyms (value)
-        (plan-code (note-own-text `(let ((,value ,(first forms)))
-                                     (if ,value ,value (or ,@(rest forms)))))
+        (plan-code (note-expansion `(let ((,value ,(first forms)))
+                                      (if ,value ,value ,(note-own-text `(or ,@(rest forms)))))
+                                   form)
                    scope))
       (plan-code (first forms) scope)))

@@ -67,7 +67,7 @@ it, and those to the left of them too, to keep the order."
          (count (1+ (position-if (lambda (part) (suspends-p part scope)) parts :from-end t)))
          (names (loop for part in (subseq parts 0 count)
                       collect (if (constantp part) nil (gensym "PART")))))
-    (plan-code (note-own-text
+    (plan-code (note-expansion
                 `(let ,(loop for name in names
                              for part in parts
                              when name collect (list name part))
@@ -75,7 +75,8 @@ it, and those to the left of them too, to keep the order."
                     ,@(loop for name in names
                             for part in parts
                             collect (or name part))
-                    ,@(nthcdr count parts))))
+                    ,@(nthcdr count parts)))
+                form)
                scope)))
 
 (defun call-code (form scope)
@@ -84,7 +85,7 @@ it, and those to the left of them too, to keep the order."
          (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
          (outer (and local (list (environment-form scope (second local))))))
     (check-call form scope)
-    `(make-call :form ',form
+    `(make-call :form ',(form-as-written form)
                 :count ,(length arguments)
                 :procedure ,(if local (first local) `(ensure-procedure ',(first form)))
                 :caller ,(leaf-lambda `(funcall %function ,@outer ,@arguments) scope
@@ -103,7 +104,8 @@ it, and those to the left of them too, to keep the order."
 
 (defun plan-code (form scope)
   "Return code that builds the node for FORM."
-  (keep-place (node-code form scope) form))
+  (let ((*form-at-hand* (if (in-source-p form) form *form-at-hand*)))
+    (keep-place (node-code form scope) form)))
 
 (defun node-code (form scope)
   (if (not (or (suspends-p form scope) (binds-fluents-p form scope)))
@@ -146,5 +148,7 @@ the names of the variables there."
 (defun expansion-code (form scope)
   "Return code for FORM, a macro call."
   (let ((expansion (macroexpand-1 form (scope-environment scope))))
-    (unless (lisps-own-p (first form)) (note-own-text expansion))
+    (if (lisps-own-p (first form))
+        (note-written-as expansion form)
+        (note-own-text expansion))
     (plan-code expansion scope)))

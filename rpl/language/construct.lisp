@@ -46,8 +46,9 @@ make its task wait, bind it before FORM, and so those to the left of it."
   (let ((last (position-if (lambda (argument) (suspends-p argument scope)) arguments
                            :from-end t)))
     (if last
-        (plan-code (note-own-text (hoisted-form (remove-if #'atom (subseq arguments 0 (1+ last)))
-                                                form))
+        (plan-code (note-expansion (hoisted-form (remove-if #'atom (subseq arguments 0 (1+ last)))
+                                                 form)
+                                   form)
                    scope)
         (funcall coder))))
 
@@ -78,7 +79,7 @@ make its task wait, bind it before FORM, and so those to the left of it."
     `(flet ((build (&optional (scope scope))
               (declare (ignorable scope))
               (list ',(symbolicate 'make- node)
-                    :form (list 'quote form)
+                    :form (list 'quote (form-as-written form))
                     ,@(loop for (part nil code) in (clause :parts clauses)
                             append (list (make-keyword part) code)))))
        (declare (ignorable #'build))

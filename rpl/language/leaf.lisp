@@ -137,7 +137,7 @@ fluent to wait for."
 (defun leaf-code (form scope)
   "Return code that builds the leaf for FORM."
   (let ((meaning (as-lisp form scope)))
-    `(make-leaf :form ',form
+    `(make-leaf :form ',(form-as-written form)
                 :function ,(leaf-lambda (if (and (scope-several scope) (consp form))
                                             `(multiple-value-call #'bundle-up ,meaning)
                                             meaning)

@@ -37,7 +37,7 @@ FORM, can be left. There is a node for it only if it is."
     (let ((code (funcall coder (inner-scope scope :blocks (acons name target
                                                                  (scope-blocks scope))))))
       (if (mentions-p target code)
-          `(let ((,target (make-block-node :form ',form :body +nothing+)))
+          `(let ((,target (make-block-node :form ',(form-as-written form) :body +nothing+)))
              (setf (block-node-body ,target) ,code)
              ,target)
           code))))
@@ -48,7 +48,7 @@ FORM, can be left. There is a node for it only if it is."
 (define-plan-form "RETURN-FROM" nil (name &optional result) (form scope)
   (let ((target (cdr (assoc name (scope-blocks scope)))))
     (if target
-        `(make-leave :form ',form :target ,target
+        `(make-leave :form ',(form-as-written form) :target ,target
                      :result ,(plan-code result (several-scope scope)))
         (reject-name "block" name (mapcar #'car (scope-blocks scope))))))
 
@@ -81,7 +81,7 @@ FORM, can be left. There is a node for it only if it is."
                        if (atom part) collect (list* part target place)
                        else do (incf place)))
            (inner (inner-scope (single-scope scope) :tags (append tags (scope-tags scope)))))
-      `(let ((,target (make-tag-body :form ',form :parts (vector))))
+      `(let ((,target (make-tag-body :form ',(form-as-written form) :parts (vector))))
          (setf (tag-body-parts ,target)
                (vector ,@(loop for part in forms collect (plan-code part inner))))
          ,target))))
@@ -89,5 +89,5 @@ FORM, can be left. There is a node for it only if it is."
 (define-plan-form "GO" nil (tag) (form scope)
   (destructuring-bind (&optional target . place) (cdr (assoc tag (scope-tags scope)))
     (if target
-        `(make-jump :form ',form :target ,target :place ,place)
+        `(make-jump :form ',(form-as-written form) :target ,target :place ,place)
         (reject-name "tag" tag (mapcar #'car (scope-tags scope))))))

@@ -101,7 +101,7 @@ them if OUTER, and returns the environment for a procedure's body."
                for variable in variables
                collect (local-procedure-code definition variable outer))
        ,(if functions
-            `(make-binding :form ',form
+            `(make-binding :form ',(form-as-written form)
                            :fill ,(functions-lambda (first form) functions scope)
                            :body ,body-code)
             body-code))))

@@ -52,7 +52,7 @@ remembers how many are left, NIL if any number."
                     (list* (note-own-text `(when ,test (return-from nil nil))) body) scope)
         (block-code nil form scope
                     (lambda (scope)
-                      `(make-turns :form ',form
+                      `(make-turns :form ',(form-as-written form)
                                    :until ,(test-lambda test scope)
                                    :times ,(value-lambda count scope)
                                    :body ,(body-code body (single-scope scope))))))))
@@ -115,7 +115,7 @@ BODY and RESULT, both forms: a call of MAKER."
       (block-code nil form scope
                   (lambda (scope)
                     (let ((inner (variable-scope scope (list variable))))
-                      `(,maker :form ',form
+                      `(,maker :form ',(form-as-written form)
                                ,slot ,(value-lambda source scope)
                                :body ,(each-body-code variable body scope)
                                :ending ,(body-code (remove nil result) inner))))))))

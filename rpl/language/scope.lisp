@@ -138,8 +138,25 @@ ADDITIONS."
     (unless (equal (cddr layer) '(()))  ; no variables
       (setf form `(,@(layer-wrapping layer scope) ,form)))))
 
+(defvar *form-at-hand* nil
+  "The innermost form around, of those in the source that is being compiled, or NIL.")
+
+(defun place-made (form)
+  "Let what has been made around parts of the form at hand stand where that does, so that the
+compiler tells of that and not of what was made. Return FORM."
+  (labels ((place (form depth)
+             (when (and (consp form) (plusp depth) (not (in-source-p form)))
+               (keep-place form *form-at-hand*)
+               (loop for tail = form then (rest tail)
+                     repeat 8
+                     while (consp tail)
+                     do (place (first tail) (1- depth))))))
+    (when (in-source-p *form-at-hand*) (place form 12)))
+  form)
+
 (defun leaf-lambda (form scope &rest parameters)
   "Return the lambda expression for FORM in SCOPE: it takes the environment and PARAMETERS."
-  `(lambda (,(scope-variable scope) ,@parameters)
-     (declare (type simple-vector ,(scope-variable scope)) (ignorable ,(scope-variable scope)))
-     ,(wrap-for-leaf form scope)))
+  (place-made
+   `(lambda (,(scope-variable scope) ,@parameters)
+      (declare (type simple-vector ,(scope-variable scope)) (ignorable ,(scope-variable scope)))
+      ,(wrap-for-leaf form scope))))

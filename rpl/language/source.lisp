@@ -144,6 +144,31 @@
     (note form))
   form)
 
+(defvar *written-forms* nil
+  "While a plan is compiled: a table from conses that were made to the forms of the author's text
+that they stand for.")
+
+(defun form-as-written (form)
+  "Return what the author has written of which FORM was made, or FORM."
+  (values (gethash form *written-forms* form)))
+
+(defun note-written-as (expansion form)
+  "Remember that what is new in EXPANSION, made of FORM, stands for that. Return EXPANSION."
+  (let ((written (form-as-written form)))
+    (labels ((note (part)
+               (loop while (and (consp part)
+                                (not (own-text-p part))
+                                (not (gethash part *written-forms*)))
+                     do (setf (gethash part *written-forms*) written)
+                        (note (car part))
+                        (setf part (cdr part)))))
+      (note expansion)))
+  expansion)
+
+(defun note-expansion (expansion form)
+  "Remember that EXPANSION, made of FORM, is the plan's own text, but stands for FORM. Return it."
+  (note-own-text (note-written-as expansion form)))
+
 (defun own-text-p (form)
   (gethash form *own-conses*))
 
@@ -151,6 +176,7 @@
   "Run BODY while FORM, and what is noted besides, is known to be a plan's text. What is made of it
 has the same names every time, so that traces can be compared."
   `(let ((*own-conses* (make-hash-table :test 'eq))
+         (*written-forms* (make-hash-table :test 'eq))
          (*gensym-counter* 0))
      (note-own-text ,form)
      ,@body))

@@ -50,7 +50,7 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
   (unless (tag-name-p name)
     (reject-clause (author) form "(:tag name form...), with a symbol as the name of the task"))
   (destructuring-bind (&optional level index) (cdr (assoc name (scope-task-tags scope)))
-    `(make-tagged :form ',form :name ',name
+    `(make-tagged :form ',(form-as-written form) :name ',name
                   :place ,(if level
                               `(lambda (,(scope-variable scope))
                                  (values ,(environment-form scope level) ,index))
@@ -90,7 +90,7 @@ tags."
   "Return the code that CODER returns for a scope in which NAMES are bound to tasks."
   (if names
       `(make-binding
-        :form ',form
+        :form ',(form-as-written form)
         :fill (lambda (environment)
                 (vector environment
                         ,@(loop for name in names collect `(make-task ',name +nothing+))))
