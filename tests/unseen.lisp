@@ -95,43 +95,43 @@ output."
 
 (defmacro warnings-of-plan (&body body)
   "Return the text of the warnings that come when a plan that does BODY is made."
-  `(warning-about '(rpl:interp-lambda (x) ,@body)))
+  `(warning-about '(rpl:interp-lambda (given) ,@body)))
 
 (defvar *level* (rpl:create-fluent 'level 0))
 
 (test wait-for.warns-of-values
-  (is-true (has-words-p (warnings-of-plan x (rpl:wait-for (rpl:fluent-value driver:robot-stopped*)))
+  (is-true (has-words-p (warnings-of-plan (rpl:wait-for (rpl:fluent-value driver:robot-stopped*)))
                         "wait-for needs a fluent" "never changes"
                         "Write (wait-for driver:robot-stopped*)"))
-  (is-true (has-words-p (warnings-of-plan x (rpl:wait-for (> (rpl:fluent-value *level*) 3)))
+  (is-true (has-words-p (warnings-of-plan (rpl:wait-for (> (rpl:fluent-value *level*) 3)))
                         "Write (wait-for (> *level* 3))"))
-  (is-true (has-words-p (warnings-of-plan x (rpl:wait-for 'driver:robot-stopped* :timeout 3))
+  (is-true (has-words-p (warnings-of-plan (rpl:wait-for 'driver:robot-stopped* :timeout 3))
                         "Write (wait-for driver:robot-stopped* ...)"))
-  (is-true (has-words-p (warnings-of-plan x (rpl:whenever (not (rpl:fluent-value *level*)) 1))
+  (is-true (has-words-p (warnings-of-plan (rpl:whenever (not (rpl:fluent-value *level*)) 1))
                         "Write (whenever (not *level*) ...)")))
 
 (test wait-for.takes-what-may-be-a-fluent
   (is (string= "" (warnings-of-plan
                     (rpl:wait-for driver:robot-stopped*)
                     (rpl:wait-for (> *level* 3))
-                    (rpl:wait-for (> *level* (rpl:fluent-value x)))
-                    (rpl:wait-for (> x (rpl:fluent-value *level*)))
+                    (rpl:wait-for (> *level* (rpl:fluent-value given)))
+                    (rpl:wait-for (> given (rpl:fluent-value *level*)))
                     (rpl:wait-for (svref driver:camera-moved* 0))
-                    (rpl:wait-for x)
+                    (rpl:wait-for given)
                     (rpl:wait-for :at-once)
-                    (rpl:wait-for (or x driver:robot-stopped*))
+                    (rpl:wait-for (or given driver:robot-stopped*))
                     (rpl:wait-until (> (rpl:fluent-value *level*) 3))))))
 
 (test wait-for.tells-at-run-time-of-a-value-that-is-no-fluent
   (let ((text (rover-writes ()
                 (flet ((idle ()
-                         (driver:run-plan (rpl:interp-lambda (x)
-                                            (dotimes (i 3) (rpl:wait-for x :timeout 2)))
+                         (driver:run-plan (rpl:interp-lambda (given)
+                                            (dotimes (i 3) (rpl:wait-for given :timeout 2)))
                                           nil)))
                   (idle)
                   (idle)))))
     (is (= 1 (length (lines-of text))) "once for each form: ~A" text)
-    (is-true (has-words-p text "(wait-for x :timeout 2) waits for a value that is no fluent"
+    (is-true (has-words-p text "(wait-for given :timeout 2) waits for a value that is no fluent"
                           "wait-until"))))
 
 ;;; Options of things among their attributes.
