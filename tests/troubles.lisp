@@ -148,7 +148,7 @@
       (is-true (has-words-p (princ-to-string (first errors)) "no turns"))
       (is (typep (base:user-code-error-cause (third errors)) 'rpl:plan-failure)))))
 
-(test errors.have-one-of-three-manners
+(test errors.have-one-of-three-policies
   (signals base:wrong-argument (run:with-simulation (rover :errors :ignore))))
 
 (test plans.that-somebody-waits-for-fail-without-an-error
@@ -172,6 +172,29 @@
   (is (string= "" (error-output (run:with-simulation (rover)
                                   (driver:rpl-init-robot rover)
                                   (driver:run-plan (rpl:interp-lambda () (rpl:fail))))))))
+
+(test errors.that-are-collected-are-the-latest
+  (with-messages
+    (loop for number to 1000
+          do (base:trouble-set t (princ-to-string number) "slip"))
+    (let ((errors (base:errors-in base:*message-queue* (constantly t))))
+      (is (= 1000 (length errors)))
+      (is (equal '("1" "1000") (mapcar #'princ-to-string
+                                       (list (first errors) (first (last errors)))))))
+    (base:forget-errors base:*message-queue* (constantly t))
+    (is (null (base:errors-in base:*message-queue* (constantly t))))))
+
+(test warnings.are-shown-that-ask-what-is-so-in-the-end
+  "What a warning asks may itself queue a message."
+  (flet ((shown (notable errors)
+           (error-output (run:with-simulation (rover :errors errors)
+                           (base:queue-message (base:make-message :warning '("odd")
+                                                                  :notable-p notable)
+                                               base:*message-queue*)))))
+    (dolist (errors '(:report :signal))
+      (is-true (has-words-p (shown (lambda () (base:message-set "asked") t) errors) "odd"))
+      (is (string= "" (shown (constantly nil) errors))))
+    (is (string= "" (shown t :collect)))))
 
 ;;; Live: nobody listens at a plain REPL.
 

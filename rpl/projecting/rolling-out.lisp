@@ -31,7 +31,7 @@ it writes is lost unless PRINT is true."
 (defun lighten (moment)
   "Let MOMENT, a fork, keep no journal and no trace of plans, and tell nobody of errors. Return it."
   (setf (simulation-journal moment) nil
-        (message-queue-manner (simulation-messages moment)) :collect)
+        (message-queue-error-policy (simulation-messages moment)) :collect)
   (dolist (participant (simulation-participants moment))
     (when (interface-p participant) (stop-trace (interface-runner participant))))
   moment)

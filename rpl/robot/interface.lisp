@@ -8,9 +8,10 @@
 ;;;
 ;;; One rule for what several threads read: timers, ready tasks and all else of the runner are read
 ;;; and changed by the thread that holds the lock. When it gives the lock back it publishes, as one
-;;; value, the tick at which plans next need to go on; the clock reads that. Posts and the tasks
-;;; that are to end are atomic lists. The list of top-level tasks is replaced as a whole, never
-;;; altered.
+;;; value, the tick at which plans next need to go on; the clock reads that. Posts, the tasks that
+;;; are to end and those that RUN-PLAN waits for are atomic lists. The list of top-level tasks is
+;;; replaced as a whole, never altered. Whether the plans' thread waits in a debugger is a flag that
+;;; only that thread sets.
 
 (addition *trace-plans*)
 (defparameter *trace-plans* nil

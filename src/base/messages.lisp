@@ -41,19 +41,20 @@ end."
   (told-p nil :type boolean :read-only t)
   (notable-p nil :type (or boolean function) :read-only t))
 
-(defstruct (message-queue (:constructor make-message-queue (&key (manner :report) echoed))
+(defstruct (message-queue (:constructor make-message-queue (&key (error-policy :report) echoed))
                           (:copier nil))
   "Messages nobody has read yet. LISTENER, if any, is called (with no arguments, in the thread
-that reports) after each message is queued. MANNER says what becomes of errors in users' code:
-TROUBLES are those that came, UNSIGNALLED is the first that is to be signalled, see troubles.lisp.
-SEEN is the end of NEWEST-FIRST that nobody needs to be shown. If ECHOED, a table, trouble is shown
-as it comes where nobody listens; the table counts it."
+that reports) after each message is queued. ERROR-POLICY says what becomes of errors in users'
+code: TROUBLES are the latest of them, the newest first, UNSIGNALLED is the first that is to be
+signalled, see troubles.lisp. SEEN is the end of NEWEST-FIRST that nobody needs to be shown. If
+ECHOED, a table, errors are shown as they come where nobody listens; the table counts them. LOCK
+guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked without it."
   (lock (make-lock "messages") :read-only t)
   (newest-first '() :type list)
   (count 0 :type fixnum)
   (forgotten 0 :type fixnum)
   (listener nil :type (or null function))
-  (manner :report :type (member :report :signal :collect))
+  (error-policy :report :type (member :report :signal :collect))
   (seen '() :type list)
   (troubles '() :type list)
   (unsignalled nil :type (or null message))
@@ -73,7 +74,7 @@ as it comes where nobody listens; the table counts it."
       "Return a message of the kind and the list of items given, see MESSAGE."
       (documentation 'message-cause 'function)
       "Return the condition or failure in users' code that the message tells of, or NIL."
-      (documentation 'message-queue-manner 'function)
+      (documentation 'message-queue-error-policy 'function)
       "Return :REPORT, :SIGNAL or :COLLECT: what becomes of errors in users' code. Can be set."
       (documentation 'message-queue-unsignalled 'function)
       "Return the first message about an error in users' code that is to be signalled, or NIL.")
@@ -95,11 +96,11 @@ as it comes where nobody listens; the table counts it."
   "A function of a message and a queue that echoes, called when nobody listens to that.")
 
 (defun keep-trouble (message queue)
-  "Remember of MESSAGE, which tells QUEUE of an error in users' code, that it came."
-  (let ((troubles (message-queue-troubles queue)))
-    (when (null (nthcdr *message-limit* troubles))
-      (push message (message-queue-troubles queue))))
-  (when (and (eq :signal (message-queue-manner queue))
+  "Remember MESSAGE, which tells QUEUE of an error in users' code, and the latest before it."
+  (push message (message-queue-troubles queue))
+  (let ((last (nthcdr (1- *message-limit*) (message-queue-troubles queue))))
+    (when last (setf (rest last) '())))
+  (when (and (eq :signal (message-queue-error-policy queue))
              (null (message-queue-unsignalled queue)))
     (setf (message-queue-unsignalled queue) message)))
 

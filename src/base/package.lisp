@@ -142,16 +142,17 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; messages
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
-           #:copy-message-queue #:message-queue-listener #:message-queue-manner
+           #:copy-message-queue #:message-queue-listener #:message-queue-error-policy
            #:message #:message-kind #:message-items #:message-asker
            #:message-robot #:*robot-told-of* #:message-run #:*run-that-reports* #:*told-of*
            #:take-messages #:queue-message
            #:message-text #:phrase
            #:write-message #:write-items #:out #:*message-limit*)
   ;; troubles
-  (:export #:error-manner #:user-code-error #:user-code-error-cause #:trouble-set #:errors-in
-           #:take-unsignalled #:tell-unseen #:make-message #:*echo-output*
-           #:forgive #:overlook #:signal-trouble
+  (:export #:error-policy #:user-code-error #:user-code-error-cause #:trouble-set
+           #:errors-in #:forget-errors
+           #:take-unsignalled #:show-unseen #:make-message #:*echo-output*
+           #:drop-unsignalled #:skip-unseen #:signal-trouble
            #:message-cause #:message-queue-unsignalled)
   ;; askers
   (:export #:*asker* #:asker-note #:asker-forked-p #:*goes-on-in-forks-p* #:goes-on-in-forks-p

@@ -2,16 +2,16 @@
 
 (in-package :ars-magna.base)
 
-;;; A message has a cause if something is wrong with users' code: an error that came up in it, or
-;;; the failure of a plan that nobody waits for. What becomes of it is the manner of the queue:
+;;; A message has a cause if it tells of an error in users' code, or of the failure of a plan that
+;;; nobody waits for. The error policy of the queue decides what happens then:
 ;;;
-;;;   :REPORT   it is a message, and shown when the run ends if nobody has read it
-;;;   :SIGNAL   the first error is signalled as USER-CODE-ERROR to whoever lets ticks pass
-;;;   :COLLECT  it is a message; who wants to know of errors asks SIMULATION-ERRORS
+;;;   :REPORT   the message is queued, and shown when the run ends if nobody has read it
+;;;   :SIGNAL   the first error is signalled as USER-CODE-ERROR where ticks are passed
+;;;   :COLLECT  the message is queued; SIMULATION-ERRORS returns the errors
 ;;;
-;;; A queue that echoes shows it when it happens, unless somebody listens to the queue.
+;;; A queue with a table ECHOED shows errors at once, unless it has a listener.
 
-(deftype error-manner ()
+(deftype error-policy ()
   "What becomes of errors in users' code."
   '(member :report :signal :collect))
 
@@ -46,13 +46,23 @@ or a failure of a plan; TEXT says it in a line. Return nothing."
 (defun errors-in (queue run-p)
   "Return the errors of users' code that were told to QUEUE of runs for which RUN-P is true, as
 USER-CODE-ERRORs, the oldest first."
-  (loop for message in (reverse (message-queue-troubles queue))
-        when (funcall run-p (message-run message))
-          collect (error-of-message message)))
+  (let ((messages (with-lock ((message-queue-lock queue))
+                    (reverse (message-queue-troubles queue)))))
+    (loop for message in messages
+          when (funcall run-p (message-run message))
+            collect (error-of-message message))))
 
-(defun forgive (queue)
+(defun forget-errors (queue run-p)
+  "Forget the errors of users' code that were told to QUEUE of runs for which RUN-P is true: else a
+run that is over would be kept as long as the queue."
+  (with-lock ((message-queue-lock queue))
+    (setf (message-queue-troubles queue)
+          (remove-if run-p (message-queue-troubles queue) :key #'message-run))))
+
+(defun drop-unsignalled (queue)
   "Let no error of users' code that QUEUE has been told of be signalled."
-  (setf (message-queue-unsignalled queue) nil))
+  (with-lock ((message-queue-lock queue))
+    (setf (message-queue-unsignalled queue) nil)))
 
 (defun take-unsignalled (queue)
   "Return the first error of users' code that is to be signalled and was not, as USER-CODE-ERROR, or
@@ -86,27 +96,21 @@ it otherwise."
   (and (not (message-told-p message))
        (or (message-cause message) (eq :error (message-kind message)))))
 
-(defun notable-now-p (message queue)
-  "True if MESSAGE, in QUEUE, is a warning to be shown like an error. Where errors are signalled, as
-in tests and the trials of experiments, warnings are only messages."
+(defun notable-now-p (message)
+  "True if MESSAGE is a warning to be shown like an error."
   (let ((notable (message-notable-p message)))
-    (and (eq :report (message-queue-manner queue))
-         (if (functionp notable) (funcall notable) notable))))
+    (if (functionp notable) (funcall notable) notable)))
 
-(defun take-unseen (queue wanted)
-  "Return the messages in QUEUE that are to be seen, that nobody has seen, and for which WANTED is
-true, the oldest first. All in it counts as seen."
+(defun take-unseen (queue)
+  "Return the messages in QUEUE that nobody has seen, the oldest first. All in it counts as seen."
   (with-lock ((message-queue-lock queue))
-    (let* ((newest-first (message-queue-newest-first queue))
-           (unseen (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))
-      (reverse (remove-if-not (lambda (message)
-                                (and (or (to-be-seen-p message) (notable-now-p message queue))
-                                     (funcall wanted message)))
-                              unseen)))))
+    (let ((newest-first (message-queue-newest-first queue)))
+      (reverse (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))))
 
-(defun overlook (queue)
+(defun skip-unseen (queue)
   "Let nobody be shown what is in QUEUE by now; it can be read."
-  (setf (message-queue-seen queue) (message-queue-newest-first queue)))
+  (take-unseen queue)
+  (values))
 
 (defun write-counted (messages stream)
   "Write MESSAGES to STREAM, the same text once, with how often it came."
@@ -122,11 +126,14 @@ true, the oldest first. All in it counts as seen."
       (format stream "... and ~D other messages; (error-display), inside, shows all.~%"
               (- (length texts) *most-unread*)))))
 
-(defun tell-unseen (queue &optional (wanted (constantly t)))
+(defun show-unseen (queue &optional (wanted (constantly t)))
   "Write to the error output the messages in QUEUE that are to be seen and for which WANTED is true,
 unless they were read or told before, or errors are only to be collected."
-  (unless (or flush-all-errors* (eq :collect (message-queue-manner queue)))
-    (let ((messages (take-unseen queue wanted)))
+  (unless (or flush-all-errors* (eq :collect (message-queue-error-policy queue)))
+    (let ((messages (remove-if-not (lambda (message)
+                                     (and (or (to-be-seen-p message) (notable-now-p message))
+                                          (funcall wanted message)))
+                                   (take-unseen queue))))
       (when messages
         (fresh-line *error-output*)
         (write-counted messages *error-output*)

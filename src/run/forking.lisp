@@ -177,10 +177,10 @@ and false if there is to be no fork."
     (unless (typep seed '(or null integer))
       (reject-argument *fork-asker* 'seed seed "an integer, or NIL"))))
 
-(defun hand-over-manner (simulation fork)
+(defun inherit-error-policy (simulation fork)
   "Let what becomes of errors in users' code be in FORK as in SIMULATION."
-  (setf (message-queue-manner (simulation-messages fork))
-        (message-queue-manner (simulation-messages simulation))))
+  (setf (message-queue-error-policy (simulation-messages fork))
+        (message-queue-error-policy (simulation-messages simulation))))
 
 (addition fork-simulation)
 (defun fork-simulation (&rest arguments)
@@ -205,7 +205,7 @@ of the world outside, with restarts; MAKE-NO-FORK returns NIL."
     (mapc #'check-forkable (simulation-participants simulation))
     (let ((fork (fork-deciding simulation (getf options :continuations)))
           (seed (getf options :seed)))
-      (when fork (hand-over-manner simulation fork))
+      (when fork (inherit-error-policy simulation fork))
       (when (and fork seed) (call-inside fork (lambda () (set-seed seed fork))))
       fork)))
 
@@ -218,7 +218,7 @@ WRONG-ARGUMENT for what is no fork."
                   "a fork, as FORK-SIMULATION returns")
   (let ((fork (latest fork)))
     (unless (simulation-over fork)
-      (tell-unseen (simulation-messages fork))
+      (show-unseen (simulation-messages fork))
       (setf (timeline-over (simulation-timeline fork)) "the fork has been released")))
   (values))
 

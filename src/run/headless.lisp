@@ -159,14 +159,14 @@ mode."
 FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking 'with-simulation thinking)
-  (check-argument with-simulation errors (typep errors 'error-manner)
+  (check-argument with-simulation errors (typep errors 'error-policy)
                   ":report, :signal or :collect")
   (call-with-parameters
    parameters
    (lambda ()
      (check-parameters)
      (when clean (clean-simulation))
-     (let ((*message-queue* (make-message-queue :manner errors)))
+     (let ((*message-queue* (make-message-queue :error-policy errors)))
        (call-as-headless function
                          (fresh-simulation (ensure-list robots) :seed seed :journal journal
                                                                 :thinking thinking)
@@ -204,10 +204,10 @@ has been told is told, or signalled, as its message queue says."
         (unwind-protect (multiple-value-prog1 (funcall function)
                           (signal-trouble queue)
                           (setf left-p nil))
-          (tell-unseen queue)
+          (show-unseen queue)
           (end-headless simulation)
           ;; What is interrupted then is not wrong.
-          (tell-unseen queue (lambda (message)
+          (show-unseen queue (lambda (message)
                                (and (message-cause message)
                                     (or left-p
                                         (not (eq message (message-queue-unsignalled queue))))))))
@@ -244,9 +244,11 @@ over now.")
 (addition simulation-errors)
 (defun simulation-errors (&optional (simulation (current-simulation)))
   "Return the errors that came up in users' code that SIMULATION has called, and the failures of
-plans that were begun, as USER-CODE-ERRORs: at most the first 1000, the oldest first. Whether they
-were signalled, shown or read makes no difference. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
-  (let ((simulation (simulation-meant simulation 'simulation-errors)))
+plans that were begun, as USER-CODE-ERRORs: at most the latest 1000, the oldest first. Whether they
+were signalled, shown or read makes no difference. A run that was rewound stands for the one that
+goes on in its place. When a simulator starts, those of live runs that are over are forgotten.
+Signals WRONG-ARGUMENT. See WITH-SIMULATION."
+  (let ((simulation (latest (simulation-meant simulation 'simulation-errors))))
     (errors-in (simulation-messages simulation)
                (lambda (run) (or (null run) (eq simulation (latest run)))))))
 

@@ -230,6 +230,7 @@ Return the run."
         (renew-definitions simulation)
         (setf (simulation-journal simulation) nil))
     (setf (simulation-messages simulation) (residents-queue))
+    (forget-errors (residents-queue) (lambda (run) (and run (simulation-over (latest run)))))
     (make-current simulation everywhere)
     (keep-forks keep simulation)
     (start-clock simulation :rate rate :real (eq thinking :real))))

@@ -137,7 +137,7 @@ then has been done again."
          (when observer (add-observer observer simulation))
          (perform-journal journal simulation beginning)
          ;; Of what is repeated nobody needs to hear again.
-         (overlook (simulation-messages simulation))
+         (skip-unseen (simulation-messages simulation))
          (when observer (remove-observer observer simulation))
          (funcall function)))
      (mapcar #'blueprint-name blueprints)

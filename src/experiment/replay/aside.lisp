@@ -29,7 +29,7 @@ stays so for him. What goes wrong in it is no error of the trial's."
       (let ((*aside-p* t))
         (with-debugger-hook ((outside-hook outside))
           (unwind-protect (call-allowing-exits function)
-            (forgive *message-queue*)
+            (drop-unsignalled *message-queue*)
             (setf (outside-values outside) (mapcar #'symbol-value *surroundings*))))))))
 
 (defun call-from-outside (function)
