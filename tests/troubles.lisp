@@ -88,14 +88,15 @@
       (is (= 30 (run:run-ticks 30))))))
 
 (test errors.are-signalled-at-the-end-at-last
-  (is (string= "" (error-output
-                    (signals base:user-code-error
-                      (run:with-simulation (rover :errors :signal) (err-at-turn)))
-                    (signals base:user-code-error
-                      (run:with-simulation (rover :errors :signal)
-                        (driver:rpl-init-robot rover)
-                        (driver:begin-plan (rpl:interp-lambda () (error "at once")))))))
-      "what is signalled is not shown, too")
+  (let ((text (error-output
+                (signals base:user-code-error
+                  (run:with-simulation (rover :errors :signal) (err-at-turn)))
+                (signals base:user-code-error
+                  (run:with-simulation (rover :errors :signal)
+                    (driver:rpl-init-robot rover)
+                    (driver:begin-plan (rpl:interp-lambda () (error "at once"))))))))
+    (is (null (search "*ERROR*" text)) "what is signalled is not shown, too")
+    (is (= 2 (length (lines-of text))) "no ticks have passed"))
   (is (eql 7 (run:with-simulation (rover :errors :signal) 7))))
 
 (test errors.of-a-journal-are-not-shown-again
@@ -191,10 +192,9 @@
                            (base:queue-message (base:make-message :warning '("odd")
                                                                   :notable-p notable)
                                                base:*message-queue*)))))
-    (dolist (errors '(:report :signal))
+    (dolist (errors '(:report :signal :collect))
       (is-true (has-words-p (shown (lambda () (base:message-set "asked") t) errors) "odd"))
-      (is (string= "" (shown (constantly nil) errors))))
-    (is (string= "" (shown t :collect)))))
+      (is (string= "" (shown (constantly nil) errors))))))
 
 ;;; Live: nobody listens at a plain REPL.
 
@@ -236,6 +236,8 @@ shown at once."
       (error "no spade")
       (rpl:fail :class :too-hard)))
 
+(rpl:def-interp-proc plan-to-loiter () (rpl:wait-time 80))
+
 (defun come-of (&rest clauses)
   "Return what comes of a trial of ROVER with CLAUSES: a list (outcome reason ticks error)."
   (eval `(experiment:defexperiment question (:robots rover) ,@clauses))
@@ -258,6 +260,31 @@ shown at once."
                (first (come-of '(:run (driver:begin-plan 'plan-to-dig 'fail) (run:run-ticks 60))
                                '(:success t))))
       ":success decides"))
+
+(test trials.with-a-begun-plan-that-waits-in-vain-are-failures
+  (destructuring-bind (outcome reason ticks error)
+      (come-of '(:run (driver:begin-plan 'forlorn) (run:run-ticks 60)))
+    (is (equal '("failure" "deadlock" 60) (list outcome reason ticks)))
+    (is-true (has-words-p error "the plan forlorn waits for" "give one before you wait")
+             "~A" error))
+  (is (equal '("success" "" 60 "")
+             (come-of '(:run (driver:begin-plan 'forlorn) (run:run-ticks 60))
+                      '(:success t)))
+      ":success decides")
+  (is (equal '("success" "" 60 "")
+             (come-of '(:run (driver:begin-plan 'plan-to-loiter) (run:run-ticks 60))))
+      "it goes on"))
+
+(test trials.that-return-a-begun-plan-go-as-that-has-gone
+  (destructuring-bind (outcome reason ticks error)
+      (come-of '(:run (driver:begin-plan 'plan-to-loiter)))
+    (is (equal '("failure" "unfinished" 0) (list outcome reason ticks)))
+    (is-true (has-words-p error "plan-to-loiter was not over" "run-plan") "~A" error))
+  (is (equal '("success" "" 90 "")
+             (come-of '(:run (prog1 (driver:begin-plan 'plan-to-loiter) (run:run-ticks 90))))))
+  (is (equal '("success" "" 7 "")
+             (come-of '(:run (driver:begin-plan 'plan-to-loiter))
+                      '(:until (<= 7 (run:simulation-tick)))))))
 
 (test trials.may-handle-errors
   (dolist (how '(err fail))

@@ -52,15 +52,42 @@ output."
                           (run:run-ticks 1))
                         "a value that is no fluent")))
 
-(test stranded.what-programs-may-set-is-told-to-who-reads-messages
+(test stranded.what-programs-may-set-is-shown-if-they-do-not
   (let ((level (rpl:create-fluent 'level 0)))
-    (is (string= "" (rover-writes ()
-                      (driver:begin-plan (plan-of (rpl:wait-for (> level 3))))
-                      (run:run-ticks 1))))
+    (flet ((shown (value)
+             (rover-writes ()
+               (driver:begin-plan (plan-of (rpl:wait-for (> level 3))))
+               (run:run-ticks 1)
+               (rpl:set-value level value)
+               (run:run-ticks 1))))
+      (is-true (has-words-p (shown 3) "waits for (> level 3)" "nothing in the run will change"
+                            "Only SET-VALUE and PULSE change level"))
+      (is (string= "" (shown 4))))
     (rover-writes ()
-      (driver:begin-plan (plan-of (rpl:wait-for (> level 3))))
+      (driver:begin-plan (plan-of (rpl:wait-for (> level 4))))
       (run:run-ticks 1)
-      (is-true (has-words-p (displayed) "waits for (> level 3)" "nothing in the run")))))
+      (is-true (has-words-p (displayed) "waits for (> level 4)" "nothing in the run")))))
+
+(test stranded.is-told-of-live-plans-at-once
+  (live (simulation)
+    (driver:begin-plan 'forlorn)
+    (let ((message (await (lambda () (first (base:take-messages))))))
+      (is (eq t (base::message-notable-p message)))
+      (is-true (has-words-p (base:message-text message)
+                            "the plan forlorn waits for camera-moved* 0, robot-stopped*"
+                            "give one before you wait")))))
+
+(test with-simulation.tells-of-what-had-no-tick
+  (is-true (has-words-p (rover-writes () (driver:begin-plan 'forlorn))
+                        "No ticks have passed" "the plan forlorn" "run-ticks"))
+  (is-true (has-words-p (rover-writes (:errors :collect) (command:robot-turn rover 1 nil))
+                        "No ticks have passed" "robot-turn did nothing"))
+  (is (string= "" (rover-writes () (robot:robot-x rover))))
+  (is (string= "" (rover-writes () (run:run-ticks 1) (command:robot-turn rover 1 nil))))
+  (is (string= "" (rover-writes ()
+                    (ignore-errors (run:with-simulation (rover)
+                                     (command:robot-turn rover 1 nil)
+                                     (error "left")))))))
 
 (test stranded.no-plan-that-goes-on-or-is-to-wait
   (flet ((quiet-p (plan &optional (after (constantly nil)))
@@ -154,7 +181,7 @@ output."
 
 (test plans.tell-of-commands-that-go-on
   (flet ((leave () (driver:run-plan (plan-of (driver:rpl-camera-turn 0 1)))))
-    (let ((text (rover-writes () (leave) (leave))))
+    (let ((text (rover-writes () (leave) (leave) (run:run-ticks 1))))
       (is (= 1 (length (lines-of text))) "~A" text)
       (is-true (has-words-p text "succeeded while its command rpl-camera-turn was under way"
                             "(wait-for (vref camera-moved* 0))"))))
@@ -169,14 +196,16 @@ output."
                 (command:robot-turn rover 90)
                 (command:robot-turn rover 45)
                 (command:camera-turn (robot:robot-camera rover 0) -30)
-                (robot:place-robot rover 5 9 7.5))))
+                (robot:place-robot rover 5 9 7.5)
+                (run:run-ticks 1))))
     (is (= 3 (length (lines-of text))) "~A" text)
     (is-true (has-words-p text "robot-turn: 90 radians are 14.3 whole turns" "(* 90 (/ pi 180))"
                           "camera-turn: -30" "place-robot: 7.50 radians")))
   (is (string= "" (rover-writes ()
                     (command:robot-turn rover (* 4 pi))
                     (command:robot-turn rover 6)
-                    (command:robot-turn rover (* 400 (/ pi 180)))))
+                    (command:robot-turn rover (* 400 (/ pi 180)))
+                    (run:run-ticks 1)))
       "said by pi, or in degrees"))
 
 (test commands.without-a-run-are-told-of

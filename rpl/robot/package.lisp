@@ -22,7 +22,7 @@
                 #:participant-origin
                 #:participant-busy-p #:participant-reseed #:participant-digest #:participant-end
                 #:participant-copy #:participant-at-rest #:check-forkable
-                #:call-as-participant-makes-way #:participant-unsavable
+                #:call-as-participant-makes-way #:participant-unfinished
                 #:fork-simulation #:refuse-fork
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
                 #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*

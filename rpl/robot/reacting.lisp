@@ -128,10 +128,10 @@ wait, and for something else. True if so. Most ticks are like that."
   (declare (ignore simulation))
   (close-interface interface))
 
-(defmethod participant-unsavable ((interface interface))
+(defmethod participant-unfinished ((interface interface))
   (loop for task in (tasks-of interface)
         unless (or (task-parent task) (task-over-p task))
-          collect (format nil "the plan ~A is under way" (task-label task))))
+          collect (format nil "the plan ~A" (task-label task))))
 
 ;;; The runner.
 

@@ -3,8 +3,7 @@
 (in-package :ars-magna.rpl-robot)
 
 ;;; Programs may set fluents between two calls of RUN-TICKS. So it is a warning, once for each plan
-;;; and run. Whether it is also shown to who reads no messages depends on what the plan waits for:
-;;; a program is not likely to set what the robot sets.
+;;; and run, and who reads no messages is shown it if the plan still waits when the run ends.
 
 (defun watches-p (task)
   "True if TASK waits in a loop, or for whatever may come: to wait is what it is for."
@@ -29,31 +28,56 @@
   "True if PARTS of a plan wait for what they AWAITED."
   (every (lambda (part awaiting) (eq awaiting (task-awaiting part))) parts awaited))
 
+(defun stranded-parts (interface task)
+  "Return the parts of TASK, a plan of INTERFACE, that wait in vain; NIL if it may go on."
+  (let ((parts (waiting-parts task)))
+    (and (notany #'watches-p parts)
+         (or (every #'robots-wait-p parts)
+             (not (others-may-help-p interface)))
+         parts)))
+
+(defun text-of-stranded (task parts)
+  "Return in a sentence that PARTS of TASK wait in vain, and what could be done."
+  (format nil "~A, which nothing in the run will change.~A"
+          (text-of-plans (list task)) (advice-on-stillness parts)))
+
 (defun warn-of-stranded (interface task parts)
   "Say once that TASK, of the plans of INTERFACE, will not go on, as PARTS of it wait in vain."
-  (let ((awaited (mapcar #'task-awaiting parts)))
+  (let ((simulation (interface-simulation interface))
+        (awaited (mapcar #'task-awaiting parts)))
     (warn-once (list :stranded (task-label task))
-               (simulation-world (interface-simulation interface))
-               (list "At tick " (simulation-tick (interface-simulation interface)) " "
-                     (text-of-plans (list task)) ", which nothing in the run will change."
-                     (advice-on-stillness parts))
-               :notable (lambda ()
-                          (and (every #'robots-wait-p parts)
-                               (still-waiting-p parts awaited))))))
+               (simulation-world simulation)
+               (list "At tick " (simulation-tick simulation) " " (text-of-stranded task parts))
+               :notable (or (live-p simulation)
+                            (lambda () (still-waiting-p parts awaited))))))
 
-(defun look-for-stranded (interface task)
-  "Say so if TASK, a plan, was begun and waits in vain."
-  (let ((parts (waiting-parts task)))
-    (when (and parts
-               (notany #'watches-p parts)
-               (or (every #'robots-wait-p parts)
-                   (not (others-may-help-p interface))))
-      (warn-of-stranded interface task parts))))
-
-(defmethod participant-after-ticks ((interface interface) simulation)
+(defun stranded-plans (interface)
+  "Return a list (task parts) for each plan of INTERFACE that was begun and waits in vain; () if one
+of its plans can go on."
   (when (and (null (interface-awaited interface))
-             (not (simulation-over simulation))
+             (interface-valid-p interface)
              (tasks-of interface)
              (deadlocked-p interface))
     (with-plans (interface)
-      (dolist (task (tasks-of interface)) (look-for-stranded interface task)))))
+      (loop for task in (tasks-of interface)
+            for parts = (stranded-parts interface task)
+            when parts collect (list task parts)))))
+
+(defun look-for-stranded (interface)
+  "Say so if plans of INTERFACE were begun and wait in vain."
+  (loop for (task parts) in (stranded-plans interface)
+        do (warn-of-stranded interface task parts)))
+
+;; Where somebody listens to messages, as at the prompt, that is told with each plan.
+(defun look-for-stranded-live (interface)
+  "Say so if plans of INTERFACE, which runs live, were begun and wait in vain."
+  (unless (message-queue-listener *message-queue*) (look-for-stranded interface)))
+
+(defmethod participant-after-ticks ((interface interface) simulation)
+  (unless (simulation-over simulation) (look-for-stranded interface)))
+
+(defun stranded-plan-text ()
+  "Return in a sentence that a plan that was begun in the current simulation waits in vain, or NIL."
+  (let ((interface (usable-interface)))
+    (destructuring-bind (&optional task parts) (and interface (first (stranded-plans interface)))
+      (and task (format nil "At the end ~A" (text-of-stranded task parts))))))

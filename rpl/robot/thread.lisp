@@ -65,7 +65,9 @@ NIL if that was aborted."
     (ecase (react-in-thread interface)
       (:over (return))
       ;; A tick may have come meanwhile for which nobody was told to wake.
-      (:idle (unless (woken-by-tick-p interface) (rest-plans interface)))
+      (:idle (unless (woken-by-tick-p interface)
+               (look-for-stranded-live interface)
+               (rest-plans interface)))
       (:budget (when (or (waits-for-tick-p interface) (wish-to-serve interface))
                  (setf (interface-tick-wanted-p interface) t)
                  (rest-plans interface)))

@@ -50,7 +50,7 @@
               (and robots
                    (format nil "~{~A~^, ~} change~:[s~;~]"
                            (mapcar #'fluent-text robots) (rest robots)))
-              (mapcar #'fluent-text others)))))
+              (remove-duplicates (mapcar #'fluent-text others) :test #'string=)))))
 
 ;;; Reports.
 
@@ -80,10 +80,13 @@
 (defun report-stillness (runner)
   "Queue a warning that says that the tasks of RUNNER wait for what only somebody outside of them
 and of the simulator can bring about."
-  (warning-set "At tick " (runner-tick runner)
-               " all plans wait for what neither the robot nor time will bring about, but somebody "
-               "may, by SET-VALUE or WAKE-UP:" t
-               (tree-text runner)))
+  (queue-message (make-message :warning
+                               (list "At tick " (runner-tick runner) " all plans wait for what "
+                                     "neither the robot nor time will bring about, but somebody "
+                                     "may, by SET-VALUE or WAKE-UP:" t
+                                     (tree-text runner))
+                               :notable-p t)
+                 *message-queue*))
 
 (defun report-deadlock (runner)
   "Queue an error message that says that no task of RUNNER can go on: the plans, what they wait for,

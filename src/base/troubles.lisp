@@ -126,12 +126,18 @@ it otherwise."
       (format stream "... and ~D other messages; (error-display), inside, shows all.~%"
               (- (length texts) *most-unread*)))))
 
+(defun shown-at-end-p (message policy)
+  "True if MESSAGE, which nobody has seen, is shown when its run ends under the error POLICY."
+  (or (notable-now-p message)
+      (and (not (eq :collect policy)) (to-be-seen-p message))))
+
 (defun show-unseen (queue &optional (wanted (constantly t)))
   "Write to the error output the messages in QUEUE that are to be seen and for which WANTED is true,
-unless they were read or told before, or errors are only to be collected."
-  (unless (or flush-all-errors* (eq :collect (message-queue-error-policy queue)))
+unless they were read or told before."
+  (unless flush-all-errors*
     (let ((messages (remove-if-not (lambda (message)
-                                     (and (or (to-be-seen-p message) (notable-now-p message))
+                                     (and (shown-at-end-p message
+                                                          (message-queue-error-policy queue))
                                           (funcall wanted message)))
                                    (take-unseen queue))))
       (when messages

@@ -204,6 +204,7 @@ has been told is told, or signalled, as its message queue says."
         (unwind-protect (multiple-value-prog1 (funcall function)
                           (signal-trouble queue)
                           (setf left-p nil))
+          (look-at-end simulation left-p)
           (show-unseen queue)
           (end-headless simulation)
           ;; What is interrupted then is not wrong.
@@ -212,6 +213,30 @@ has been told is told, or signalled, as its message queue says."
                                     (or left-p
                                         (not (eq message (message-queue-unsignalled queue))))))))
       (signal-trouble queue))))
+
+(defun undone-text (simulation)
+  "Return in words what was asked for in SIMULATION and has not begun, and a remedy; NIL if there is
+nothing."
+  (let* ((plans (unfinished-in-participants simulation))
+         (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
+                         when (request-name request)
+                           collect (string-downcase (request-name request))))
+         (undone (remove-duplicates (append (reverse requests) plans)
+                                    :test #'string= :from-end t)))
+    (when undone
+      (format nil "~{~A~^, ~} did nothing. Call (run-ticks N) or (run-until TEST)~:[~; in it, or ~
+                   (run-plan ...) instead of (begin-plan ...)~]."
+              undone plans))))
+
+(defun look-at-end (simulation left-p)
+  "Say so if something was asked for in SIMULATION, whose run is to end, and no tick has passed;
+but not if the run is LEFT-P, as by an error."
+  (let ((undone (and (not left-p) (zerop (simulation-tick simulation)) (undone-text simulation))))
+    (when undone
+      (queue-message (make-message :warning
+                                   (list "No ticks have passed in with-simulation, so " undone)
+                                   :notable-p t)
+                     (simulation-messages simulation)))))
 
 (defvar *rewound-end-hooks* '()
   "Functions of a headless run that was rewound, and of the one that went on in its place and is
@@ -271,7 +296,9 @@ when BODY ends are written to the error output, and so are other errors, but for
 that have a continuation to tell, and warnings that come once in a run, as of degrees for radians.
 With :SIGNAL the first of them is an error of BODY, a USER-CODE-ERROR that RUN-TICKS signals when
 its tick is over, or WITH-SIMULATION at the end. With :COLLECT they are only messages;
-SIMULATION-ERRORS returns them."
+SIMULATION-ERRORS returns them. In any case it is written to the error output if no ticks have
+passed and something was asked for, or a plan that was begun waits for what nothing in the run will
+bring about."
   (let* ((robots (unquoted robots)) (variables (variables-among robots)))
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))

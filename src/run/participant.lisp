@@ -81,8 +81,9 @@ Meanwhile what PARTICIPANT does in another thread stops as soon as it can.")
     (declare (ignore participant simulation))
     (values)))
 
-(defgeneric participant-unsavable (participant)
-  (:documentation "Return in words, in a list, what goes on in PARTICIPANT that no file can hold.")
+(defgeneric participant-unfinished (participant)
+  (:documentation "Return in words, in a list, what PARTICIPANT has begun and not finished, such as
+\"the plan p\". No file can hold it.")
   (:method (participant)
     (declare (ignore participant))
     '()))

@@ -158,6 +158,11 @@ these leads to the next, so that all but the last can be forgotten."
     (removef (simulation-participants simulation) participant))
   (values))
 
+(defun unfinished-in-participants (simulation)
+  "Return in words, in a list, what those who take part in SIMULATION have begun and not finished."
+  (loop for participant in (simulation-participants simulation)
+        append (participant-unfinished participant)))
+
 (addition idle-p)
 (defun idle-p (&optional (simulation (current-simulation)))
   "True if nothing can happen in SIMULATION until somebody asks for something. In a live one at the

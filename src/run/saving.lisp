@@ -45,7 +45,8 @@
 (defun unsavable-texts (simulation journal)
   "Return in words, in a list, what goes on in SIMULATION, or stands in JOURNAL, that no file can
 hold."
-  (append (mapcan #'participant-unsavable (copy-list (simulation-participants simulation)))
+  (append (loop for text in (unfinished-in-participants simulation)
+                collect (format nil "~A is under way" text))
           (loop for event in (events-waiting simulation)
                 when (functional-p event)
                   collect (format nil "an event of SCHEDULE waits for tick ~D" (event-time event)))

@@ -107,8 +107,10 @@ The CLAUSES are:
   (:measure (name form)...)  what is measured at its end: numbers, T or NIL, symbols, strings, or
                              :NONE where there is nothing to be measured
 Without :success and :until, the values of :run say how the trial went: those of RUN-PLAN what
-became of the plan; else the first one whether it succeeded, and the second, a symbol or string, why
-not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return NAME."
+became of the plan; the task that BEGIN-PLAN returns what has become of it (unfinished: it is not
+over); else the first one whether it succeeded, and the second, a symbol or string, why not. It is a
+failure, deadlock, if a plan that was begun waits for what can never come. See RUN-EXPERIMENT for
+what is kept. Signals MALFORMED-DEFINITION. Return NAME."
   (let ((definition (title "defexperiment" name)))
     (multiple-value-bind (clauses documentation)
         (if (stringp (first clauses))

@@ -23,10 +23,17 @@
     (:limit (values "limit" ""))
     (t (values "failure" (value-text state)))))
 
+(defun task-outcome (task)
+  "Return outcome and reason of TASK, a plan that was begun, as it is when its trial ends."
+  (if (task-over-p task)
+      (plan-outcome (task-result task) (task-state task))
+      (values "failure" "unfinished")))
+
 (defun outcome-of-values (&optional result reason &rest others)
   "Return outcome and reason of a trial whose form :run returned RESULT, REASON and OTHERS."
   (declare (ignore others))
   (cond ((member reason *plan-states*) (plan-outcome result reason))
+        ((task-p result) (task-outcome result))
         (result (values "success" ""))
         (t (values "failure"
                    (if (and reason (typep reason '(or symbol string))) (value-text reason) "")))))

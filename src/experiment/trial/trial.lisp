@@ -166,15 +166,41 @@ cannot have it."
       (reject-argument "measure" name value "a number, symbol, string or list of them"))
     (value-text value)))
 
+(defun outcome-so-far (experiment values)
+  "Return outcome and reason of a trial of EXPERIMENT whose form :run returned VALUES. What does not
+say how a plan went is no success if a plan that was begun waits for what can never come."
+  (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
+    (if (and (success-p outcome)
+             (not (experiment-until experiment))
+             (not (member (second values) *plan-states*))
+             (stranded-plan-text))
+        (values "failure" "deadlock")
+        (values outcome reason))))
+
+(defun unfinished-text (values)
+  "Return in a sentence that the plan whose task is the first of VALUES was not over, or NIL."
+  (let ((task (first values)))
+    (when (and (task-p task) (not (task-over-p task)))
+      (format nil "The plan ~A was not over when :run returned. RUN-PLAN waits for its end; :until ~
+                   and RUN-UNTIL let ticks pass." (task-label task)))))
+
+(defun note-unfinished (result values)
+  "Enter into RESULT, unless it is a success, which plan that was begun waits in vain, or did not
+end; VALUES are those of :run."
+  (let ((text (and (not (success-p (result-outcome result)))
+                   (or (stranded-plan-text) (unfinished-text values)))))
+    (when text (add-error result text))))
+
 (defun conduct (experiment result)
   "Do in the current simulation what EXPERIMENT says, and enter into RESULT what comes of it."
   (let* ((condition (result-condition result))
          (*trial-values* '())
          (values (run-noting-failures experiment condition result)))
-    (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
+    (multiple-value-bind (outcome reason) (outcome-so-far experiment values)
       (setf (values (result-outcome result) (result-reason result))
             (decide experiment condition outcome reason))
       (add-error result (error-in-plan values))
+      (note-unfinished result values)
       (measure experiment result))))
 
 (defvar *aside-p* nil
