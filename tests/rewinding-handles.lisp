@@ -176,6 +176,22 @@ that look at the stack may leave some."
         (awaiting text)
         (is-true (has-words-p text "thread of its clock" "REPL") "~A" text)))))
 
+(test rewind.is-misuse-in-the-thread-of-any-clock
+  "Else two clocks may wait for one another."
+  (let ((other (run:fresh-simulation '(fitter))) (text nil))
+    (run:start-clock other :rate 500)
+    (unwind-protect
+         (live-rover (:rate 500)
+           (command:robot-turn rover 0.1
+                               (lambda (&rest ignored)
+                                 (declare (ignore ignored))
+                                 (setf text (trouble-of (lambda () (run:rewind 1 other))))))
+           (awaiting text)
+           (is-true (has-words-p text "ticks of arena are passing here"
+                                 "Rewind workbench at the prompt")
+                    "~A" text))
+      (run:stop-clock other))))
+
 ;;; Kept forks of runs whose plans never rest.
 
 (rpl:def-interp-proc never-rest ()

@@ -12,15 +12,21 @@
 
 ;;; What may be rewound, and how far.
 
+;; Nor another run than its own: who rewinds waits for a clock, and perhaps for this one.
+(defun paced-here (simulation)
+  "Return SIMULATION, or else the current one, if this is the thread of its clock; else NIL."
+  (find-if (lambda (run) (and run (eq (current-thread) (simulation-thread run))))
+           (list simulation *simulation*)))
+
 (defun check-place-to-rewind (simulation)
   "Signal MISUSE where SIMULATION cannot be rewound because it is at work here, or not meant."
   (cond ((goes-on-in-forks-p)
          (reject-use "rewind: a plan is at work here, and would undo itself. PROJECT and TRY-BEST ~
                       look ahead instead."))
-        ((eq (current-thread) (simulation-thread simulation))
-         (reject-use "rewind: ticks of ~A are passing here, in the thread of its clock. Rewind it ~
+        ((paced-here simulation)
+         (reject-use "rewind: ticks of ~A are passing here, in the thread of its clock. Rewind ~A ~
                       at the prompt or the REPL, or from a thread of your own."
-                     (simulation-name simulation)))
+                     (simulation-name (paced-here simulation)) (simulation-name simulation)))
         ((and (owner-p simulation)
               (or (timeline-passing-p (simulation-timeline simulation))
                   (plusp (timeline-phase (simulation-timeline simulation)))))
@@ -233,13 +239,15 @@ Messages stay, and what variables programs have set themselves. A fork that was 
 RUN-TICKS, RUN-UNTIL and CALL-IN-FORK, for what goes on; its digest is of what it came to.
 SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, for what was done since the
 last tick, to how many have passed since it began to. Signals WRONG-ARGUMENT that says how far one
-can go back; MISUSE inside of ticks and plans, and where SIMULATION is over."
+can go back; MISUSE inside of ticks and plans, in the thread of any clock, and where SIMULATION is
+over."
   (let ((simulation (simulation-meant simulation 'rewind)))
     (check-argument rewind ticks (typep ticks 'unsigned-byte)
                     "a whole number of ticks, 0 or more")
     (check-not-over simulation 'rewind)
     (check-place-to-rewind simulation)
-    (with-lock (*rewinding-lock*)
-      ;; Another thread may have been first.
-      (check-not-over simulation 'rewind)
-      (rewind-now ticks simulation))))
+    (call-when-free *rewinding-lock*
+                    (lambda ()
+                      ;; Another thread may have been first.
+                      (check-not-over simulation 'rewind)
+                      (rewind-now ticks simulation)))))
