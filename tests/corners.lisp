@@ -84,6 +84,22 @@ way. Return where it comes to, x and y, and the error code."
              (is (eq clear (and (robot:line-clear-p world:*world* 8.5d0 8.5d0 12.5d0 12.5d0) t)))
              (is (eq clear (and (robot:line-clear-p world:*world* 12.5d0 12.5d0 8.5d0 8.5d0) t))))))
 
+(test corner.is-looked-past-as-it-is-driven-past
+  "Reading 100: in views, and in searches by a single ray."
+  (loop for (blocks clear) in '((((10 9)) t) (((9 10)) t) (((10 9) (9 10)) nil) (((9 9)) nil))
+        do (loop for (x angle goal) in `((8.5 ,(/ pi 4) 12.5d0) (12.5 ,(* -3/4 pi) 7.5d0))
+                 do (run:with-simulation (rider :clean t :parameters '((base:scan-density* 1)))
+                      (blocks blocks)
+                      (put 'post (list goal goal) :substance 'world:metal :obsview t)
+                      (robot:set-robot-pose rider x x angle)
+                      (let* ((camera (robot:robot-camera rider 0))
+                             (pixel (third (robot:take-view camera)))
+                             (seen (mapcar #'world:thing-x
+                                           (robot::things-in-view camera :non-local))))
+                        (is (eq clear (and (member goal seen) t)) "~S ~S" blocks seen)
+                        (is (eq clear (= pixel 80))
+                            "~S ~S" blocks pixel))))))
+
 (test edge-of-the-map.stops-robots
   (is-ride (0 10 :robot-blocked) '(3 10) pi '())
   (is-ride (20 10 :robot-blocked) '(17 10) 0 '())

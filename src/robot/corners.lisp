@@ -46,3 +46,11 @@ values; else NIL. Cells with a flag of MASK stop the line."
                          (closed-cell-p world column other-row mask)))
           (values (within-cell (double corner-x) other-column)
                   (within-cell (double corner-y) other-row)))))))
+
+(defun past-corner (world mask x y dx dy)
+  "If a line in direction (DX,DY) that is stopped at (X,Y) only meets a corner there and goes on,
+return the point just beyond it, as two values; else NIL. Cells with a flag of MASK stop the line."
+  (flet ((before (position direction)
+           (if (plusp direction) (1- (round position)) (round position))))
+    (unless (or (zerop dx) (zerop dy))
+      (beyond-corner world mask x y (before x dx) (before y dy)))))

@@ -24,16 +24,53 @@
   (declare (type double-float component))
   (if (< (abs component) +least-component+) +least-component+ component))
 
+(declaim (inline walk-to-corner))
+(defun walk-to-corner (visit world x y dx dy)
+  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction (DX,DY)
+meets after the first, until it returns true or the map ends; or until the ray meets a corner, which
+something beside it obstructs, and goes on: then return the point beyond, as two values; else NIL."
+  (declare (type function visit) (type double-float x y dx dy))
+  (let* ((flags (world-flags world)) (map (world-map world))
+         (beyond-x nil) (beyond-y nil))
+    (walk-grid (lambda (index at column)
+                 (declare (ignore column))
+                 (let ((flag (aref flags index)))
+                   (or (and (logtest flag +opaque+)
+                            (setf (values beyond-x beyond-y)
+                                  (past-corner world +opaque+ (+ x (* dx at)) (+ y (* dy at))
+                                               dx dy)))
+                       (funcall visit index flag))))
+               (map-width map) (map-height map) x y dx dy +no-limit+)
+    (values beyond-x beyond-y)))
+
 (declaim (inline walk-ray))
-(defun walk-ray (visit flags width height x y dx dy reach)
-  "Call VISIT with index and flags of each cell that the ray from (X,Y) in direction (DX,DY)
-meets after the first, until it returns true, the map ends, or REACH columns or rows have been
-crossed."
-  (declare (type function visit) (type flag-vector flags) (type double-float dx dy))
-  (walk-grid (lambda (index at column)
-               (declare (ignore at column))
-               (funcall visit index (aref flags index)))
-             width height x y (nonzero dx) (nonzero dy) reach))
+(defun walk-ray (visit world x y dx dy)
+  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction (DX,DY)
+meets after the first, until it returns true or the map ends. At a corner it meets neither of the
+two cells beside that, if one of them lets it through (reading 100)."
+  (declare (type function visit) (type double-float x y dx dy))
+  (let ((dx (nonzero dx)) (dy (nonzero dy)) (map (world-map world)))
+    (loop
+      (multiple-value-bind (beyond-x beyond-y) (walk-to-corner visit world x y dx dy)
+        (unless beyond-x (return))
+        (let ((index (map-index map beyond-x beyond-y)))
+          (when (or (null index) (funcall visit index (aref (world-flags world) index)))
+            (return)))
+        (setf x beyond-x y beyond-y)))))
+
+(defun cells-past-corner (world x y dx dy)
+  "Return a list of the cells with things that a ray in direction (DX,DY) meets which an opaque cell
+stops at (X,Y), if it only meets a corner there and goes on."
+  (let ((cells '()))
+    (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
+      (when beyond-x
+        (flet ((visit (index flag)
+                 (when (logtest flag +occupied+) (push index cells))
+                 (logtest flag +opaque+)))
+          (let ((index (map-index (world-map world) beyond-x beyond-y)))
+            (unless (or (null index) (visit index (aref (world-flags world) index)))
+              (walk-ray #'visit world beyond-x beyond-y dx dy))))))
+    (nreverse cells)))
 
 (defmacro do-fan ((dx dy &optional (per-x (gensym)) (per-y (gensym))) (angle width count)
                   &body body)
@@ -74,12 +111,13 @@ the borders behind and ahead are, and how many of each."
       (values stride (* per ahead) left-ahead)))
 
 (declaim (inline walk-fan))
-(defun walk-fan (visit stops flags width height x y angle fan count reach)
+(defun walk-fan (visit corner stops flags width height x y angle fan count reach)
   "Call VISIT, which is inline, with index and flags of each cell that has some of the flags STOPS
 and that COUNT rays from (X,Y) meet after the first, evenly spaced over FAN radians around ANGLE.
 Each goes on until VISIT returns true, the map ends, or REACH columns or rows have been crossed.
-If REACH is NIL, a constant, all that is left to end them is VISIT."
-  (declare (type function visit) (type flag-vector flags) (type (unsigned-byte 8) stops)
+If REACH is NIL, a constant, all that is left to end them is VISIT. If a ray ends at a corner, CORNER,
+inline too, is called with its direction and how far that is."
+  (declare (type function visit corner) (type flag-vector flags) (type (unsigned-byte 8) stops)
            (type double-float x y angle fan) (type grid-size width height)
            (type (or null grid-size) reach))
   (let* ((cell-x (cell-number x)) (behind-x (- x cell-x)) (ahead-x (- (1+ cell-x) x))
@@ -110,4 +148,11 @@ If REACH is NIL, a constant, all that is left to end them is VISIT."
                             (setf index (surely cell-index next)))))
               (loop (if (< at-x at-y)
                         (enter-next at-x per-x step-x left-x)
-                        (enter-next at-y per-y step-y left-y))))))))))
+                        (enter-next at-y per-y step-y left-y))))
+            ;; Where the ray ended, it had crossed one border, and was about to cross the other.
+            (flet ((look-past (crossed next per)
+                     (when (<= (abs (- next crossed)) (* +contact-gap+ per))
+                       (funcall corner (/ inverse-x) (/ inverse-y) crossed))))
+              (declare (inline look-past))
+              (look-past (- at-x per-x) at-y per-y)
+              (look-past (- at-y per-y) at-x per-x))))))))

@@ -40,10 +40,16 @@
              (when (logtest flag +occupied+)
                (mark-seen flags index)
                (push index found))
-             (logtest flag +opaque+)))
-      (declare (inline visit))
+             (logtest flag +opaque+))
+           (corner (dx dy at)
+             (declare (type double-float dx dy at))
+             (dolist (index (cells-past-corner world (+ x (* dx at)) (+ y (* dy at)) dx dy))
+               (when (logtest (aref flags index) +occupied+)
+                 (mark-seen flags index)
+                 (push index found)))))
+      (declare (inline visit corner))
       (macrolet ((walk (reach)
-                   `(walk-fan #'visit (logior +occupied+ +opaque+) flags columns rows x y
+                   `(walk-fan #'visit #'corner (logior +occupied+ +opaque+) flags columns rows x y
                               angle width count ,reach)))
         (if (and (= reach +no-limit+) (walls-around-p map x y))
             (walk nil)
@@ -56,8 +62,7 @@
 place type has NUMBER in the map."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 30) count) (type (unsigned-byte 8) number))
-  (let* ((flags (world-flags world)) (map (world-map world)) (places (map-places map))
-         (columns (map-width map)) (rows (map-height map)) (found '()))
+  (let ((flags (world-flags world)) (places (map-places (world-map world))) (found '()))
     (declare (type flag-vector places))
     (flet ((visit (index flag)
              (declare (type cell-index index) (type (unsigned-byte 8) flag))
@@ -67,7 +72,7 @@ place type has NUMBER in the map."
              (logtest flag +opaque+)))
       (declare (inline visit))
       (do-fan (dx dy) (angle width count)
-        (walk-ray #'visit flags columns rows x y dx dy +no-limit+)))
+        (walk-ray #'visit world x y dx dy)))
     (unmark-seen flags found)
     (nreverse found)))
 

@@ -13,16 +13,11 @@
 (defun corner-clear-p (world x y dx dy to-x to-y)
   "True if the line in direction (DX,DY) to (TO-X,TO-Y), obstructed at (X,Y), only meets a corner
 there and goes on beyond it."
-  (flet ((before (position direction)
-           (if (plusp direction) (1- (round position)) (round position))))
-    (multiple-value-bind (beyond-x beyond-y)
-        (beyond-corner world +opaque+ x y (before x dx) (before y dy))
-      (and beyond-x
-           (/= 0 dx)
-           (/= 0 dy)
-           (or (same-cell-p beyond-x beyond-y to-x to-y)
-               (and (not (closed-cell-p world beyond-x beyond-y +opaque+))
-                    (line-clear-p world beyond-x beyond-y to-x to-y)))))))
+  (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
+    (and beyond-x
+         (or (same-cell-p beyond-x beyond-y to-x to-y)
+             (and (not (closed-cell-p world beyond-x beyond-y +opaque+))
+                  (line-clear-p world beyond-x beyond-y to-x to-y))))))
 
 (defun line-clear-p (world x y to-x to-y)
   "True if nothing in WORLD obstructs the line from (X,Y) to (TO-X,TO-Y), points of the map."

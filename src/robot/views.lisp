@@ -20,12 +20,11 @@ equals, or NIL (reading 240)."
 
 (defun true-pixel (world x y dx dy)
   "Return what a ray from (X,Y) in direction DX, DY sees, without noise (reading 65)."
-  (let* ((flags (world-flags world)) (map (world-map world))
-         (sum 0d0) (count 1) (last 0d0))
+  (let ((sum 0d0) (count 1) (last 0d0))
     (flet ((visit (index flag)
              (cond ((zerop flag) nil)
                    ((logtest flag +wall+)
-                    (setf last (aref (map-parameters map) index)))
+                    (setf last (aref (map-parameters (world-map world)) index)))
                    ((logtest flag +obsview+)
                     (setf last (thing-substance-parameter
                                 (obstructing-thing index world))))
@@ -34,8 +33,7 @@ equals, or NIL (reading 240)."
                           (incf sum (thing-substance-parameter thing))
                           (incf count)))
                       nil))))
-      (walk-ray #'visit flags (map-width map) (map-height map)
-                x y dx dy +no-limit+))
+      (walk-ray #'visit world x y dx dy))
     (/ (+ sum last) count)))
 
 (defun noisy-pixel (value map dice)
