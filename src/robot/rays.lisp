@@ -26,9 +26,10 @@
 
 (declaim (inline walk-to-corner))
 (defun walk-to-corner (visit world x y dx dy)
-  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction (DX,DY)
-meets after the first, until it returns true or the map ends; or until the ray meets a corner, which
-something beside it obstructs, and goes on: then return the point beyond, as two values; else NIL."
+  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction
+(DX,DY) meets after the first, until it returns true or the map ends; or until the ray meets a
+corner, which something beside it obstructs, and goes on: then return the point beyond, as two
+values; else NIL."
   (declare (type function visit) (type double-float x y dx dy))
   (let* ((flags (world-flags world)) (map (world-map world))
          (beyond-x nil) (beyond-y nil))
@@ -45,9 +46,9 @@ something beside it obstructs, and goes on: then return the point beyond, as two
 
 (declaim (inline walk-ray))
 (defun walk-ray (visit world x y dx dy)
-  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction (DX,DY)
-meets after the first, until it returns true or the map ends. At a corner it meets neither of the
-two cells beside that, if one of them lets it through (reading 100)."
+  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction
+(DX,DY) meets after the first, until it returns true or the map ends. At a corner it meets neither
+of the two cells beside that, if one of them lets it through (reading 100)."
   (declare (type function visit) (type double-float x y dx dy))
   (let ((dx (nonzero dx)) (dy (nonzero dy)) (map (world-map world)))
     (loop
@@ -115,8 +116,8 @@ the borders behind and ahead are, and how many of each."
   "Call VISIT, which is inline, with index and flags of each cell that has some of the flags STOPS
 and that COUNT rays from (X,Y) meet after the first, evenly spaced over FAN radians around ANGLE.
 Each goes on until VISIT returns true, the map ends, or REACH columns or rows have been crossed.
-If REACH is NIL, a constant, all that is left to end them is VISIT. If a ray ends at a corner, CORNER,
-inline too, is called with its direction and how far that is."
+If REACH is NIL, a constant, all that is left to end them is VISIT. If a ray ends at a corner,
+CORNER, inline too, is called with its direction and how far that is."
   (declare (type function visit corner) (type flag-vector flags) (type (unsigned-byte 8) stops)
            (type double-float x y angle fan) (type grid-size width height)
            (type (or null grid-size) reach))
