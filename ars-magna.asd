@@ -104,7 +104,8 @@
                  (:file "remembering") (:file "past") (:file "noting") (:file "runs-of-worlds") (:file "changes")
                  (:file "thinking")
                  (:file "tick") (:file "state") (:file "environments")
-                 (:file "forking") (:file "counterparts") (:file "keeping") (:file "headless")
+                 (:file "forking") (:file "counterparts") (:file "keeping") (:file "headless-forms")
+                 (:file "headless")
                  (:file "live")
                  (:file "replaced-maps") (:file "sealed-lines")
                  (:file "journal-text") (:file "replay") (:file "redoing") (:file "rewinding")
@@ -138,7 +139,7 @@
                  (:file "task") (:file "awaiting") (:file "trace") (:file "runner")
                  (:file "words") (:file "charging") (:file "tracing") (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "shape")
-                 (:file "procedure") (:file "forking") (:file "report") (:file "courtesy")
+                 (:file "twins") (:file "procedure") (:file "forking") (:file "report") (:file "courtesy")
                  (:file "repair") (:file "care") (:file "engine") (:file "circles")
                  (:file "gate") (:file "blocking") (:file "variables") (:file "places")
                  (:file "stillness") (:file "alone")))
@@ -222,6 +223,9 @@
              (declare (ignore operation system))
              (when (find-package :ars-magna.faces)
                (symbol-call :ars-magna.faces :unlock-packages)))
+  :perform (load-op :after (operation system)
+             (declare (ignore operation system))
+             (symbol-call :ars-magna.faces :greet))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))
 
 (defsystem "ars-magna/worlds"
@@ -453,7 +457,8 @@
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")
-                 (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "unseen") (:file "projecting")
+                 (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "unseen")
+                 (:file "beginners") (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")

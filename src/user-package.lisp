@@ -113,3 +113,11 @@ ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. Return the package. See reading 
      ,(expand-definition form environment
                          (lambda () (list (package-form name options environment))))
      (find-package ',name)))
+
+;;; At a REPL.
+
+(defun greet ()
+  "Say how to begin, if somebody has typed the form by which the system was loaded."
+  (when (and (null *load-truename*) (null *compile-file-truename*) (debugger-p))
+    (format t "~&; ARS MAGNA is loaded. To begin, type (in-package :ars-user), then (in-readtable ~
+               :nisp).~%; (ars:define-user-package :mine) makes a package of your own.~%")))

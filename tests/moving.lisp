@@ -325,7 +325,8 @@ camera, if it is a result, and NIL for all else."
 
 (test commands.survive-bad-continuations
   (with-rover ()
-    (command:robot-turn rover 0.1 (lambda (err) (declare (ignore err)) nil))
+    (signals base:wrong-argument
+      (command:robot-turn rover 0.1 (lambda (err) (declare (ignore err)) nil)))
     (command:robot-turn rover 0.1 (lambda (&rest r) (declare (ignore r)) (error "oops")))
     (run:run-ticks 50)
     (let ((text (displayed)))

@@ -100,6 +100,33 @@ of LAMBDA-LIST's, or NIL."
                    thereis (and (consp expected)
                                 (slip-in-construct (cons (first form) part) expected)))))))
 
+;;; Commands. They tell a continuation of their end, and no fluent, when they are not given by the
+;;; plan's own functions.
+
+(defun command-among (forms)
+  "Return the first call in FORMS, of a plan's text, of what plans call by another function, or NIL:
+not in what is called later."
+  (loop for tail = forms then (rest tail)
+        while (consp tail)
+        thereis (let ((form (first tail)))
+                  (cond ((atom form) nil)
+                        ((has-twin-p (first form)) form)
+                        ((member (first form) '(quote function lambda)) nil)
+                        ((same-name-p (if (symbolp (first form)) (first form) "") 'continuation)
+                         nil)
+                        (t (command-among form))))))
+
+(defun doubt-command (form)
+  "Warn that FORM, a command, does not tell its plan of its end."
+  (warn-of-call #'doubt-definition form
+                "~(~A~) does not tell plans of its end. In a plan write ~A."
+                (first form) (twin-text (first form))))
+
+(defun check-commands (form)
+  "Warn of the first command in FORM, of a plan's text."
+  (let ((command (and *definition* (command-among (list form)))))
+    (when command (call-at-place command (lambda () (doubt-command command))))))
+
 ;;; Variables.
 
 (defun check-use (variables where form)

@@ -111,10 +111,10 @@
 
 (defun as-lisp (form scope)
   "Return FORM, a leaf's, as Lisp is to compile it."
-  (if (atom form)
-      form
-      (let ((*fluents-here* (scope-fluents scope)))
-        (walk-form form (scope-environment scope) #'leaf-meaning))))
+  (cond ((atom form) form)
+        (t (check-commands form)
+           (let ((*fluents-here* (scope-fluents scope)))
+             (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
 (defun test-lambda (form scope)
   "Return the lambda expression, of the environment, for FORM as a condition."

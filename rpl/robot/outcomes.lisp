@@ -26,6 +26,18 @@ TYPE (reading 181)."
       (values (rpl-robot) arguments)
       (values (convert-argument (first arguments) type operator) (rest arguments))))
 
+(defun note-last-command (interface operator resource)
+  "Let INTERFACE know that the plan at work here has called OPERATOR for RESOURCE."
+  (let ((task (task-at-work interface)))
+    (when task
+      (setf (interface-last-command interface)
+            (list (task-serial (task-top task)) operator
+                  (and (part-p resource) (part-index resource)))))))
+
+(defmethod last-command ((interface interface) task)
+  (destructuring-bind (&optional serial operator part) (interface-last-command interface)
+    (if (eql serial (task-serial (task-top task))) (values operator part) nil)))
+
 (defun issue-in-plan (interface operator command outcome arguments)
   "Let INTERFACE issue COMMAND with ARGUMENTS, those of the plan function OPERATOR; see
 COMMAND-IN-PLAN."
@@ -36,6 +48,7 @@ COMMAND-IN-PLAN."
                              for argument in arguments
                              collect (convert-argument argument (spec-type spec) operator))))
         (check-in-plan operator command arguments)
+        (note-last-command interface operator resource)
         (issue-deed interface command resource arguments outcome issue)))))
 
 (defun command-in-plan (operator command outcome arguments)
@@ -91,6 +104,14 @@ and PARAMETERS, lists (variable type text)."
                  ((:set :error :pulse) (list (second clause)))
                  (:when (clause-fluents (cddr clause))))))
 
+(defun wait-form (clauses part)
+  "Return the form of the fluent for which plans wait that want to hear of the end of a command on
+PART, the name of its argument, if CLAUSES say what comes of it; or NIL."
+  (let ((fluent (second (assoc :pulse clauses))))
+    (cond ((null fluent) nil)
+          ((second (assoc fluent *fluent-variables*)) `(vref ,fluent ,part))
+          (t fluent))))
+
 (defmacro define-outcome (commands (&rest results) &body clauses)
   "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
 its error code and RESULTS to its results: (:set fluent form), (:error fluent), which sets the
@@ -103,6 +124,8 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
              for name = (plan-function-name command-name)
              for parameters = (parameters-in-plan resource specifications)
              collect `(public ,name)
+             collect `(note-twin ',command-name '(,name ,@parameters)
+                                 ',(wait-form clauses (first parameters)))
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
                                       fluents. (Manual C.)"

@@ -36,10 +36,11 @@
                 #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
-                #:task-label #:runner-serial #:task-serial #:task-form #:task-cleaning #:form-text
+                #:task-label #:runner-serial #:task-serial #:task-form #:task-children
+                #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
                 #:waiting-parts #:text-of-plans #:advice-on-stillness #:fluents-awaited
-                #:fluent-text
+                #:fluent-text #:note-twin #:last-command #:endless-advice
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure

@@ -125,11 +125,16 @@ but somebody outside can let plans go on, say so, once."
 
 ;;; What did not end.
 
+(defun deepest-parts (task)
+  "Return the parts of TASK that have no parts."
+  (if (task-children task) (mapcan #'deepest-parts (task-children task)) (list task)))
+
 (defun report-limit (interface task)
   "Queue an error message that says that TASK was given up, and what it and its parts wait for."
   (error-set "The plan " (task-label task) " was given up at tick "
              (simulation-tick (interface-simulation interface)) ", after " *plan-limit*
-             " ticks; see *PLAN-LIMIT*. It was at:" t
+             " ticks; see *PLAN-LIMIT*."
+             (format nil "~@[ ~A~]" (endless-advice (deepest-parts task))) " It was at:" t
              (cut (with-output-to-string (stream) (print-tasks task stream)) +longest-report+)))
 
 (defun report-not-over (interface task state)
@@ -244,3 +249,20 @@ before that began."
       (end-in (the-interface) nil)
       (end-task (task-here task)))
   (values))
+
+;;; The name of a plan that is not quoted is a variable to Lisp.
+
+(defun doubt-plan-form (operator form environment)
+  "Warn if FORM, for the plan that OPERATOR is to run, is the name of a plan and no variable."
+  (when (and form (symbolp form) (not (known-variable-p form environment)))
+    (when (find-procedure form nil)
+      (doubt-definition "~A: ~A is a plan and no variable. Quote its name: '~:*~A"
+                        operator form))))
+
+(define-compiler-macro run-plan (&whole form &rest arguments &environment environment)
+  (doubt-plan-form 'run-plan (first arguments) environment)
+  form)
+
+(define-compiler-macro begin-plan (&whole form &rest arguments &environment environment)
+  (doubt-plan-form 'begin-plan (first arguments) environment)
+  form)

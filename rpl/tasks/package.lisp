@@ -56,6 +56,8 @@ plans nor a simulator.")
            #:receive #:release-held #:status-word #:stop-waiting #:unwind #:withdraw)
   ;; shape
   (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
+  ;; twins
+  (:export #:note-twin #:has-twin-p #:twin-text #:end-text #:last-command)
   ;; procedure
   (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list
            #:reject-lisp-call #:all-procedures #:anonymous-procedure #:declare-procedure
@@ -93,7 +95,7 @@ plans nor a simulator.")
   ;; stillness
   (:export #:report-deadlock #:report-stillness #:+no-fluent+ #:warn-of-no-fluent
            #:waiting-parts #:text-of-plans
-           #:advice-on-stillness #:fluents-awaited)
+           #:advice-on-stillness #:endless-advice #:fluents-awaited)
   ;; alone
   (:export #:run-plan-alone)
   ;; stepping

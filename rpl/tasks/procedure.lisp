@@ -65,6 +65,33 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
              (and (same-name-p name (procedure-name procedure)) (defined-p procedure)))
            (registered-procedures) :from-end t))
 
+;; Users give a call, a function, or the name of a function for that of a plan.
+(defun plan-remedy (name)
+  "Return in sentences what to do instead of giving NAME, which is no plan's, for a plan; or NIL."
+  (flet ((say (control &rest arguments)
+           (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
+    (cond ((typep name '(cons symbol list))
+           (say "Give the name, and then its arguments: (run-plan '~A~{ ~S~})."
+                (first name) (abridged (rest name))))
+          ((functionp name)
+           (let ((plan (find name (registered-procedures) :key #'procedure-stub)))
+             (say "~:[A function is no plan; DEF-INTERP-PROC defines one~;Give the plan's name ~
+                   instead: '~:*~A~]." (and plan (procedure-name plan)))))
+          ((not (and (symbolp name) (fboundp name))) nil)
+          ((registered-procedure name nil)
+           (say "It was one until ~A was defined as a ~:[function~;macro~]. Define the plan anew, ~
+                 and give one of the two another name." name (macro-function name)))
+          (t (say "~A is a ~:[function~;macro~], no plan. Define a plan that calls it: ~
+                   (def-interp-proc my-plan () ~A)." name (macro-function name)
+                  (if (has-twin-p name) (twin-text name) (format nil "(~(~A~) ...)" name)))))))
+
+(defun reject-procedure (name)
+  "Signal UNKNOWN-NAME: NAME is not that of a plan."
+  (let ((remedy (plan-remedy name)))
+    (if remedy
+        (error 'unknown-name :kind "plan procedure" :name name :remedy remedy)
+        (reject-name "plan procedure" name (mapcar #'procedure-name (all-procedures))))))
+
 (defun find-procedure (name &optional (errorp t))
   "Return the plan procedure called NAME, a symbol or string: that of the very symbol, or else the
 one defined last of those called the same in other packages. If there is none, signal UNKNOWN-NAME,
@@ -72,8 +99,7 @@ or return NIL if ERRORP is NIL."
   (let ((known (registered-procedure name nil)))
     (cond ((and known (defined-p known)) known)
           ((and (typep name '(or symbol string)) (live-namesake name)))
-          (errorp (reject-name "plan procedure" name
-                               (mapcar #'procedure-name (all-procedures)))))))
+          (errorp (reject-procedure name)))))
 
 (defmethod print-object ((procedure procedure) stream)
   (print-unreadable-object (procedure stream :type t)
@@ -180,8 +206,19 @@ plans, mean this one."
   (error 'wrong-arguments
          :operator (or (procedure-name procedure) "interp-lambda") :name "argument list"
          :value arguments
-         :expected (format nil "~A, not ~A"
-                           (shape-text (procedure-lambda-list procedure)) trouble)))
+         :expected (format nil "~:[no argument~;~:*~A~], not ~A~:[~;: the arguments one by one, in ~
+                                no list~]"
+                           (and (procedure-lambda-list procedure)
+                                (shape-text (procedure-lambda-list procedure)))
+                           trouble
+                           (listed-p procedure arguments))))
+
+(defun listed-p (procedure arguments)
+  "True if ARGUMENTS are a list of a list, of what PROCEDURE takes."
+  (and (typep arguments '(cons cons null))
+       (proper-list-p (first arguments))
+       (null (misfit (shape-of (procedure-lambda-list procedure)) (first arguments)
+                     :wrong-p (constantly t)))))
 
 (defun check-arguments (procedure arguments)
   "Signal WRONG-ARGUMENTS unless PROCEDURE takes the list ARGUMENTS."

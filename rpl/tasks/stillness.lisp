@@ -39,18 +39,62 @@
   (values (remove-if-not #'robots-fluent-p fluents)
           (remove-if #'robots-fluent-p fluents)))
 
+(defun end-elsewhere (name part tasks)
+  "Return in words how to wait for the end of the command NAME on PART, unless TASKS do that."
+  (let ((text (end-text name part)))
+    (and text
+         (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))
+         text)))
+
+(defun command-advice (tasks)
+  "Return in a sentence which command the plan of TASKS, which wait for the robot, has given last."
+  (let* ((task (first tasks)) (plan (task-label (task-top task))))
+    (multiple-value-bind (name part) (last-command (runner-client (task-runner task)) task)
+      (if name
+          (format nil "The last one of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
+                       end~]." plan name (end-elsewhere name part tasks))
+          (format nil "~A has given none by a function such as rpl-robot-turn; plans do not ~
+                       hear of others." plan)))))
+
+;;; What does not end.
+
+(defun exit-in-p (form)
+  "True if FORM mentions RETURN, or the like."
+  (typecase form
+    (cons (or (exit-in-p (car form)) (exit-in-p (cdr form))))
+    (symbol (search "RETURN" (symbol-name form)))))
+
+(defun endless-form-p (form)
+  "True if FORM, of a plan, is a WHENEVER or LOOP without an exit."
+  (and (consp form)
+       (symbolp (first form))
+       (or (string= "WHENEVER" (first form))
+           (and (string= "LOOP" (first form)) (every #'consp (rest form))))
+       (not (exit-in-p form))))
+
+(defun endless-advice (tasks)
+  "Return in sentences that a form that TASKS are inside of does not end by itself, or NIL."
+  (let ((form (loop for task in tasks
+                    thereis (find-if #'endless-form-p
+                                     (plan-backtrace task (task-frame task))))))
+    (and form
+         (format nil "~A does not end by itself: let it (return), or begin the plan by BEGIN-PLAN, ~
+                      which does not wait for its end." (form-text form)))))
+
 (defun advice-on-stillness (tasks)
   "Return in sentences what could be done about it that TASKS wait and nothing will wake them."
   (let ((valueless (find-if #'waits-for-no-fluent-p tasks)))
     (multiple-value-bind (robots others) (split-fluents (fluents-awaited tasks))
       (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is under way: ~
-                   give one before you wait.~]~@[ Only SET-VALUE and PULSE change ~{~A~^, ~}, and ~
-                   no task is left that could call them.~]"
+                   give one before you wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
+                   ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~A~]"
               (and valueless (no-fluent-advice valueless))
               (and robots
                    (format nil "~{~A~^, ~} change~:[s~;~]"
                            (mapcar #'fluent-text robots) (rest robots)))
-              (remove-duplicates (mapcar #'fluent-text others) :test #'string=)))))
+              (and robots (command-advice tasks))
+              (remove-duplicates (mapcar #'fluent-text others) :test #'string=)
+              (endless-advice tasks)))))
 
 ;;; Reports.
 
@@ -80,13 +124,14 @@
 (defun report-stillness (runner)
   "Queue a warning that says that the tasks of RUNNER wait for what only somebody outside of them
 and of the simulator can bring about."
-  (queue-message (make-message :warning
-                               (list "At tick " (runner-tick runner) " all plans wait for what "
-                                     "neither the robot nor time will bring about, but somebody "
-                                     "may, by SET-VALUE or WAKE-UP:" t
-                                     (tree-text runner))
-                               :notable-p t)
-                 *message-queue*))
+  (let ((advice (endless-advice (mapcan #'waiting-parts (plan-runner-tasks runner)))))
+    (queue-message (make-message :warning
+                                 (list "At tick " (runner-tick runner) " all plans wait for what "
+                                       "neither the robot nor time will bring about, but somebody "
+                                       "may, by SET-VALUE or WAKE-UP:" t
+                                       (tree-text runner) (or advice ""))
+                                 :notable-p t)
+                   *message-queue*)))
 
 (defun report-deadlock (runner)
   "Queue an error message that says that no task of RUNNER can go on: the plans, what they wait for,

@@ -19,10 +19,11 @@ numbers."
 
 (defun callable-with-p (function count)
   "True if FUNCTION, or the one so called, can be called with COUNT arguments, as far as is known."
-  (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list
-                                                        (lambda-list-of function))
-    (and (<= (length required) count)
-         (or rest-p keys (<= count (+ (length required) (length optional)))))))
+  (multiple-value-bind (list unknown-p) (lambda-list-of function)
+    (or unknown-p
+        (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list list)
+          (and (<= (length required) count)
+               (or rest-p keys (<= count (+ (length required) (length optional)))))))))
 
 ;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
 ;;; said.

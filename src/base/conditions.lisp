@@ -104,20 +104,23 @@ author meant."
   ((kind    :initarg :kind    :reader unknown-name-kind)
    (name    :initarg :name    :reader unknown-name-name)
    (nearest :initarg :nearest :initform nil :reader unknown-name-nearest)
-   (known   :initarg :known   :initform '() :reader unknown-name-known))
+   (known   :initarg :known   :initform '() :reader unknown-name-known)
+   (remedy  :initarg :remedy  :initform nil :reader unknown-name-remedy))
   (:report (lambda (condition stream)
              (with-accessors ((kind unknown-name-kind) (name unknown-name-name)
-                              (nearest unknown-name-nearest) (known unknown-name-known))
+                              (nearest unknown-name-nearest) (known unknown-name-known)
+                              (remedy unknown-name-remedy))
                  condition
                (let ((*print-circle* nil))
                  (format stream "There is no ~A called ~A.~@[ Did you mean ~A?~]~
-                                 ~@[ Known: ~{~A~^, ~}.~]"
+                                 ~@[ Known: ~{~A~^, ~}.~]~@[ ~A~]"
                          kind
                          (if (symbolp name)
                              (abridged-text (plain-name name))
                              (prin1-to-string (abridged name)))
                          (and nearest (plain-name nearest))
-                         (names-to-show known))))))
+                         (names-to-show known)
+                         remedy)))))
   (:documentation "A name was given that nothing of that kind has."))
 
 (addition misuse)

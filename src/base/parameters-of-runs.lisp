@@ -13,11 +13,11 @@ For those defined before this is compiled, as all of ours are, that is much quic
 
 (defun check-settings (settings)
   "Signal WRONG-ARGUMENT unless SETTINGS is a list of lists (name value)."
-  (check-argument with-simulation settings
-                  (and (proper-list-p settings)
-                       (loop for setting in settings
-                             always (and (proper-list-p setting) (= 2 (length setting)))))
-                  "a list of lists (name value), such as ((max-speed* 1/2))"))
+  (unless (and (proper-list-p settings)
+               (loop for setting in settings
+                     always (and (proper-list-p setting) (= 2 (length setting)))))
+    (reject-argument 'with-simulation 'parameters settings
+                     "a list of lists (name value), such as '((max-speed* 1/2))")))
 
 (defun call-with-parameters (settings function)
   "Call FUNCTION with every parameter bound: as SETTINGS, a list of lists (name value), says, and as

@@ -30,11 +30,74 @@ there."
     (storage-condition ()
       (reject-use-of form "forms that are less deep, and macros that come to an end"))))
 
+(defgeneric advice-on-use (operator form)
+  (:documentation "Return in words what else to write for FORM, a use of the macro OPERATOR that
+does not fit its lambda list, or NIL.")
+  (:method (operator form)
+    (declare (ignore operator form))
+    nil))
+
+(defun strange-keyword (parameters arguments)
+  "Return in words the first of ARGUMENTS that stands where a keyword of PARAMETERS, of a macro's
+lambda list, should and is none of them; or NIL."
+  (let* ((keys (member '&key parameters))
+         (before (remove-if (lambda (part) (member part lambda-list-keywords))
+                            (ldiff parameters keys)))
+         (known (loop for key in (rest keys) collect (make-keyword (first (ensure-list key))))))
+    (loop for (key . value) on (and keys (nthcdr (length before) arguments)) by #'cddr
+          unless (member key known)
+            return (format nil "there is no keyword ~(~S~)~@[; did you mean ~(~S~)?~]"
+                           (abridged key) (and (keywordp key) (nearest-name key known)))
+          unless value
+            return (format nil "~(~S~) has no value" key))))
+
+(defun misfit-text (parameters arguments)
+  "Return in words what it is in ARGUMENTS, forms, that does not fit PARAMETERS, of a macro's lambda
+list: a keyword, or a form where there should be a list. Return NIL if it is something else."
+  (when (proper-list-p arguments)
+    (or (strange-keyword parameters arguments)
+        (loop for parameter in parameters
+              for argument in arguments
+              until (member parameter lambda-list-keywords)
+              thereis (and (consp parameter)
+                           (if (and argument (atom argument))
+                               (format nil "~(~A~) is no list" (unqualified-text argument))
+                               (misfit-text parameter argument)))))))
+
+(defun misfit-advice (form usage)
+  "Return in words why FORM does not fit USAGE, and what to write instead, or NIL."
+  (or (advice-on-use (first form) form)
+      (misfit-text (rest usage) (rest form))))
+
+(defun unread-slot (form)
+  "Return the symbol in FORM that Nisp's reader would have read as a slot, such as !>robot.cameras;
+or NIL."
+  (let ((stack (list form)))
+    (loop while stack
+          do (let ((part (pop stack)))
+               (cond ((consp part)
+                      (push (cdr part) stack)
+                      (push (car part) stack))
+                     ((and part (symbolp part)
+                           (< 2 (length (symbol-name part)))
+                           (starts-with-subseq "!>" (symbol-name part)))
+                      (return part)))))))
+
+(defun doubt-readtable (form)
+  "Warn if FORM has in it what only Nisp's reader reads, as a symbol."
+  (let ((slot (unread-slot form)))
+    (when slot
+      (doubt-definition "~A has been read as a symbol, not as a slot. Begin your file or session ~
+                         with (in-readtable :nisp)." slot))))
+
 (defun call-fitting (form usage parse)
   "Call what PARSE, a function, returns; that takes apart FORM, the use of a macro as USAGE shows."
   (unless (proper-form-p form) (reject-use-of form "a form that ends, in a parenthesis"))
+  (doubt-readtable form)
   (call-blaming-form (handler-case (funcall parse)
-                       (error () (reject-use-of form (usage-text usage))))
+                       (error ()
+                         (reject-use-of form (format nil "~A~@[; ~A~]" (usage-text usage)
+                                                     (misfit-advice form usage)))))
                      form))
 
 (defun usage-text (usage)

@@ -51,6 +51,14 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
   `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
+(defun doubt-unquoted (name forms)
+  "Warn of those of FORMS, the arguments in a call of the command NAME, that are no calls."
+  (dolist (form forms)
+    (when (typep form '(cons (or keyword (cons (not (eql lambda))))))
+      (let ((*print-pretty* nil))
+        (doubt-definition "~(~A~): ~S is no call of a function. If it is data, quote it: '~:*~S"
+                          name (abridged form))))))
+
 (defparameter *command-families* '(:moving :looking :handling :manipulating :thinking)
   "Where commands belong.")
 
@@ -151,4 +159,7 @@ later (reading 149)."
                  collect (check-form name variable type))
          ,(check-form name 'continuation 'continuation)
          (issue (command-of ',name) ,(first resource) (list ,@variables) continuation))
+       (define-compiler-macro ,name (&whole form &rest arguments)
+         (doubt-unquoted ',name arguments)
+         form)
        ',name)))

@@ -23,6 +23,20 @@
                        ~]; of a fork, (counterpart OBJECT FORK) is what one is there."
                       (command-name command) argument resource (designator-p argument)))))))
 
+(defun check-continuation (command continuation)
+  "Signal WRONG-ARGUMENT if CONTINUATION cannot be called with what COMMAND tells at its end."
+  (let ((results (command-results command)))
+    (when (and continuation
+               (or (functionp continuation) (fboundp continuation))
+               (not (callable-with-p continuation (+ 2 (length results)))))
+      (let ((*print-pretty* nil))
+        (reject-argument (command-name command) 'continuation continuation
+                         (format nil "one that takes ~(~A~), as (continuation ~:*~(~A~) ...) ~
+                                      does, not ~(~:A~)"
+                                 (list* 'err (spec-name (command-resource command))
+                                        (mapcar #'spec-name results))
+                                 (lambda-list-of continuation)))))))
+
 ;;; What is said once for each name.
 
 (defun doubt-angles (command world arguments)
@@ -58,9 +72,11 @@ begin, or to go on."
 (defun issue (command resource arguments continuation)
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked and of which lists are copied;
 CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
-if the robot's run is over, or an argument is of another run."
+if the robot's run is over, or an argument is of another run; WRONG-ARGUMENT for a continuation that
+takes another number of arguments."
   (check-in-run resource (command-name command))
   (check-of-this-run command resource arguments)
+  (check-continuation command continuation)
   (let* ((robot (resource-robot resource))
          (world (robot-world robot))
          (timeline (world-timeline world))

@@ -18,7 +18,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:robot-x #:robot-y #:find-blueprint #:all-blueprints #:blueprint-name
                 #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
-                #:procedure #:procedure-p #:procedure-source
+                #:find-procedure #:procedure #:procedure-p #:procedure-name #:procedure-source
                 #:task-p #:task-over-p #:task-state #:task-result #:task-label
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)

@@ -65,8 +65,9 @@
   (let ((known (slot-names object)))
     (when (and setter (member slot known :test #'string=))
       (reject-use "Slot ~A of a ~A cannot be set." slot (type-of object)))
-    (reject-name (format nil "slot of a ~A" (let ((type (type-of object)))
-                                              (if (symbolp type) (symbol-name type) type)))
+    (reject-name (format nil "slot of ~:[a ~A~;NIL~]" (null object)
+                         (let ((type (type-of object)))
+                           (if (symbolp type) (symbol-name type) type)))
                  slot known)))
 
 (defmethod no-applicable-method ((accessor slot-accessor) &rest arguments)

@@ -132,7 +132,16 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   mind-p "True of what robots think with."
   storage-bin-p "True of storage bins.")
 
-(define-argument-type 'robot #'robot-p "a robot")
+(defun not-a-robot-text (value)
+  "Return in words why VALUE is no robot, and how to have one, if it is NIL or a robot's name."
+  (let ((name (and value (typep value '(or symbol string)) (find-blueprint value nil)
+                   (string-downcase value))))
+    (when (or name (null value))
+      (format nil "~:[its name is a variable that holds it~;~:*~A without a quote is one~] in ~
+                   (with-simulation (~A) ...) or after (simulator '~:*~A)"
+              name (or name "ROBOT")))))
+
+(define-argument-type 'robot #'robot-p "a robot" #'not-a-robot-text)
 (define-argument-type 'camera #'camera-p "a camera, as (robot-camera ROBOT 0) returns")
 (define-argument-type 'hand #'hand-p "a hand, as (robot-hand ROBOT 0) returns")
 (define-argument-type 'storage-bin #'storage-bin-p

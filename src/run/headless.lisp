@@ -305,6 +305,6 @@ bring about."
                              ,@body)
                            ',robots
                            :variables ',variables
-                           :seed ,seed :parameters ,parameters :clean ,clean
+                           :seed ,seed :parameters ,(settings-form parameters) :clean ,clean
                            :journal ,journal :keep ,keep :thinking ,thinking
                            :errors ,errors)))

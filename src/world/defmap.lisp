@@ -106,7 +106,7 @@ signals, the user may replace the clause by another, of which COMPILER makes a f
     (check-options definition (rest head) '(:prototype :kickers))
     (unless (and (proper-list-p (getf (rest head) :kickers))
                  (every #'symbolp (getf (rest head) :kickers)))
-      (reject-clause definition clause ":kickers (name ...)"))))
+      (reject-clause definition clause ":kickers (name ...), names in a list"))))
 
 (defun prototype-form (definition clause prototype)
   "Return a form for the value of the form PROTOTYPE, which stands in CLAUSE (reading 59)."
@@ -136,6 +136,10 @@ PATH."
         collect (thing-form definition clause (append path (list position)) 'contents-form)))
 
 (defun contents-form (definition clause path)
+  (when (keywordp (if (consp clause) (first clause) clause))
+    (reject-clause definition clause
+                   (format nil "contents: (name descriptor contents...); options stand beside ~
+                                the name, as in (obj (ball :kickers (sway)) ...)")))
   (unless (and (proper-list-p clause) (<= 2 (length clause)))
     (reject-clause definition clause "contents: (name descriptor contents...)"))
   (destructuring-bind (head descriptor &rest contents) clause

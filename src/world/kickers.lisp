@@ -90,6 +90,9 @@ a thing. Return the kicker."
   "Return the keyword arguments, as forms, for a kicker with OPTIONS and BODY (reading 169)."
   (unless (and variable (symbolp variable) (not (constantp variable)))
     (reject-clause definition variable "a variable, to be bound to the kicker's thing"))
+  (unless (typep options '(or null (cons keyword)))
+    (reject-clause definition options
+                   "a list of options before the body, such as (:prob 1/10) or (:test form)"))
   (check-options definition options '(:prob :test))
   (flet ((thing-function (forms)
            `(lambda (,variable) (declare (ignorable ,variable)) ,@forms)))

@@ -13,6 +13,13 @@
   "What is said of a thing beside its attributes: the option, and how it is written in a map and on
 the fly.")
 
+(defun option-called (name)
+  "Return what *OPTIONS-OF-THINGS* says of the option that NAME, an attribute's, is or is a slip
+for; or NIL."
+  (let ((key (attribute-key name)))
+    (or (assoc key *options-of-things*)
+        (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
+
 (defun slips-in (descriptor)
   "Return a list of lists (name like): the names in the object DESCRIPTOR that are not declared, but
 may be slips for the declared name LIKE, or, if that is NIL, are options of things."
@@ -23,13 +30,12 @@ may be slips for the declared name LIKE, or, if that is NIL, are options of thin
 
 (defun option-of-things-p (name)
   "True if NAME, an attribute's, is that of an option, and no attribute is declared so."
-  (let ((key (attribute-key name)))
-    (and (assoc key *options-of-things*) (not (attribute-of key)))))
+  (and (option-called name) (not (attribute-of (attribute-key name)))))
 
 (defun option-text (thing-name option map-p)
   "Return in words that the thing has OPTION among its attributes, where it does nothing, and how it
 is written, in a map if MAP-P."
-  (destructuring-bind (in-map on-the-fly) (rest (assoc (attribute-key option) *options-of-things*))
+  (destructuring-bind (in-map on-the-fly) (rest (option-called option))
     (format nil "~(~A~) has ~(~S~) among its attributes, where it does nothing; write ~@?"
             thing-name option (if map-p in-map on-the-fly) (string-downcase thing-name))))
 

@@ -142,6 +142,23 @@ true of; or about CLAUSE if there is none at all."
                          ~A?~]"
                         name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
 
+;;; A plan's name.
+
+(defun quoted-name (form)
+  "Return the symbol that FORM, 'NAME or #'NAME, is of, or NIL."
+  (and (typep form '(cons (member quote function) (cons symbol null))) (second form)))
+
+(defun run-plan-text (name)
+  "Return in words how the clause :run lets a trial run the plan NAME."
+  (format nil "(:run (run-plan '~(~A~) ...)), with the plan's arguments: the name ~:*~(~A~) alone ~
+               runs nothing" name))
+
+(defun check-runs (definition clause)
+  "Signal MALFORMED-DEFINITION if CLAUSE, :run, has no more than the name of a plan."
+  (let ((name (and (null (cddr clause)) (quoted-name (second clause)))))
+    (when (and name (find-procedure name nil))
+      (reject-clause definition clause (run-plan-text name)))))
+
 ;;; All of them.
 
 (defun check-column-names (definition clauses)
@@ -184,7 +201,8 @@ true of; or about CLAUSE if there is none at all."
      (check-integer-clause definition clause
                            (lambda (n) (and (integerp n) (<= 1 n +largest+)))))
     (:seed (check-integer-clause definition clause #'integerp))
-    (:run (unless (rest clause) (reject definition clause)))
+    (:run (unless (rest clause) (reject definition clause))
+     (check-runs definition clause))
     ((:thinking :until :success) (unless (= 2 (length clause)) (reject definition clause)))
     (:measure
      (check-each definition clause

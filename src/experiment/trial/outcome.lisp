@@ -38,6 +38,19 @@
         (t (values "failure"
                    (if (and reason (typep reason '(or symbol string))) (value-text reason) "")))))
 
+(defun check-run-something (values)
+  "Signal MISUSE if VALUES, of :run, are a plan or the symbol that it is called by, and no tick has
+passed."
+  (let* ((value (first values))
+         (plan (and value
+                    (null (rest values))
+                    (zerop (simulation-tick))
+                    (typep value '(or symbol procedure))
+                    (find-procedure value nil))))
+    (when (and plan (or (eq plan value) (eq value (procedure-name plan))))
+      (reject-use "The value of :run is the plan ~(~A~), which has not been run. Write ~A."
+                  (procedure-name plan) (run-plan-text (procedure-name plan))))))
+
 (defun error-in-plan (values)
   "Return the text of the error in Lisp code that let a plan fail, if VALUES are RUN-PLAN's and it
 did; else an empty one."

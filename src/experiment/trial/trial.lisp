@@ -109,6 +109,7 @@ and :LIMIT if too few ticks were left."
       (let ((values (multiple-value-list (call-form (experiment-run experiment) condition))))
         (setf *trial-values* values)
         (signal-trouble *message-queue*)
+        (check-run-something values)
         (if (experiment-until experiment)
             (list (pass-until (experiment-until experiment) condition))
             values))))

@@ -1,0 +1,36 @@
+;;;; twins.lisp -- what plans call instead of functions that tell only their continuations.
+
+(in-package :ars-magna.rpl.tasks)
+
+(defun note-twin (name call wait)
+  "Note that plans write CALL, with the names of its arguments, of which the first is a part if
+there are several of them, instead of a call of NAME; and that (wait-for WAIT) then waits for the
+end, unless WAIT is NIL."
+  (setf (get name 'twin) (list call wait)
+        (get (first call) 'end) (list (second call) wait)))
+
+(defun has-twin-p (name)
+  "True if plans call another function instead of the one called NAME."
+  (and (symbolp name) (get name 'twin) t))
+
+(defun wait-form-text (wait)
+  (let ((*print-pretty* nil)) (and wait (format nil "(wait-for ~(~A~))" wait))))
+
+(defun twin-text (name)
+  "Return in words what plans write instead of a call of NAME."
+  (destructuring-bind (call wait) (get name 'twin)
+    (let ((*print-pretty* nil))
+      (format nil "~(~A~)~@[ ~A~]" call (wait-form-text wait)))))
+
+(defun end-text (name part)
+  "Return in words how plans wait for the end of what NAME, a plan's function, has begun on the part
+numbered PART, or NIL if nothing tells of that."
+  (destructuring-bind (&optional variable wait) (get name 'end)
+    (wait-form-text (subst part variable wait))))
+
+(defgeneric last-command (client task)
+  (:documentation "Return the name of the plan's function that the plan TASK is of has called last,
+and the number of the part that it is for, if any, as CLIENT knows; NIL if it has called none.")
+  (:method (client task)
+    (declare (ignore client task))
+    nil))

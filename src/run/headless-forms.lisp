@@ -1,0 +1,29 @@
+;;;; headless-forms.lisp -- what is said of a WITH-SIMULATION that is not written as it should be.
+
+(in-package :ars-magna.run)
+
+(defmethod advice-on-use ((operator (eql 'with-simulation)) form)
+  (let* ((head (unquoted (second form)))
+         (names (and (consp head) (mapcar #'unquoted (ldiff head (member-if #'keywordp head))))))
+    (cond ((null head) "name a robot: (with-simulation (ROBOT) ...)")
+          ((symbolp head) (format nil "write (with-simulation (~(~A~)) ...)" head))
+          ((rest names)
+           (format nil "several robots are a list of their own: (with-simulation (~(~A~)) ...)"
+                   (abridged names))))))
+
+(defun unquoted-settings-p (form)
+  "True if FORM, for a list of settings, is such a list itself, or a setting: neither is a call."
+  (and (consp form)
+       (let ((head (first form)))
+         (if (consp head)
+             (not (eq 'lambda (first head)))
+             (and (symbolp head) (not (fboundp head)) (find-parameter head nil))))))
+
+(defun settings-form (form)
+  "Return FORM, that of the list :parameters. Signals MALFORMED-DEFINITION if a quote is missing."
+  (when (unquoted-settings-p form)
+    (reject-clause "with-simulation" (list :parameters form)
+                   (let ((*print-case* :downcase))
+                     (format nil "a quote: :parameters '~S"
+                             (abridged (if (consp (first form)) form (list form)))))))
+  form)
