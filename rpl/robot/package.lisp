@@ -34,7 +34,8 @@
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:heard-from-outside-p #:idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
-                #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
+                #:plan-runner-tasks #:plan-runner-steps #:plan-runner-tick
+                #:runner-note #:fail #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
@@ -83,7 +84,8 @@
            #:rpl-hand-remove #:rpl-hand-grasp-desig #:rpl-hand-ungrasp #:rpl-hand-grasp-check
            #:rpl-hand-track #:rpl-storage-bin-open #:rpl-storage-bin-close)
   ;; running
-  (:export #:run-plan #:begin-plan #:end-plan #:plans #:*plan-limit* #:rpl-runner)
+  (:export #:run-plan #:begin-plan #:end-plan #:plans #:*plan-limit* #:*plan-command-limit*
+           #:rpl-runner)
   ;; interface, wishes and runs, for rooms above
   (:export #:*interface* #:interface-p #:interface-robot #:interface-simulation #:interface-runner
            #:interface-wishes #:holding-p #:call-with-plans #:wish #:wish-task #:wish-interface

@@ -51,13 +51,20 @@ the same words whichever of them it is that takes it."
       (warning-set text ". They go on with the ticks. Let one at a time have it: see "
                    "RPL-ROBOT-VALVE."))))
 
+(defun cut-short (runner older newer)
+  "Let time pass for RUNNER. Note it if the tasks OLDER and NEWER are of one plan, which has not
+waited for that; see rushing.lisp."
+  (when (and older newer (eq (task-top older) (task-top newer)))
+    (setf (runner-note runner 'cut-short) (plan-runner-tick runner)))
+  (exhaust-reaction runner))
+
 (defun count-takeover (interface resource older newer)
   "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if
 that was too often."
   (let ((count (takeover-count interface resource)))
     (when (< *most-takeovers* (incf (cdr count)))
       (warn-of-takeovers interface (takeover-text resource older newer))
-      (exhaust-reaction (interface-runner interface)))))
+      (cut-short (interface-runner interface) older newer))))
 
 (defun waits-for-tick-p (interface)
   "True if plans have taken a part from each other so often in this tick that another is to come."

@@ -16,18 +16,6 @@
                         (eq task (task-top (deed-task deed)))))
                  (interface-deeds interface)))
 
-(defun fluent-form-text (fluent)
-  "Return how plans write FLUENT, one of the robot's or of a part's."
-  (let* ((name (fluent-text fluent)) (space (position #\Space name)))
-    (if space
-        (format nil "(vref ~A)" name)
-        name)))
-
-(defun wait-text (deed)
-  "Return how a plan waits for the end of DEED, or NIL if nothing tells of that."
-  (let ((pulse (assoc :pulse (funcall (deed-outcome deed) (deed-resource deed) :interrupt))))
-    (and pulse (format nil "(wait-for ~A)" (fluent-form-text (second pulse))))))
-
 (defun tell-of-unawaited (interface task)
   "Say once if commands of TASK, a plan of INTERFACE that has succeeded, are under way."
   (let ((deed (first (unawaited-deeds interface task))))
@@ -38,4 +26,4 @@
                               which goes on.~@[ If the plan is to end with it, let it ~A.~]"
                          (task-label task)
                          (command-name (deed-command deed))
-                         (wait-text deed))))))
+                         (wait-text (deed-outcome deed) (deed-resource deed)))))))

@@ -177,10 +177,11 @@ the plan at work ends; an error says no more than that."
   "Issue COMMAND on RESOURCE with ARGUMENTS; OUTCOME says what plans hear of its end. ISSUE is what
 the trace knows of it."
   (let* ((task (task-at-work interface))
-         (deed (add-deed (make-deed command resource outcome task
-                                    (and task (cleaning-up-p task) t) issue)
-                         interface))
+         (cleanup-p (and task (cleaning-up-p task) t))
+         (deed (make-deed command resource outcome task cleanup-p issue))
          (issued-p nil))
+    (when (and task (not cleanup-p)) (count-command task command outcome resource))
+    (add-deed deed interface)
     (unwind-protect
          (progn (call-on-robot interface
                                (lambda ()
