@@ -76,8 +76,12 @@ exactly once."
       (is (null (code outcome)))
       (is (= (+ 5 3) (took outcome)))
       (is (< (abs (- (robot:robot-x rover) (+ 5.5 (* 4 0.8d0)))) 1d-9)))
-    (is (null (code (outcome () command:robot-go-forward 0))))
-    (is (null (code (outcome () command:robot-go-forward -3))))))
+    (is (null (code (outcome () command:robot-go-forward 0))))))
+
+(test go-forward.is-not-for-going-back
+  (with-rover (:clean t)
+    (let ((said (complaint-of (lambda () (command:robot-go-forward rover -3)))))
+      (is-true (has-words-p said "time is -3" "from 0" "to drive back, turn by pi")))))
 
 (test go-forward.is-blocked-by-walls-and-things
   (with-rover (:clean t)

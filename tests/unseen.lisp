@@ -137,6 +137,16 @@ output."
   (is-true (has-words-p (warnings-of-plan (rpl:whenever (not (rpl:fluent-value *level*)) 1))
                         "Write (whenever (not *level*) ...)")))
 
+(test wait-for.warns-of-constants
+  (is-true (has-words-p (warnings-of-plan (rpl:wait-for 5))
+                        "wait-for needs a fluent, such as robot-stopped*"
+                        "5 is a constant" "write (wait-time 5)"))
+  (loop for (constant text) in '((t "t is a constant") (:at-once ":at-once is a constant")
+                                 ('ball "'ball is a constant") ("a" "\"a\" is a constant"))
+        do (is-true (has-words-p (warning-about `(rpl:interp-lambda () (rpl:wait-for ,constant)))
+                                 text)))
+  (is-true (has-words-p (warnings-of-plan (rpl:whenever t 1)) "whenever needs a fluent")))
+
 (test wait-for.takes-what-may-be-a-fluent
   (is (string= "" (warnings-of-plan
                     (rpl:wait-for driver:robot-stopped*)
@@ -145,7 +155,6 @@ output."
                     (rpl:wait-for (> given (rpl:fluent-value *level*)))
                     (rpl:wait-for (svref driver:camera-moved* 0))
                     (rpl:wait-for given)
-                    (rpl:wait-for :at-once)
                     (rpl:wait-for (or given driver:robot-stopped*))
                     (rpl:wait-until (> (rpl:fluent-value *level*) 3))))))
 
@@ -243,6 +252,38 @@ output."
                           (base:misuse (trouble) (princ-to-string trouble)))
                         "(run-plan '" "FORLORN)")))
 
+;;; Quotes, keywords and spans.
+
+(test fluent-value.refuses-the-quoted-name-of-a-fluent
+  (with-rover ()
+    (driver:rpl-init-robot rover)
+    (dolist (form '((rpl:fluent-value 'driver:robot-stopped*)
+                    (rpl:fluent-value 'driver:camera-input*)
+                    (rpl:fluent-value '*level*)
+                    (rpl:set-value '*level* 3)
+                    (rpl:pulse 'driver:robot-stopped*)))
+      (let ((said (complaint-of (lambda () (eval form)))))
+        (is-true (and said (has-words-p said "leave out the quote")) "~S: ~A" form said)))
+    (let ((failure (driver:run-plan (rpl:interp-lambda (name) (rpl:wait-for name)) '*level*)))
+      (is-true (has-words-p (princ-to-string failure)
+                            "*LEVEL* is a symbol, not a fluent. Leave out the quote: *level*.")))))
+
+(test fluent-value.takes-other-symbols
+  (is (equal '(ball t :red *package*) (mapcar 'rpl:fluent-value '(ball t :red *package*))))
+  (is (eq 2 (plan-value (let ((name '*level*)) (case name (*level* 2)))))))
+
+(test fail.warns-of-what-may-be-the-word-class
+  (is-true (has-words-p (warnings-of-plan (rpl:fail :clas :lost :why 1))
+                        "takes :clas for the class" "Did you mean :class?"))
+  (is (string= "" (warnings-of-plan (rpl:fail :clash) (rpl:fail :clash 'door) (rpl:fail :glass 1 2)
+                                    (rpl:fail :class :clas) (rpl:fail :clas)))))
+
+(test wait-time.refuses-less-than-nothing
+  (is (eq :done (plan-value (rpl:wait-time (- 2 2)) :done)))
+  (let ((failure (plan-failure-of (rpl:wait-time -2))))
+    (is (equal '(rpl:wait-time -2) (rpl:failure-form failure)))
+    (is-true (has-words-p (princ-to-string failure) "span is -2; give a number from 0"))))
+
 (test failures.show-forms-as-they-were-written
   (flet ((text (plan) (rover-writes () (driver:run-plan plan))))
     (is-true (has-words-p (text (plan-of (rpl:wait-until (> (symbol-value 'nonsuch) 3))))
@@ -261,3 +302,52 @@ output."
                                  '("(def-interp-proc idle () (wait-for no-such-fluent*))")))))
     (is-true (has-words-p told "WAIT-FOR" "undefined variable" "NO-SUCH-FLUENT*"))
     (is (not (search "ONE-FLUENT" told)) "~A" told)))
+
+;;; Names of attributes and things, once in a run.
+
+(defmacro said-in-rover-world (&body body)
+  "Return the texts of the warnings that come when BODY runs in a headless simulation of ROVER."
+  `(with-rover ()
+     ,@body
+     (texts-of-warnings)))
+
+(test attributes.slips-are-said-once
+  (loop for (function operator) in `((,(lambda (ball) (world:get-attribute ball :colour))
+                                      "get-attribute of ball")
+                                     (,(lambda (ball) (world:set-attribute ball :colour 'red))
+                                      "set-attribute of ball")
+                                     (,(lambda (ball) (world:change-attribute ball '((:sise 1))))
+                                      "change-attribute of ball"))
+        for texts = (said-in-rover-world
+                      (let ((ball (world:new-thing ball (arena 3 3) ())))
+                        (loop repeat 3 do (funcall function ball))))
+        do (is (= 1 (length texts)))
+           (is-true (has-words-p (first texts) operator "is not declared; did you mean"))))
+
+(test attributes.of-ones-own-are-quiet
+  (is (null (said-in-rover-world
+              (let ((ball (world:new-thing ball (arena 3 3) ())))
+                (world:get-attribute ball :heading)
+                (world:set-attribute ball :rolling 3)
+                (world:get-attribute ball :color))))))
+
+(test attributes.options-of-things-are-named-in-searches
+  (let ((texts (said-in-rover-world
+                 (command:camera-get-all-object-designators
+                  (robot:robot-camera rover 0) :non-local '((:kickers t)) nil)
+                 (run:run-ticks 5))))
+    (is-true (some (lambda (text)
+                     (has-words-p text ":kickers, nor is it declared" "what a thing is made with"))
+                   texts))))
+
+(test find-thing.says-once-what-is-like-the-name
+  (let ((texts (said-in-rover-world
+                 (world:new-thing marble (arena 3 3) ())
+                 (loop repeat 3 do (is (null (world:find-thing 'marbel)))))))
+    (is (equal '("No thing here is called marbel. Did you mean marble?") texts))))
+
+(test find-thing.is-quiet-about-other-names-and-what-is-gone
+  (is (null (said-in-rover-world
+              (world:new-thing marker-11 (arena 3 3) ())
+              (dolist (name '(marker-10 zebra "MARKER-11#7" nil))
+                (world:find-thing name))))))

@@ -9,7 +9,18 @@
    (let ((failure (make-failure (funcall arguments environment))))
      (unwind task frame (failure-of failure task frame)))))
 
+(defun check-fail (form)
+  "Warn if the word that FORM, a FAIL, begins with may be a slip for :CLASS."
+  (when (and (cddr form) (keywordp (second form)) (resembles-p (second form) :class))
+    (call-at-place form
+                   (lambda ()
+                     (warn-of-call #'doubt-definition form
+                                   "fail takes ~(~S~) for the class of the failure. Did you mean ~
+                                    :class?"
+                                   (second form))))))
+
 (define-plan-form "FAIL" :may (&rest arguments) (form scope)
+  (check-fail form)
   (if (some (lambda (argument) (suspends-p argument scope)) arguments)
       (hoisted-code form scope)
       `(make-failing :form ',(form-as-written form)

@@ -39,7 +39,8 @@ OPERATOR, in ticks."
 
 (define-construct wait-time (span &key unit)
   "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is :seconds (manual D.4; reading
-90). SPAN is a number up to 1e15; with 0 or less, the plan does not wait."
+90). SPAN is a number from 0 to 1e15; with 0, and with what rounding leaves of 0, the plan does not
+wait."
   (:manual)
   (:arguments span)
   (:parts (span function (span-lambda 'wait-time span unit form scope)))
@@ -50,5 +51,6 @@ OPERATOR, in ticks."
       (cond ((plusp span)
              (park task (start-timer task span))
              +parked+)
-            (t (values (frame-up frame) nil)))))
+            ((< -1/1000 span) (values (frame-up frame) nil))
+            (t (reject-argument 'wait-time 'span span "a number from 0 to 1e15")))))
    (waiting (values (frame-up frame) nil))))

@@ -101,13 +101,35 @@ have set the fluent just before; so who waits for it to be true looks at it afte
            (unwind-protect (value-in-use fluent)
              (release fluent)))))
 
+(declaim (inline operand-value))
+(defun operand-value (object)
+  "Return the value that OBJECT, a fluent, has now, or any other OBJECT."
+  (if (fluent-p object) (current-value (here object)) object))
+
+(defun names-fluent-p (object)
+  "True if OBJECT is a symbol that is bound to a fluent, or a vector of fluents, or will be."
+  (and (symbolp object)
+       (boundp object)
+       (let ((value (symbol-value object)))
+         (or (fluent-p value)
+             (fluents-vector-p value)
+             (and (null value) object (known-variable-of-fluents-p object))))))
+
+(defun reject-name-of-fluent (name)
+  "Signal MISUSE if NAME, a symbol, is bound to a fluent, which must be meant; else return it."
+  (if (names-fluent-p name)
+      (reject-use "~S is a symbol, not a fluent. Leave out the quote: ~(~:*~A~)." name)
+      name))
+
 (declaim (inline fluent-value))
 (public fluent-value)
 (settable fluent-value)
 (defun fluent-value (object)
   "Return the value that OBJECT, a fluent, has now. Any other OBJECT is its own value. Can be set:
-see SET-VALUE (manual D.2)."
-  (if (fluent-p object) (current-value (here object)) object))
+see SET-VALUE (manual D.2). Signals MISUSE if OBJECT is the name of a variable that holds a fluent."
+  (cond ((fluent-p object) (current-value (here object)))
+        ((and object (symbolp object)) (reject-name-of-fluent object))
+        (t object)))
 
 ;;; Building.
 

@@ -19,7 +19,7 @@ no plan.")
            #:watcher-fluent #:watcher-p)
   ;; network
   (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
-           #:fluent-value #:unwatch #:watch)
+           #:fluent-value #:operand-value #:unwatch #:watch)
   ;; realm
   (:export #:*realm* #:+root+ #:fork-realm #:leave-realm #:realm-sources #:source-realm
            #:entity #:entity-realm #:entity-like #:here #:fresh-twin #:foreign-p #:home-forked-p

@@ -135,7 +135,9 @@ views that are true for the instant at which that change happened.")
 (defun check-settable (operator fluent)
   (unless (and (fluent-p fluent) (not (derived-p fluent)))
     (error 'wrong-argument :operator operator :name 'fluent :value fluent
-                           :expected "a fluent made by create-fluent or state"))
+                           :expected (format nil "a fluent made by create-fluent or state~:[~; ~
+                                                  (leave out the quote before ~(~A~))~]"
+                                             (names-fluent-p fluent) fluent)))
   (when *spreading*
     (reject-use "A function lifted over fluents set ~A. Networks only compute: set it in a plan."
                 fluent)))

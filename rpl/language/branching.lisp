@@ -48,7 +48,7 @@
   "Return code for FORM, by OPERATOR, such as CASE, of the value of KEY."
   (hoisting (key) form scope
     `(make-branch :form ',(form-as-written form)
-                  :chooser ,(value-lambda `(,operator (fluent-value ,key)
+                  :chooser ,(value-lambda `(,operator (operand-value ,key)
                                                       ,@(loop for (keys) in clauses
                                                               for index from 0
                                                               collect (list keys index)))

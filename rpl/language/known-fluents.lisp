@@ -77,18 +77,27 @@ one."
     (cons (and (known-value-p form environment)
                (mentions-p 'fluent-value form)))))
 
+(defun advice-on-awaited (condition form environment)
+  "Return in words what FORM, which waits for CONDITION in ENVIRONMENT, gets wrong; NIL if nothing."
+  (let ((name (first form)))
+    (cond ((mistaken-for-fluent-p condition environment)
+           (format nil "~(~A~) needs a fluent, and ~S is a value, which never changes. Write ~
+                        (~(~A~) ~S~:[~; ...~])."
+                   name condition name (as-fluents condition) (cddr form)))
+          ((and (typep condition '(or (not (or cons null)) (cons (eql quote) (cons (not null)))))
+                (constantp condition))
+           (format nil "~(~A~) needs a fluent, such as robot-stopped*, and ~S is a constant, which ~
+                        never changes.~@[ To let time pass, write (wait-time ~S).~]"
+                   name condition (and (realp condition) (plusp condition) condition))))))
+
 (defun check-awaited (condition form scope)
   "Warn if CONDITION, which FORM waits for, in SCOPE, is known to be a value, which cannot change."
-  (when (and (own-text-p form)
-             (mistaken-for-fluent-p condition (scope-environment scope)))
-    (let ((better (as-fluents condition)))
-      (call-at-place
-       form
-       (lambda ()
-         (warn-of-call #'warn-of-definition form
-                       "~(~A~) needs a fluent, and ~S is a value, which never changes. Write ~
-                        (~(~A~) ~S~:[~; ...~])."
-                       (first form) condition (first form) better (cddr form)))))))
+  (let ((advice (and (own-text-p form)
+                     (let ((*print-case* :downcase) (*print-pretty* t)
+                           (*print-right-margin* 10000))
+                       (advice-on-awaited condition form (scope-environment scope))))))
+    (when advice
+      (call-at-place form (lambda () (warn-of-call #'warn-of-definition form "~A" advice))))))
 
 (defun awaited-lambda (condition form scope)
   "Return the lambda expression as CONDITION-LAMBDA does, for what FORM waits for."

@@ -20,7 +20,7 @@
          (list* (first form)
                 (loop for argument in (rest form) collect (operand-form argument environment))))
         ((constantp form environment) form)
-        (t `(fluent-value ,form))))
+        (t `(operand-value ,form))))
 
 (defun condition-form (form environment)
   "Return a form that is true if FORM is, fluents counting by their values."
@@ -49,7 +49,7 @@
             ((is "UNLESS") `(unless ,(condition (second form)) ,@(cddr form)))
             ((is "COND") `(cond ,@(loop for (test . body) in (rest form)
                                         collect `(,(condition test) ,@body))))
-            ((is "CASE" "ECASE") `(,(first form) (fluent-value ,(second form)) ,@(cddr form)))
+            ((is "CASE" "ECASE") `(,(first form) (operand-value ,(second form)) ,@(cddr form)))
             ((is "CCASE") (ccase-meaning form))
             ((is "LET" "LET*") (let-meaning form))
             ((is "AND") `(lifting-and ,@(rest form)))
@@ -63,7 +63,7 @@
 (defun ccase-meaning (form)
   "Return what FORM, a CCASE, means: what another key is stored into is not the fluent."
   (with-gensyms (key)
-    `(let ((,key (fluent-value ,(second form))))
+    `(let ((,key (operand-value ,(second form))))
        (,(first form) ,key ,@(cddr form)))))
 
 (defun let-meaning (form)

@@ -12,6 +12,8 @@ DEFINE-CONSTRUCT adds to it.")
            #:misplaced-suspension #:note-own-text #:note-expansion #:form-as-written)
   ;; names, items
   (:export #:check-variables #:plain-parameters #:item-list)
+  ;; checking
+  (:export #:warn-of-call)
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope
            #:scope-environment #:scope-variables)

@@ -66,7 +66,7 @@ and the results, makes settings of its end. Return nothing."
         for argument in arguments
         unless (argument-of-type-p argument (spec-type spec))
           do (error 'wrong-argument :operator operator :name (spec-name spec) :value argument
-                                    :expected (argument-type-text (spec-type spec)))))
+                                    :expected (argument-type-text (spec-type spec) argument))))
 
 (defun plan-function-name (command-name)
   "Return the symbol of the plan function for COMMAND-NAME, in the package at hand."
