@@ -53,7 +53,42 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
                      for thing = (thing-of-rank rank each)
                      when (and thing (thing-called-p thing name)) collect thing)))
 
+;;; A name that nothing has may be a slip. Names that differ in their digits are of several things,
+;;; as are those with the number of a thing, such as "PEN#2".
+
+(defun without-digits (name)
+  (remove-if (lambda (char) (or (digit-char-p char) (char= char #\#))) (string name)))
+
+(defun may-be-slip-p (name other)
+  "True if NAME, of nothing, may be a slip for OTHER, that of a thing."
+  (and (resembles-p name other)
+       (not (string-equal (without-digits name) (without-digits other)))))
+
+(defun name-on-map-p (name recipes)
+  "True if one of RECIPES, or of those in them, is for a thing called NAME, which may be gone."
+  (loop for recipe in recipes
+        thereis (or (same-name-p name (recipe-name recipe))
+                    (name-on-map-p name (recipe-contents recipe)))))
+
+(defun thing-like (name world)
+  "Return the name of a thing of WORLD for which NAME, of none, may be a slip, or NIL."
+  (unless (name-on-map-p name (map-things (world-map world)))
+    (do-things (thing world)
+      (when (may-be-slip-p name (thing-name thing))
+        (return-from thing-like (thing-name thing))))))
+
+(defun note-unknown-thing (name world)
+  "Warn, once, if NAME, of no thing in WORLD, may be a slip for that of one."
+  (let ((like (and (not (said-p (list :thing name) world)) (thing-like name world))))
+    (when like
+      (warn-once (list :thing name) world
+                 (format nil "No thing here is called ~(~A~). Did you mean ~(~A~)?" name like)))))
+
 (addition find-thing)
 (defun find-thing (name &optional world)
-  "Return the first of FIND-THINGS with the same arguments, or NIL."
-  (first (find-things name world)))
+  "Return the first of FIND-THINGS with the same arguments, or NIL. A NAME that nothing has, and that
+is like another thing's, gets a warning, once in a run."
+  (let ((things (find-things name world)))
+    (when (and (null things) (typep name '(or (and symbol (not null)) string)))
+      (dolist (each (worlds-in-view world)) (note-unknown-thing name each)))
+    (first things)))

@@ -6,15 +6,21 @@
 ;;; the same name would only hide others. Saved runs know a world's slots by name: NOTED-NAMES has
 ;;; all that has been said, though it began with names of attributes.
 
+;;; Plans of live runs warn in a thread of their own: NOTED-NAMES is read and changed under a lock.
+
+(defvar *saying-lock* (make-lock "what has been said"))
+
 (defun said-p (key world)
   "True if a warning about KEY has been queued in the run of WORLD."
-  (member key (world-noted-names world) :test #'equal))
+  (with-lock (*saying-lock*)
+    (and (member key (world-noted-names world) :test #'equal) t)))
 
 (defun first-time-p (key world)
   "True if nothing has been said yet about KEY in the run of WORLD; from now on it has."
-  (unless (said-p key world)
-    (push key (world-noted-names world))
-    t))
+  (with-lock (*saying-lock*)
+    (unless (member key (world-noted-names world) :test #'equal)
+      (push key (world-noted-names world))
+      t)))
 
 (defun warn-once (key world items &key (notable t))
   "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had one about KEY,

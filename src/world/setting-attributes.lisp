@@ -38,12 +38,13 @@
 (defun set-attribute (thing attribute new-value)
   "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
 or unspecified. Of lists, strings and vectors THING gets copies. Signals WRONG-ARGUMENT for a value
-that the attribute cannot have."
+that the attribute cannot have. Warns as GET-ATTRIBUTE does."
   (check-argument set-attribute thing (thing-p thing) "a thing")
   (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
   (let ((descriptor (if (typep new-value '(or symbol number))
                         (list (checked-entry 'set-attribute attribute new-value))
                         (normal-descriptor 'set-attribute (list (list attribute new-value))))))
+    (note-slip 'set-attribute thing (first (first descriptor)))
     (changing ((world-of-living thing) set-attribute
                thing attribute (second (first descriptor)))
       (change-attributes thing descriptor)))
@@ -63,6 +64,7 @@ that the attribute cannot have."
 (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   (check-argument change-attribute thing (thing-p thing) "a thing")
   (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
+    (loop for (key) in descriptor do (note-slip 'change-attribute thing key))
     (changing ((world-of-living thing) change-attribute thing descriptor)
       (change-attributes thing descriptor)))
   thing)

@@ -123,9 +123,13 @@ false, always can."
 (settable get-attribute)
 (defun get-attribute (thing attribute)
   "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
-which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it, as SORT does."
+which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it, as SORT does. An
+ATTRIBUTE that may be a slip for a declared one gets a warning, once in a run."
   (check-argument get-attribute thing (thing-p thing) "a thing")
-  (second (assoc (attribute-key attribute) (thing-attributes thing) :test #'eq)))
+  (let* ((key (attribute-key attribute))
+         (entry (assoc key (thing-attributes thing) :test #'eq)))
+    (unless entry (note-slip 'get-attribute thing key))
+    (second entry)))
 
 (defun merge-descriptors (new old)
   "Return the object descriptor OLD with what NEW says instead; order as in OLD, then as in NEW."

@@ -56,7 +56,7 @@ is written, in a map if MAP-P."
 (defun note-slips (name descriptor world)
   "Warn, once, of what may be slips in DESCRIPTOR of the thing NAME, made on the fly in WORLD."
   (dolist (slip (slips-in descriptor))
-    (warn-once (first slip) world (slip-text name slip) :notable nil)))
+    (warn-once (first slip) world (slip-text name slip))))
 
 (defun carried-p (key world)
   "True if any thing of WORLD says something of the attribute KEY."
@@ -64,16 +64,44 @@ is written, in a map if MAP-P."
     (when (assoc key (thing-attributes thing) :test #'eq)
       (return-from carried-p t))))
 
+(defun strange-name-text (key)
+  "Return in words that nothing has the attribute KEY, and what may be meant."
+  (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~]~:[~;: that ~
+               is what a thing is made with, and no attribute~]"
+          key (declared-name-like key) (option-of-things-p key)))
+
 (defun note-strange-name (key world)
   "Warn, once, if the attribute KEY of a specification is declared by nobody and had by nothing."
   (unless (or (attribute-of key)
               (said-p key world)
               (carried-p key world))
-    (warn-once key world
-               (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~
-                            ~(~S~)?~]"
-                       key (declared-name-like key))
-               :notable nil)))
+    (warn-once key world (strange-name-text key))))
+
+;;; What programs ask of a thing, or give it, many a time: of most names it is known what they may
+;;; be slips for.
+
+(define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
+  "For names that are not declared, the declared name that each may be a slip for, or NIL.")
+
+(defun known-likeness (key)
+  "Return what DECLARED-NAME-LIKE does of KEY, an undeclared attribute's."
+  (multiple-value-bind (like known-p) (gethash key *likenesses*)
+    (if known-p
+        like
+        (setf (gethash key *likenesses*) (declared-name-like key)))))
+
+(defun note-slip (operator thing key)
+  "Warn, once, if OPERATOR was given KEY for an attribute of THING, in a world, which is declared by
+nobody, had by nothing, and looks like a declared one."
+  (let ((world (thing-world thing)))
+    (when (and world
+               (not (attribute-of key))
+               (known-likeness key)
+               (not (said-p key world))
+               (not (carried-p key world)))
+      (warn-once key world
+                 (format nil "~(~A~) of ~(~A~): ~(~S~) is not declared; did you mean ~(~S~)?"
+                         operator (thing-name thing) key (known-likeness key))))))
 
 ;;; An attribute that is declared anew may no longer have the values that things have.
 
@@ -91,6 +119,10 @@ and what is wrong with it."
       (when trouble (return (values recipe trouble))))
     (multiple-value-bind (inside trouble) (unfit-recipe (recipe-contents recipe) key)
       (when inside (return (values inside trouble))))))
+
+(defmethod attribute-redefined :before (old new)
+  (declare (ignore old new))
+  (clrhash *likenesses*))
 
 (defmethod attribute-redefined ((old attribute) new)
   (dolist (map (all-maps))
