@@ -154,6 +154,7 @@ has been ended by the plan that is at work, if one is."
                  (not (eq deed except))
                  (deed-open-p deed)
                  (funcall test deed))
+        (tell-of-clash interface deed except)
         (tell-interrupted deed)
         (count-takeover interface resource (deed-task deed) (task-at-work interface))))))
 

@@ -86,8 +86,8 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
 
 (addition find-thing)
 (defun find-thing (name &optional world)
-  "Return the first of FIND-THINGS with the same arguments, or NIL. A NAME that nothing has, and that
-is like another thing's, gets a warning, once in a run."
+  "Return the first of FIND-THINGS with the same arguments, or NIL. A NAME that nothing has, and
+that is like another thing's, gets a warning, once in a run."
   (let ((things (find-things name world)))
     (when (and (null things) (typep name '(or (and symbol (not null)) string)))
       (dolist (each (worlds-in-view world)) (note-unknown-thing name each)))

@@ -1,0 +1,75 @@
+;;;; clashes.lisp -- tasks side by side that interrupt each other's commands are told of, once.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; The newer command counts (manual 3.1.2), and that is often what a plan is for: a policy, or what
+;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
+;;; plans that were begun one after the other know nothing of each other.
+
+(defun operator-called-p (form names)
+  "True if FORM is a call of an operator that is called one of NAMES."
+  (and (consp form)
+       (symbolp (first form))
+       (member (symbol-name (first form)) names :test #'string=)))
+
+(defun common-task (task other)
+  "Return the innermost task that TASK and OTHER are parts of, or NIL."
+  (loop for each = task then (task-parent each)
+        while each
+        when (part-of-p other each) return each))
+
+(defun all-to-succeed-p (task)
+  "True if TASK is at a construct all whose branches are to succeed."
+  (let ((frame (task-frame task)))
+    (and frame
+         (operator-called-p (node-form (frame-node frame)) '("PAR" "PAR-LOOP" "PARTIAL-ORDER")))))
+
+(defun reacting-to-events-p (task whole)
+  "True if TASK, a part of WHOLE (NIL: of nothing), runs what a construct does when something
+happens."
+  (loop for each = task then (task-parent each)
+        until (eq each whole)
+        thereis (loop for frame = (task-frame each) then (frame-up frame)
+                      while frame
+                      thereis (operator-called-p (node-form (frame-node frame))
+                                                 '("WHENEVER" "AT-LOCATION")))))
+
+(defun clash-p (older newer)
+  "True if the task OLDER, whose command NEWER has interrupted, most likely did not expect that."
+  (and older newer
+       (not (eq older newer))
+       (not (task-over-p older))
+       (not (evaporating-p older))
+       (<= (task-level newer) (task-level older))
+       (let ((common (common-task older newer)))
+         (and (not (member common (list older newer)))
+              (or (null common) (all-to-succeed-p common))
+              (not (reacting-to-events-p newer common))))))
+
+(defun deed-text (deed)
+  "Return in words what DEED is, and whose."
+  (let ((task (deed-task deed)))
+    (format nil "rpl-~(~A~) of ~@[~A in ~]the plan ~A"
+            (command-name (deed-command deed))
+            (and (task-parent task) (task-label task))
+            (task-label (task-top task)))))
+
+(defun gentle-p (deed)
+  "True if DEED takes no time, stops the robot, or cleans up."
+  (or (deed-cleanup-p deed)
+      (command-instant-p (deed-command deed))
+      (eq 'robot-stop (command-name (deed-command deed)))))
+
+(defun tell-of-clash (interface older newer)
+  "Say once if the deed NEWER of INTERFACE has interrupted the deed OLDER of a task beside its own."
+  (when (and newer
+             (clash-p (deed-task older) (deed-task newer))
+             (not (gentle-p newer)))
+    (let ((interrupted (deed-text older)) (by (deed-text newer)))
+      (warn-once (list :clash interrupted by)
+                 (simulation-world (interface-simulation interface))
+                 (format nil "~A was interrupted by ~A, which runs beside it: ~A carries out one ~
+                              command at a time. Give them one after the other, or let each task ~
+                              have the robot while it needs it: (with-valve ((rpl-robot-valve)) ~
+                              ...)."
+                         interrupted by (deed-resource older))))))
