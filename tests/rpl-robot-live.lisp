@@ -372,3 +372,9 @@
       (is-false (rpl:task-over-p second))
       (driver:end-plan :all)
       (awaiting (null (driver:plans))))))
+
+(test live.a-plan-that-lets-no-time-pass-fails
+  (live (simulation)
+    (multiple-value-bind (failure state) (driver:run-plan 'staring)
+      (is (eq :failed state))
+      (is-true (rushing-failure-p failure)))))

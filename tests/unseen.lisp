@@ -252,6 +252,21 @@ output."
                           (base:misuse (trouble) (princ-to-string trouble)))
                         "(run-plan '" "FORLORN)")))
 
+(test plans.say-that-what-they-sense-has-not-come
+  (flet ((said (plan)
+           (with-rover ()
+             (driver:run-plan plan)
+             (format nil "~{~A~}" (texts-of-warnings)))))
+    (is-true (has-words-p (said (rpl:interp-lambda ()
+                                  (driver:rpl-camera-view 0)
+                                  (rpl:fluent-value (svref driver:camera-views* 0))))
+                          "succeeded while its command rpl-camera-view was under way"
+                          "let it (wait-for (vref camera-input* 0))"))
+    (is (string= "" (said (rpl:interp-lambda ()
+                            (driver:rpl-camera-view 0)
+                            (rpl:wait-for (svref driver:camera-input* 0))
+                            (driver:rpl-robot-set-speed 1)))))))
+
 ;;; Quotes, keywords and spans.
 
 (test fluent-value.refuses-the-quoted-name-of-a-fluent

@@ -3,13 +3,18 @@
 (in-package :ars-magna.rpl-robot)
 
 ;;; That is allowed (reading 185), but most often a wait has been forgotten. Not counted are
-;;; commands that take no time, go on in the background, stop the robot, or were given to clean up.
+;;; commands that take no time and do more than look, go on in the background, stop the robot, or
+;;; were given to clean up.
+
+(defun asks-only-p (deed)
+  "True if DEED is over in no time, and does nothing but return what it senses."
+  (member (command-name (deed-command deed)) '(camera-view robot-place hand-grasp-check)))
 
 (defun unawaited-deeds (interface task)
   "Return what the top-level TASK, of INTERFACE, has asked for and is under way."
   (remove-if-not (lambda (deed)
                    (and (deed-open-p deed)
-                        (ends-by-command-p deed)
+                        (or (ends-by-command-p deed) (asks-only-p deed))
                         (not (eq 'robot-stop (command-name (deed-command deed))))
                         (not (deed-cleanup-p deed))
                         (deed-task deed)
