@@ -39,7 +39,7 @@
   (is (eq :c (plan-value (case 7 (1 (rpl:wait-time 1) :a) (t :c)))))
   (is (eq :odd (plan-value (ecase 3 (2 :even) (3 (rpl:wait-time 1) :odd)))))
   (is (null (plan-value (and (progn (rpl:wait-time 1) nil) (rpl:fail)))))
-  (is (eq :last (plan-value (and 1 (rpl:wait-for (identity :x)) :last))))
+  (is (eq :last (plan-value (and 1 (rpl:wait-for :x) :last))))
   (is (eq :first (plan-value (or nil (progn (rpl:wait-time 1) :first) (rpl:fail)))))
   (is (eq :done (plan-value (unless nil (rpl:wait-time 1) :done)))))
 

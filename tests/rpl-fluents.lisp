@@ -154,7 +154,7 @@
 
 (test wait-for.returns-the-value-at-once-if-it-is-true
   (is (eq :yes (plan-value (rpl:wait-for (fluent :yes)))))
-  (is (eq :yes (plan-value (rpl:wait-for (identity :yes))))))
+  (is (eq :yes (plan-value (rpl:wait-for :yes)))))
 
 (test wait-for.wakes-in-order-of-arrival
   (let ((f (fluent)) (woken '()))

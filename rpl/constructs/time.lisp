@@ -31,16 +31,24 @@
              (not (member unit '(:ticks :seconds))))
     (reject-clause (author) form (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
 
+(defun check-span (span form)
+  "Warn if SPAN, a form in FORM, is less than no time."
+  (when (and (realp span) (minusp span))
+    (call-at-place form (lambda ()
+                          (warn-of-call #'doubt-definition form
+                                        "~(~A~) does not wait for ~A, which is less than 0."
+                                        (first form) span)))))
+
 (defun span-lambda (operator span unit form scope)
   "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, a use of
 OPERATOR, in ticks."
   (check-unit unit form)
+  (check-span span form)
   (value-lambda `(ticks-of ,span (or ,unit :ticks) ',operator) scope))
 
 (define-construct wait-time (span &key unit)
   "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is :seconds (manual D.4; reading
-90). SPAN is a number from 0 to 1e15; with 0, and with what rounding leaves of 0, the plan does not
-wait."
+90). SPAN is a number up to 1e15; with 0 or less, the plan does not wait."
   (:manual)
   (:arguments span)
   (:parts (span function (span-lambda 'wait-time span unit form scope)))
@@ -51,6 +59,5 @@ wait."
       (cond ((plusp span)
              (park task (start-timer task span))
              +parked+)
-            ((< -1/1000 span) (values (frame-up frame) nil))
-            (t (reject-argument 'wait-time 'span span "a number from 0 to 1e15")))))
+            (t (values (frame-up frame) nil)))))
    (waiting (values (frame-up frame) nil))))

@@ -84,7 +84,8 @@ one."
            (format nil "~(~A~) needs a fluent, and ~S is a value, which never changes. Write ~
                         (~(~A~) ~S~:[~; ...~])."
                    name condition name (as-fluents condition) (cddr form)))
-          ((and (typep condition '(or (not (or cons null)) (cons (eql quote) (cons (not null)))))
+          ((and (typep condition '(or (not (or cons null keyword))
+                                     (cons (eql quote) (cons (not null)))))
                 (constantp condition))
            (format nil "~(~A~) needs a fluent, such as robot-stopped*, and ~S is a constant, which ~
                         never changes.~@[ To let time pass, write (wait-time ~S).~]"

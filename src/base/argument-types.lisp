@@ -43,12 +43,7 @@ wrong with VALUE."
 (define-argument-type 'angle #'within-reason-p "an angle in radians, from -1e9 to 1e9")
 (define-argument-type 'metres #'within-reason-p "a number of metres, from -1e9 to 1e9")
 (define-argument-type 'speed #'within-reason-p "a speed in metres per tick, from -1e9 to 1e9")
-(define-argument-type 'ticks
-  (lambda (value) (and (within-reason-p value) (not (minusp value))))
-  "a number of ticks, from 0 to 1e9"
-  (lambda (value)
-    (and (within-reason-p value) (minusp value)
-         "nothing takes less than 0; to drive back, turn by pi first")))
+(define-argument-type 'ticks #'within-reason-p "a number of ticks, from -1e9 to 1e9")
 (define-argument-type 'tick-span #'tick-span-p "a whole number of ticks, from 0 to 1e9")
 (define-argument-type 'quantity #'quantity-p "a number from -1e15 to 1e15")
 (define-argument-type 'amount #'amount-p "a number not below 0, up to 1e15")

@@ -77,7 +77,7 @@ and if the robot has stopped meanwhile."
      (:errors (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot stopped"))
-    "Drive ROBOT straight ahead for TIME ticks. With TIME 0 it succeeds at once."
+    "Drive ROBOT straight ahead for TIME ticks. With TIME 0 or less it succeeds at once."
   (setf (operation-left operation) (double (ceiling time)))
   (cond ((plusp (operation-left operation))
          (begin-movement robot)

@@ -23,28 +23,36 @@
                        ~]; of a fork, (counterpart OBJECT FORK) is what one is there."
                       (command-name command) argument resource (designator-p argument)))))))
 
-(defun check-continuation (command continuation)
-  "Signal WRONG-ARGUMENT if CONTINUATION cannot be called with what COMMAND tells at its end."
-  (let ((results (command-results command)))
+;;; What is said once for each name.
+
+(defun doubt-ticks (operator world ticks)
+  "Say once for OPERATOR in WORLD if TICKS, for which something is to go on, is less than none."
+  (when (minusp ticks)
+    (warn-once (list :ticks operator) world
+               (format nil "~(~A~): ~A ticks are none, so nothing is done. To drive back, turn by ~
+                            pi first." operator ticks))))
+
+(defun doubt-continuation (command world continuation)
+  "Say once if CONTINUATION cannot be called with what COMMAND tells at its end."
+  (let ((results (command-results command)) (*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
                (not (callable-with-p continuation (+ 2 (length results)))))
-      (let ((*print-pretty* nil))
-        (reject-argument (command-name command) 'continuation continuation
-                         (format nil "one that takes ~(~A~), as (continuation ~:*~(~A~) ...) ~
-                                      does, not ~(~:A~)"
-                                 (list* 'err (spec-name (command-resource command))
-                                        (mapcar #'spec-name results))
-                                 (lambda-list-of continuation)))))))
+      (warn-once (list :continuation (command-name command)) world
+                 (format nil "~(~A~): the continuation takes ~(~:A~), and is called with ~(~A~). ~
+                              Write (continuation ~:*~(~A~) ...)."
+                         (command-name command)
+                         (lambda-list-of continuation)
+                         (list* 'err (spec-name (command-resource command))
+                                (mapcar #'spec-name results)))))))
 
-;;; What is said once for each name.
-
-(defun doubt-angles (command world arguments)
-  "Say once if one of ARGUMENTS, of COMMAND in WORLD, is an angle perhaps meant in degrees."
+(defun doubt-arguments (command world arguments)
+  "Say once if one of ARGUMENTS, of COMMAND in WORLD, is allowed, but most likely not meant."
   (loop for spec in (command-parameters command)
         for argument in arguments
-        when (eq 'angle (spec-type spec))
-          do (doubt-angle (command-name command) world argument)))
+        do (case (spec-type spec)
+             (angle (doubt-angle (command-name command) world argument))
+             (ticks (doubt-ticks (command-name command) world argument)))))
 
 (defun kept-p (world)
   "True if what is asked of a robot in WORLD, one that top-level code works in, waits for a run to
@@ -76,7 +84,6 @@ if the robot's run is over, or an argument is of another run; WRONG-ARGUMENT for
 takes another number of arguments."
   (check-in-run resource (command-name command))
   (check-of-this-run command resource arguments)
-  (check-continuation command continuation)
   (let* ((robot (resource-robot resource))
          (world (robot-world robot))
          (timeline (world-timeline world))
@@ -86,6 +93,7 @@ takes another number of arguments."
     (note-asked (occupied command resource))
     (post (make-operation command (occupied command resource) arguments continuation timeline)
           timeline)
-    (doubt-angles command world arguments)
+    (doubt-arguments command world arguments)
+    (doubt-continuation command world continuation)
     (tell-if-kept command robot)
     (values)))
