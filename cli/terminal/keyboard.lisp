@@ -19,13 +19,14 @@
 
 (defun hand-over-keys (&key interrupts)
   "Let the terminal hand over keys as they are pressed, without showing them. If INTERRUPTS is true,
-control C and its like are signals instead. Only within CALL-HANDING-OVER-KEYS."
+control C and its like are signals instead, which let what is on its way to the screen arrive. Only
+within CALL-HANDING-OVER-KEYS."
   (let ((manner (manner))
         (line-manner (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))
     (when (and manner *first-manner*)
       (setf (sb-posix:termios-lflag manner)
             (logior (logandc2 (sb-posix:termios-lflag manner) line-manner)
-                    (if interrupts sb-posix:isig 0))
+                    (if interrupts (logior sb-posix:isig sb-posix:noflsh) 0))
             (aref (sb-posix:termios-cc manner) sb-posix:vmin) 1
             (aref (sb-posix:termios-cc manner) sb-posix:vtime) 0)
       (set-manner manner))))
