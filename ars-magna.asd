@@ -84,7 +84,8 @@
                  (:file "corners") (:file "sweeping") (:file "motion") (:file "reach")
                  (:file "designator") (:file "place-sense") (:file "sight") (:file "tracks")
                  (:file "new-designators") (:file "inside") (:file "making") (:file "retiring")
-                 (:file "defrobot") (:file "own-changes") (:file "rays") (:file "noise")
+                 (:file "defrobot") (:file "own-changes") (:file "rays") (:file "visibility")
+                 (:file "noise")
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "views")
                  (:file "tending") (:file "soundness")))
    (:module "src/command" :serial t
@@ -373,6 +374,7 @@
                  (:file "determinism") (:file "lisps-dice") (:file "journals") (:file "journals-forged")
                  (:file "journals-definitions") (:file "worlds") (:file "worlds-moving")
                  (:file "looking") (:file "looking-views") (:file "looking-tracks")
+                 (:file "looking-hidden")
                  (:file "looking-cameras") (:file "looking-approach") (:file "corners")
                  (:file "approaching") (:file "handling") (:file "handling-inside")
                  (:file "handling-bins") (:file "handling-chance") (:file "manipulations")

@@ -12,7 +12,8 @@
           ((and local (not (local-to-camera-p camera designator))) :local-not-local)
           ((and (not local) (camera-location camera)) :camera-inside)
           ((not (own-designator-p camera designator)) :lost-track)
-          ((not (or local (trackable-p designator))) :lost-track))))
+          ((if local (out-of-sight-p designator camera) (not (trackable-p designator camera)))
+           :lost-track))))
 
 (defun local-to-camera-p (camera designator)
   "True if what the local DESIGNATOR denotes is where CAMERA is, and next to the

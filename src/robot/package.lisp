@@ -66,6 +66,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:designate #:look-for-things #:tend-tracks #:tracks-busy-p
            #:track #:track-operation #:track-ended #:serial-designator #:make-designator
            #:look-for-places #:camera-heading #:take-view #:start-track #:trackable-p
+           #:out-of-sight-p
            #:approaching-p #:end-on-arrival #:distance-to #:bearing-to)
   ;; inside
   (:export #:in-location #:outer-location #:inside-p #:part-inside #:part-reaches-p

@@ -38,8 +38,10 @@ cell that blocks ROBOT and that it stands at (reading 108)."
 
 (defun reached-p (robot x y last-step block)
   "True if ROBOT, which has just driven for a tick, has thereby arrived at (X,Y). LAST-STEP is true
-if it could come that far in the tick; BLOCK, if something blocked it (reading 108)."
+if it could come that far in the tick; BLOCK, if something blocked it. Nothing may hide what is
+there (reading 108)."
   (or (in-same-cell-p robot x y)
       (and (within-reach-p robot x y)
            (or last-step
-               (and block (at-cell-p robot x y))))))
+               (and block (at-cell-p robot x y)))
+           (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot) (double x) (double y)))))

@@ -78,13 +78,6 @@ changed (reading 226)."
          (or (not (thing-p denotation))
              (null (denotation-space designator))))))
 
-(defun visible-p (designator)
-  "True if nothing hides the non-local DESIGNATOR's denotation from its robot."
-  (let ((robot (designator-robot designator)))
-    (or (null (designator-denotation designator))
-        (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot)
-                    (designator-x designator) (designator-y designator)))))
-
 (defun arrived-p (designator)
   "True if its robot is in the cell where the non-local DESIGNATOR's denotation is."
   (in-same-cell-p (designator-robot designator)
@@ -98,12 +91,19 @@ changed (reading 226)."
                            prob-lose-false-track*)
                        dice)))
 
-(defun trackable-p (designator)
-  "True if a camera in the open can track the non-local DESIGNATOR now, wherever it points."
+(defun trackable-p (designator &optional camera)
+  "True if CAMERA, in the open, can track the non-local DESIGNATOR now, wherever it points; without
+CAMERA, if one may."
   (and (designator-valid-p designator)
        (followable-p designator)
        (not (arrived-p designator))
-       (visible-p designator)))
+       (visible-p designator camera)))
+
+(defun out-of-sight-p (designator camera)
+  "True if the local DESIGNATOR is of something in the open that is hidden from CAMERA, as by a wall
+between two cells that are next to each other."
+  (and (followable-p designator)
+       (not (visible-p designator camera))))
 
 ;; As reading 141 says.
 (defun too-fast-p (camera designator)
@@ -119,7 +119,7 @@ changed (reading 226)."
 approach is the approach's to tell (reading 112)."
   (if (arrived-p designator)
       (not (approached-p camera))
-      (or (not (trackable-p designator))
+      (or (not (trackable-p designator camera))
           (too-fast-p camera designator))))
 
 (defun keep-or-lose (camera designator dice)
@@ -130,10 +130,12 @@ approach is the approach's to tell (reading 112)."
 
 (defun tend-local-track (camera designator dice)
   (cond ((designator-local-p* designator)
-         (keep-or-lose camera designator dice))
+         (if (out-of-sight-p designator camera)
+             (lose-track camera)
+             (keep-or-lose camera designator dice)))
         ((followable-p designator)
          (setf (designator-type designator) :non-local)
-         (if (visible-p designator)
+         (if (visible-p designator camera)
              (keep-or-lose camera designator dice)
              (lose-track camera)))
         (t (drop-designator designator))))

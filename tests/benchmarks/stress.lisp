@@ -40,7 +40,7 @@
 
 ;; SBCL's runtime may die when a thread is interrupted while memory is collected, see
 ;; src/host/interrupts.lisp: so that is done seldom here.
-(setf (sb-ext:bytes-consed-between-gcs) (floor (sb-ext:dynamic-space-size) 8))
+(setf (sb-ext:bytes-consed-between-gcs) (floor (sb-ext:dynamic-space-size) 5/2))
 
 (mapc #'define-anew *definitions*)
 
@@ -164,10 +164,25 @@
         do (sleep 0.1)
         finally (return (null (apply #'threads-called beginnings)))))
 
+(defun place-of (thread)
+  "Return where THREAD is, a backtrace, or a few words if it does not say so."
+  (let ((text nil) (said (base:make-semaphore "said")))
+    (ignore-errors
+     (sb-thread:interrupt-thread
+      thread
+      (lambda ()
+        (setf text (with-output-to-string (stream)
+                     (uiop:print-backtrace :stream stream :count 30)))
+        (base:signal-semaphore said))))
+    (if (base:wait-on-semaphore said 3) text "takes no interrupts")))
+
+(defun note-thread (what thread)
+  (note what (format nil "~A, at~%~A" thread (place-of thread))))
+
 (defun note-left (what &rest beginnings)
   "Count as WHAT each thread that is left of those whose names begin with one of BEGINNINGS."
   (unless (apply #'none-left-p beginnings)
-    (dolist (thread (apply #'threads-called beginnings)) (note what thread))))
+    (dolist (thread (apply #'threads-called beginnings)) (note-thread what thread))))
 
 (defun take-messages ()
   "Count the errors that the simulators have reported."
@@ -237,7 +252,7 @@
              (take-messages))
     (unless (all-ended-p threads)
       (dolist (thread (remove-if-not #'base:thread-alive-p threads))
-        (note "threads that hang" thread)))))
+        (note-thread "threads that hang" thread)))))
 
 (defun look-at-end ()
   "Count what is wrong when the threads have done their work."
@@ -259,7 +274,7 @@
   (dolist (what *wrong*) (say (format nil "  ~A" what) (counted what) ""))
   (loop for (what words) in (reverse *examples*)
         when (member what *wrong* :test #'string=)
-          do (format t "~A: ~A~%" what (subseq words 0 (min 300 (length words)))))
+          do (format t "~A: ~A~%" what (subseq words 0 (min 4000 (length words)))))
   (finish-output)
   (loop for what in *wrong* sum (counted what)))
 
