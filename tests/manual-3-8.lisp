@@ -22,6 +22,30 @@ was interrupted, in a headless simulation, and then pass 30 ticks. Return in ord
 
 ;;; When.
 
+(test manual-3-8.interrupts-are-told-in-the-tick-of-the-event-that-won
+  "3.8: what an event's handler reads as the tick is what a body does."
+  (let ((ticks '()))
+    (is (equal '((b 4))
+               (diary (note)
+                 (ars:schedule (:arm :timer 9 :interrupt (push (now) ticks)) (note 'a))
+                 (ars:run-ticks 3)
+                 (ars:schedule (:arm :priority 1) (note 'b)))))
+    (is (equal '(4) ticks))))
+
+(test manual-3-8.a-timeout-before-the-timer-frees-the-resource
+  "3.8: after the timeout the event evaporates, and another can have the resource."
+  (is (equal '((b 5) (:lost c) (d 16))
+             (diary (note lost)
+               (ars:schedule (:arm :timer 20 :timeout 3 :when t :interrupt (lost 'a)) (note 'a))
+               (ars:run-ticks 4)
+               (ars:schedule (:arm) (note 'b))
+               (ars:run-ticks 1)
+               (ars:schedule (:arm :timer 20 :timeout 10 :when t) (note 'never))
+               (ars:run-ticks 9)
+               (ars:schedule (:arm :interrupt (lost 'c)) (note 'c))
+               (ars:run-ticks 1)
+               (ars:schedule (:arm) (note 'd))))))
+
 (test manual-3-8.an-event-runs-in-the-next-tick
   "3.8, reading 79: once, in a single tick, by default the next. A timer of 0 means that, too;
 another is the number of ticks from now."

@@ -23,9 +23,20 @@
   (:state
    (deadline nil (or null integer) "the last tick in which it may happen, or NIL")))
 
+;; Requests are performed in a tick, before its number counts.
+(defun call-in-tick (function timeline)
+  "Call FUNCTION, where the tick of TIMELINE that is under way counts, as in all users' code of it."
+  (let ((agenda (timeline-agenda timeline)))
+    (cond ((= 1 (timeline-phase timeline))
+           (incf (agenda-tick agenda))
+           (in-any-case (funcall function) (decf (agenda-tick agenda))))
+          (t (funcall function)))))
+
 (defun interrupt-scheduled (event)
-  (when (scheduled-on-interrupt event)
-    (call-user-code (scheduled-on-interrupt event) "an event's interrupt handler")))
+  (let ((handler (scheduled-on-interrupt event)))
+    (when handler
+      (call-in-tick (lambda () (call-user-code handler "an event's interrupt handler"))
+                    (timeline-of *simulation*)))))
 
 (defun time-left (event)
   "Return how many ticks are left after this one, which is that of EVENT, for it to happen in."
@@ -33,10 +44,15 @@
       (- (scheduled-deadline event) (event-time event))
       1))
 
+(defun hopeless-p (event)
+  "True if EVENT evaporates before it may happen."
+  (and (scheduled-deadline event)
+       (< (scheduled-timeout event) (scheduled-timer event))))
+
 (defun run-scheduled (event)
   "Do what EVENT is to do if its test is true; if not, try again in the next tick (reading 80)."
   (let ((test (scheduled-test event)) (left (time-left event)))
-    (cond ((minusp left))
+    (cond ((or (minusp left) (hopeless-p event)))
           ((or (null test) (call-user-code test "a scheduled event's :when"))
            (call-user-code (scheduled-body event) "a scheduled event"))
           ((plusp left) (queue-again (scheduled-agenda event) event 1)))))
@@ -46,7 +62,9 @@
   (setf (scheduled-agenda event) agenda
         (scheduled-deadline event) (and (scheduled-test event) (scheduled-timeout event)
                                         (+ (agenda-tick agenda) (scheduled-timeout event))))
-  (queue-again agenda event (scheduled-timer event)))
+  (queue-again agenda event (if (hopeless-p event)
+                                (scheduled-timeout event)
+                                (scheduled-timer event))))
 
 (defmethod perform ((event scheduled) timeline)
   (let* ((agenda (timeline-agenda timeline))
