@@ -365,7 +365,8 @@
   :serial t
   :components
   ((:module "tests" :serial t
-    :components ((:file "package") (:file "base") (:file "base-doors") (:file "elementary") (:file "geometry")
+    :components ((:file "package") (:file "base") (:file "base-doors") (:file "elementary")
+                 (:file "geometry") (:file "geometry-limits")
                  (:file "nisp") (:file "world") (:file "world-caches") (:file "world-places")
                  (:file "world-things") (:file "world-kickers") (:file "world-large") (:file "ways")
                  (:file "ways-users") (:file "floors") (:file "floors-uses")

@@ -105,6 +105,16 @@ side, and then looks along the other side."
           do (is (null code))
              (is (near (- to heading) turned 1d-6) "~A" (list x y heading)))))
 
+(test manual-3-5.turn-corner-again-turns-to-the-other-wall
+  "3.5, reading 105: a robot that looks out of the corner already does not turn by nothing."
+  (with-sprinter (:clean t)
+    (loop for (x y heading) in `((1.5 1.5 ,pi) (32.5 16.5 0))
+          do (place-sprinter x y heading)
+             (loop repeat 4
+                   for (nil code nil turned) = (sprint 'ars:robot-turn-corner)
+                   do (is (null code))
+                      (is (near (/ pi 2) (abs turned) 1d-6))))))
+
 (test manual-3-5.turn-corner-acts-as-turning-does
   "3.5, reading 236: it takes ROBOT-TURN-DELAY* and the ticks of its turn, here 6, and no more."
   (with-sprinter (:clean t)

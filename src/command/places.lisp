@@ -48,12 +48,15 @@
 (defun corner-direction (robot type directions)
   "Return the heading in which ROBOT, coming along one wall of a corner, follows the other. At
 a convex corner it came along one of DIRECTIONS and turns against the other; at a concave one it
-came against one of them and turns along the other (reading 105)."
-  (let* ((convex (same-name-p (place-type-name type) 'convex))
-         (ways (if convex directions (mapcar (lambda (d) (+ d pi)) directions)))
-         (came (position (nearest-direction ways (robot-angle robot)) ways))
-         (other (elt directions (- 1 came))))
-    (if convex (+ other pi) other)))
+came against one of them and turns along the other. If it looks along a wall already, away from the
+corner, it turns to the other wall (reading 105)."
+  (let* ((opposite (mapcar (lambda (d) (+ d pi)) directions))
+         (convex (same-name-p (place-type-name type) 'convex))
+         (ways (if convex directions opposite))
+         (exits (if convex opposite directions))
+         (headings (append ways exits))
+         (now (position (nearest-direction headings (robot-angle robot)) headings)))
+    (elt exits (- 1 (mod now 2)))))
 
 ;; As reading 236 says.
 (define-command robot-turn-corner (operation (robot robot))

@@ -172,25 +172,28 @@ that is nothing (manual, Table 3.2)."
 
 ;;; Growth.
 
-(declaim (inline %grow!))
-(defun %grow! (interval amount)
-  "Push both bounds outward by AMOUNT; bounds that would pass each other meet in the centre."
+(declaim (inline %grown))
+(defun %grown (interval amount)
+  "Return the bounds of INTERVAL, pushed outward by AMOUNT; if they would pass each other they meet
+in the centre."
   (let ((low (- (%interval-min interval) amount))
         (high (+ (%interval-max interval) amount)))
     (if (<= low high)
-        (%set-interval! interval low high)
+        (values low high)
         (let ((centre (centre (%interval-min interval) (%interval-max interval))))
-          (%set-interval! interval centre centre)))))
+          (values centre centre)))))
 
 (public grow-interval!)
 (defun grow-interval! (interval amount)
   "Push each boundary of INTERVAL outward by the number AMOUNT, and return INTERVAL. A negative
 AMOUNT shrinks it, at most to its centre (manual, Table 3.2)."
   (dispatch grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
-    ((interval finite) (%grow! interval (double amount)))
+    ((interval finite)
+     (multiple-value-call #'%set-interval! interval (%grown interval (double amount))))
     ((pt-interval finite)
-     (%grow! (%pt-interval-x interval) (double amount))
-     (%grow! (%pt-interval-y interval) (double amount))))
+     (multiple-value-call #'%set-region! interval
+       (%grown (%pt-interval-x interval) (double amount))
+       (%grown (%pt-interval-y interval) (double amount)))))
   interval)
 
 (public grow-interval)

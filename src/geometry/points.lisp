@@ -3,23 +3,35 @@
 (in-package :ars-magna.geometry)
 
 ;;; Each destructive operation reads all that it needs of both operands before it stores, so
-;;; that (subtract! a a) is right; none of them conses. The others work on a fresh copy.
+;;; that (subtract! a a) is right, and A is as it was if the result is too large; none of them
+;;; conses. The others work on a fresh copy.
 
-(declaim (inline %add! %mul! %neg!))
+(declaim (inline %add! %add-region! %products %mul! %neg!))
 
 (defun %add! (interval low high)
   (%set-interval! interval (+ (%interval-min interval) low) (+ (%interval-max interval) high)))
+
+(defun %add-region! (region low-x high-x low-y high-y)
+  (let ((x (%pt-interval-x region)) (y (%pt-interval-y region)))
+    (%set-region! region
+                  (+ (%interval-min x) low-x) (+ (%interval-max x) high-x)
+                  (+ (%interval-min y) low-y) (+ (%interval-max y) high-y))))
 
 (defun %neg! (interval)
   ;; 0 - x, not -x, so that no negative zero turns an ATAN2 round.
   (%set-interval! interval (- 0d0 (%interval-max interval)) (- 0d0 (%interval-min interval))))
 
-(defun %mul! (interval low high)
+(defun %products (interval low high)
+  "Return the least and the greatest product of numbers in INTERVAL and from LOW to HIGH."
   (let ((a (* (%interval-min interval) low))
         (b (* (%interval-min interval) high))
         (c (* (%interval-max interval) low))
         (d (* (%interval-max interval) high)))
-    (%set-interval! interval (min a b c d) (max a b c d))))
+    (values (min a b c d) (max a b c d))))
+
+(defun %mul! (interval low high)
+  (multiple-value-bind (least greatest) (%products interval low high)
+    (%set-interval! interval least greatest)))
 
 (public add!)
 (defun add! (a b)
@@ -28,9 +40,7 @@ Table 3.1)."
   (dispatch add! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
     ((pt pt) (set-pt! a (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((interval span) (%add! a (low b) (high b)))
-    ((pt-interval region)
-     (%add! (%pt-interval-x a) (low-x b) (high-x b))
-     (%add! (%pt-interval-y a) (low-y b) (high-y b))))
+    ((pt-interval region) (%add-region! a (low-x b) (high-x b) (low-y b) (high-y b))))
   a)
 
 (public add)
@@ -51,8 +61,7 @@ their elements (manual, Table 3.1; reading 48)."
     ((pt pt) (set-pt! a (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((interval span) (%add! a (- (high b)) (- (low b))))
     ((pt-interval region)
-     (%add! (%pt-interval-x a) (- (high-x b)) (- (low-x b)))
-     (%add! (%pt-interval-y a) (- (high-y b)) (- (low-y b)))))
+     (%add-region! a (- (high-x b)) (- (low-x b)) (- (high-y b)) (- (low-y b)))))
   a)
 
 (public subtract)
@@ -93,8 +102,9 @@ interval; the FACTOR of an interval may be an interval itself (manual, Table 3.1
     ((interval span) (%mul! a (low factor) (high factor)))
     ((pt-interval span)
      (let ((low (low factor)) (high (high factor)))
-       (%mul! (%pt-interval-x a) low high)
-       (%mul! (%pt-interval-y a) low high))))
+       (multiple-value-call #'%set-region! a
+         (%products (%pt-interval-x a) low high)
+         (%products (%pt-interval-y a) low high)))))
   a)
 
 (public mul)
@@ -111,9 +121,18 @@ interval as FACTOR gives the interval or point interval of all products (manual,
 
 (declaim (inline length-of least-size greatest-size))
 
+(defun scaled-length (x y most)
+  "Return the length of (X,Y), of which MOST is the greater size, where squares are no floats."
+  (declare (type double-float x y most))
+  (let ((x (/ x most)) (y (/ y most)))
+    (* most (sqrt (+ (* x x) (* y y))))))
+
 (defun length-of (x y)
   (declare (type double-float x y))
-  (sqrt (+ (* x x) (* y y))))
+  (let ((most (max (abs x) (abs y))))
+    (if (or (< 1d-140 most 1d140) (zerop most))
+        (sqrt (+ (* x x) (* y y)))
+        (scaled-length x y most))))
 
 (defun least-size (interval)
   "Return the least absolute value in INTERVAL."

@@ -207,12 +207,17 @@ it copies the bounds of an interval."
     (side-length (%pt-interval-y pt-interval))))
 
 ;; Inline, so that bounds need not be boxed on the way.
-(declaim (inline set-pt-interval!))
+(declaim (inline %set-region! set-pt-interval!))
+(defun %set-region! (pt-interval x-min x-max y-min y-max)
+  (%set-interval! (%pt-interval-x pt-interval) x-min x-max)
+  (%set-interval! (%pt-interval-y pt-interval) y-min y-max)
+  pt-interval)
+
 (defun set-pt-interval! (pt-interval x-min x-max y-min y-max)
   "Give PT-INTERVAL the bounds X-MIN to X-MAX and Y-MIN to Y-MAX, real numbers; return it."
-  (set-interval! (%pt-interval-x pt-interval) x-min x-max)
-  (set-interval! (%pt-interval-y pt-interval) y-min y-max)
-  pt-interval)
+  (check-argument set-pt-interval! x-min (<= x-min x-max) "a number that is not above x-max")
+  (check-argument set-pt-interval! y-min (<= y-min y-max) "a number that is not above y-max")
+  (%set-region! pt-interval (double x-min) (double x-max) (double y-min) (double y-max)))
 
 ;;; Copies, equality, print forms.
 
