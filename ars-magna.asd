@@ -75,7 +75,8 @@
                  (:file "lines") (:file "frames") (:file "importing") (:file "exporting")))
    (:module "src/time" :serial t
     :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
-                 (:file "interruptions") (:file "custody") (:file "timeline") (:file "thinking")
+                 (:file "interruptions") (:file "custody") (:file "phases") (:file "timeline")
+                 (:file "thinking")
                  (:file "asking") (:file "pacing") (:file "stopping") (:file "hogs")
                  (:file "clock") (:file "schedule") (:file "soundness")))
    (:module "src/robot" :serial t

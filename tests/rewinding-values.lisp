@@ -169,3 +169,57 @@
         (setf (rpl:fluent-value *top-count*) 0)
         (is (= 0 (rpl:fluent-value *top-count*)))))
     (is-true (root-now-p))))
+
+;;; What functions have closed over.
+
+(defmacro keeping-every (share &body body)
+  "Run BODY, where runs spend so much of their time on forks as SHARE says."
+  `(let ((run::*keeping-share* ,share)) ,@body))
+
+(defun pot-after (share rewinds begin)
+  "Return where a pot is after 88 ticks, once BEGIN has been called with it, and what was said;
+REWINDS are made at the tick 85, where forks take SHARE of the time."
+  (keeping-every share
+    (with-rover (:seed 1 :keep t)
+      (let ((pot (world:make-new-thing 'pot (list world:*world* 3.5 3.5) '((:size 1)))))
+        (funcall begin pot)
+        (run:run-ticks 85)
+        (dolist (ticks rewinds) (run:rewind ticks))
+        (run:run-ticks (- 88 (tick-of-run)))
+        (list (world:thing-x (world:find-thing 'pot)) (base:take-messages))))))
+
+(defun outcomes-for-pot (begin)
+  "Return what POT-AFTER returns for BEGIN with many forks, and with none but the first."
+  (remove-duplicates (loop for rewinds in '(() (25) (70 10) (84))
+                           append (loop for share in '(1 1/1000000)
+                                        collect (pot-after share rewinds begin)))
+                     :test #'equal))
+
+(test rewind.does-what-was-scheduled
+  "Also where the fork that goes on had not been asked for it: its own pot is moved."
+  (is (equal '((4.5d0 ()))
+             (outcomes-for-pot
+              (lambda (pot) (time:schedule (nil :timer 5) (world:kick-thing pot 1 0 nil)))))))
+
+(test rewind.schedules-with-the-variables-of-then
+  (is (equal '((6.5d0 ()))
+             (outcomes-for-pot
+              (lambda (pot)
+                (let ((distance 0) (simulation time:*simulation*))
+                  (time:schedule (:push :when (= 3 (incf distance)) :timeout 9)
+                    (when (eq simulation time:*simulation*)
+                      (world:kick-thing pot distance 0 nil)))))))))
+
+(rpl:def-interp-proc kick-later (pot ticks kick)
+  (rpl:wait-time ticks)
+  (time:schedule (nil :timer 5) (funcall kick) (world:kick-thing pot 1 0 nil)))
+
+(test rewind.knows-what-plans-schedule-again
+  "A plan's function of the same code is the one that it has asked for, and no other way."
+  (is (equal '((6.5d0 ()))
+             (outcomes-for-pot
+              (lambda (pot)
+                (dolist (ticks '(3 10))
+                  (driver:begin-plan 'kick-later pot ticks #'list))
+                (driver:begin-plan 'kick-later pot 12 (lambda ()
+                                                        (world:kick-thing pot 0 0 nil))))))))

@@ -225,15 +225,17 @@ function and an instance of a class of a user's may keep anything."
 ;;; Values alone, of which no run is part.
 
 (defun plain-value-p (value)
-  "True if VALUE is a list, an array, a table, or a structure or instance of a class of a user's of
-which nobody has said how it is copied: nothing with an identity."
+  "True if VALUE is a list, an array, a table, a closure or a variable of one, or a structure or
+instance of a class of a user's of which nobody has said how it is copied: what has no identity."
   (typecase value
     ((or cons array hash-table) t)
-    ((or condition function) nil)
+    (condition nil)
+    (function (and (closure-p value) (not (typep value 'standard-object))))
     (structure-object (and (null (kind-of value)) (eq :copy (manner-way (manner value)))))
     (standard-object (eq (first (compute-applicable-methods #'copy-plan-value (list value nil)))
                          (find-method #'copy-plan-value '()
-                                      (list (find-class 'standard-object) (find-class t)))))))
+                                      (list (find-class 'standard-object) (find-class t)))))
+    (t (and (cell-p value) (not (exit-cell-p value))))))
 
 (defun immediate-p (value)
   (typep value '(or number symbol character)))

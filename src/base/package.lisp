@@ -206,7 +206,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:put-right-later #:copy-plan-value #:copy-values #:define-shared
            #:define-shared-slots #:copy-slots #:cannot-fork-value #:cannot-fork-place #:share-value
            #:leave-out-value #:make-no-fork #:holds-p #:reference-slots #:instance-slot
-           #:cannot-fork #:closure-values #:environment-p #:environment-values)
+           #:cannot-fork #:closure-values #:same-code-p #:environment-p #:environment-values)
   ;; fields
   (:export #:field-name #:field-kept-p #:field-reader #:field-writer #:field-initial
            #:fields-of-type #:blank-object #:note-lasting #:lasting-name #:lasting-function)

@@ -33,6 +33,12 @@ code, was made of."
 (defun code-of (function)
   (internal (:sb-kernel #:fun-code-header) (internal (:sb-kernel #:%fun-fun) function)))
 
+(defun same-code-p (function other)
+  "True if FUNCTION and OTHER are one function, or closures of the same code."
+  (if (or (interpreted-p function) (interpreted-p other))
+      (same-interpreted-p function other)
+      (eq (internal (:sb-kernel #:%fun-fun) function) (internal (:sb-kernel #:%fun-fun) other))))
+
 (defun constants-from (code start)
   (loop for index from start below (internal (:sb-kernel #:code-header-words) code)
         collect (internal (:sb-kernel #:code-header-ref) code index)))

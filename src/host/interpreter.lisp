@@ -42,7 +42,14 @@
               :documentation (internal (:sb-eval #:interpreted-function-documentation) function)
               :body (internal (:sb-eval #:interpreted-function-body) function)
               :source-location (internal (:sb-eval #:interpreted-function-source-location)
-                                         function))))
+                                         function)))
+
+  (defun same-interpreted-p (function other)
+    "True if FUNCTION and OTHER are interpreted, and made by the same form."
+    (and (interpreted-p function)
+         (interpreted-p other)
+         (eq (internal (:sb-eval #:interpreted-function-body) function)
+             (internal (:sb-eval #:interpreted-function-body) other)))))
 
 #-#.(cl:if (cl:find-package "SB-EVAL") '(:and) '(:or))
 (progn
@@ -56,7 +63,8 @@
   (defun (setf interpreted-environment) (environment function)
     (declare (ignore function))
     environment)
-  (defun copy-interpreted (function) function))
+  (defun copy-interpreted (function) function)
+  (defun same-interpreted-p (function other) (eq function other)))
 
 (defun fixed-slot-p (name)
   "True unless what is in the slot NAME of environments belongs to those who have them."

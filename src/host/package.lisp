@@ -25,6 +25,7 @@ file. No other folder names such parts of SBCL.")
            #:environment-p #:environment-values #:fixed-slot-p)
   ;; code
   (:export #:code-constants #:constant-meant #:method-code #:declared-lambda-list
+           #:same-code-p
            #:structure-reader-p
            #:source-at)
   ;; environments

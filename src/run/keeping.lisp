@@ -129,7 +129,8 @@ until the tick has ended and there is one; not for long, as no tick may pass."
     (when (eq simulation *simulation*) (look-at-dice simulation past))
     ;; One can go back as far as here: what has been asked for stays so.
     (dolist (request (timeline-inbox (simulation-timeline simulation)))
-      (when (zerop (request-phase request)) (setf (request-phase request) 5)))
+      (when (zerop (request-phase request))
+        (setf (request-phase request) (phase-number :continuations))))
     (when (zerop (timeline-phase (simulation-timeline simulation)))
       (keep-fork simulation past))))
 

@@ -13,7 +13,7 @@
 had passed, or was under way in its PHASE, a number, 0 between ticks; of a request PHASE says when
 it was asked for. MOMENT is how often by then in the tick what goes on in forks too had acted. OWN-P
 is true of what a fork does by itself. OPERATOR is the name of an operator, and ARGUMENTS are
-externalized, or a function, and they are memorized. ASKER is a note of who asked for it, or NIL."
+externalized, or a function; they are memorized. ASKER is a note of who asked for it, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -56,11 +56,11 @@ could not be made, as somebody was at work in the run; or NIL."
 
 (defun of-itself-p (request)
   "True if a fork comes to REQUEST by itself, as what goes on there too has asked for it."
-  (or (request-forked-p request) (<= 1 (request-phase request) 4)))
+  (or (request-forked-p request) (changing-phase-p (request-phase request))))
 
 (defun request-act (request simulation operator arguments)
   "Return the act that SIMULATION begins a tick with REQUEST: for OPERATOR, with ARGUMENTS, which
-are externalized."
+are externalized and memorized."
   (make-act :request (simulation-tick simulation) (request-phase request) 0
             (of-itself-p request) operator arguments (request-asker request)))
 
@@ -77,24 +77,26 @@ are externalized."
   (incf (past-count past)))
 
 (defun remember (simulation operator arguments &optional request)
-  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, see ACT;
-by REQUEST, if that is given."
+  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, which are
+externalized or OPERATOR is a function, see ACT; by REQUEST, if that is given."
   (let ((past (simulation-past simulation)))
     (when past
-      (add-act past (if request
-                        (request-act request simulation operator arguments)
-                        (change-act simulation operator arguments))))))
+      (let ((arguments (memorized arguments)))
+        (add-act past (if request
+                          (request-act request simulation operator arguments)
+                          (change-act simulation operator arguments)))))))
 
 (defun pending-acts (simulation)
   "Return what is asked of SIMULATION and waits for the next tick, as acts, the newest first."
   (loop for request in (timeline-inbox (simulation-timeline simulation))
         for (operator . arguments) = (request-entry request)
-        collect (request-act request simulation operator (externalize arguments))))
+        collect (request-act request simulation operator
+                             (memorized (externalize arguments)))))
 
 ;; In these phases only what a fork has too can act.
 (defun changing-inside-p (simulation)
   "True in the phases of a tick of SIMULATION in which the world changes."
-  (<= 1 (phase-here (simulation-timeline simulation)) 4))
+  (changing-phase-p (phase-here (simulation-timeline simulation))))
 
 ;;; Programs around the run, and continuations, roll dice that plans roll too; and are not repeated.
 
@@ -122,7 +124,7 @@ nothing."
              (not (goes-on-in-forks-p))
              (not (changing-inside-p simulation)))
     (when (eq simulation *simulation*) (note-dice simulation))
-    (remember simulation function (memorized arguments)))
+    (remember simulation function arguments))
   (values))
 
 ;;; Which part of the past is before a moment.
@@ -138,7 +140,7 @@ nothing."
   (or (< (act-tick act) tick)
       (and (= (act-tick act) tick)
            (eq :change (act-kind act))
-           (<= 5 (act-phase act)))))
+           (telling-phase-p (act-phase act)))))
 
 (defun acts-until (tick acts)
   "Return those of ACTS, the newest first, that were done before the end of TICK, a tail of it; and

@@ -24,10 +24,10 @@ tick at which it did not come to what it had come to, or NIL."
 
 (defun perform-act (act simulation)
   "Do again in SIMULATION, which is the current one, what ACT says."
-  (if (functionp (act-operator act))
-      (apply (act-operator act) (recalled (act-arguments act) simulation))
-      (perform-operator (act-operator act) (act-arguments act) simulation
-                        (or (act-asker act) "the past"))))
+  (let ((operator (act-operator act)) (arguments (recalled (act-arguments act) simulation)))
+    (if (functionp operator)
+        (apply operator arguments)
+        (perform-operator operator arguments simulation (or (act-asker act) "the past")))))
 
 ;; What was asked for in the midst of a tick is not to be forgotten when the run is rewound to it.
 (defun date-requests (simulation before phase)
@@ -56,8 +56,8 @@ when that is performed."
   (destructuring-bind (operator . arguments) (request-entry request)
     (let ((arguments (externalize arguments)))
       (and (eq operator (act-operator act))
-           (equal (first arguments) (first (act-arguments act)))
-           (or (not (operation-p request)) (equal arguments (act-arguments act)))))))
+           (alike-p (first arguments) (first (act-arguments act)))
+           (or (not (typep request 'event)) (alike-p arguments (act-arguments act)))))))
 
 (defun ask-again (act redoing)
   "Ask again for what ACT, a request, says; if the fork has come to that by itself, for that."
@@ -85,7 +85,7 @@ acted as often as it has by now."
   (loop with moments = (timeline-moments (simulation-timeline (redoing-simulation redoing)))
         for act = (next-act redoing (lambda (act)
                                       (and (eq :change (act-kind act))
-                                           (<= 5 (act-phase act))
+                                           (telling-phase-p (act-phase act))
                                            (<= (act-moment act) moments))))
         while act
         unless (act-own-p act) do (do-again act redoing)))

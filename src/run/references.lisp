@@ -83,6 +83,12 @@ SIMULATION, which BODY may refer to."
       (reject-name "robot in this simulation" name
                    (mapcar #'robot-name (simulation-robots simulation)))))
 
+(define-dereference :simulation ()
+  simulation)
+
+(define-dereference :world ()
+  (simulation-world simulation))
+
 (define-dereference :robot (name)
   (robot-in simulation name))
 

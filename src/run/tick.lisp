@@ -8,15 +8,14 @@
 ;;; may leave a tick, as by THROW; the timeline knows which phases have begun, and the others follow
 ;;; first.
 
-(defmacro in-phases ((place) &body forms)
-  "Run FORMS in order, but for those that the number in PLACE, which is 0 before and after, says
-have been begun."
+(defmacro in-phases ((place) &body phases)
+  "Run PHASES, (name form...), in order, but for those that the number in PLACE, which is 0 before
+and after, says have been begun."
   `(progn
-     ,@(loop for form in forms
-             for number from 1
-             collect `(when (< ,place ,number)
-                        (setf ,place ,number)
-                        ,form))
+     ,@(loop for (name . forms) in phases
+             collect `(when (< ,place (phase-number ,name))
+                        (setf ,place (phase-number ,name))
+                        ,@forms))
      (setf ,place 0)))
 
 (declaim (inline begin-changing end-changing))
@@ -112,20 +111,20 @@ have been begun."
     (let ((*tick-dice* (timeline-tick-dice timeline)))
       (in-any-case
         (in-phases ((timeline-phase timeline))
-          (progn (note-rolls simulation)
-                 (begin-changing timeline world)
-                 (notice-parameters simulation timeline)
-                 (perform-requests simulation timeline))
-          (run-due-events timeline)
-          (run-kickers world)
-          (progn (settle-robots world)
-                 (tend-tracks world)
-                 (check-grips world))
-          (progn (end-changing timeline world)
-                 (prolong-journal simulation)
-                 (deliver-notifications timeline))
-          (progn (tell-observers simulation)
-                 (note-rolls simulation))
-          (let-participants-act simulation)
-          (keep-fork-if-due simulation))
+          (:requests (note-rolls simulation)
+                     (begin-changing timeline world)
+                     (notice-parameters simulation timeline)
+                     (perform-requests simulation timeline))
+          (:events (run-due-events timeline))
+          (:kickers (run-kickers world))
+          (:settling (settle-robots world)
+                     (tend-tracks world)
+                     (check-grips world))
+          (:continuations (end-changing timeline world)
+                          (prolong-journal simulation)
+                          (deliver-notifications timeline))
+          (:observers (tell-observers simulation)
+                      (note-rolls simulation))
+          (:participants (let-participants-act simulation))
+          (:keeping (keep-fork-if-due simulation)))
         (unless (zerop (timeline-phase timeline)) (tick simulation))))))

@@ -18,6 +18,8 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   ;; interruptions
   (:export #:request-name #:note-interruption #:interruption #:interruption-tick #:interruption-what
            #:interruption-asker #:interruption-by #:interruption-by-asker)
+  ;; phases
+  (:export #:phase-number #:changing-phase-p #:telling-phase-p)
   ;; timeline
   (:export #:timeline #:make-timeline #:timeline-p #:timeline-of #:timeline-name #:timeline-tick
            #:timeline-agenda #:timeline-run #:timeline-over #:timeline-custody
