@@ -52,6 +52,13 @@ frames, is about.")
   (:documentation "Return in words what a task that is stuck waits for.")
   (:method (awaited) (awaited-text awaited)))
 
+(defun wait-text (task)
+  "Return in words what TASK waits for, as TASK-AWAITS does, and who has it if that is known."
+  (and (task-awaits task)
+       (if (hinderers (task-awaiting task))
+           (hindrance-text (task-awaiting task))
+           (task-awaits task))))
+
 (defun stuck-text (task)
   "Return in words what TASK, which is stuck, waits for."
   (let ((awaiting (task-awaiting task)))

@@ -22,7 +22,7 @@
 
 (defun text-of-waits (tasks)
   "Return in words what TASKS wait for, or NIL if that is nothing by itself."
-  (let ((texts (remove-duplicates (remove nil (mapcar #'task-awaits tasks))
+  (let ((texts (remove-duplicates (remove nil (mapcar #'wait-text tasks))
                                   :test #'string= :from-end t)))
     (and texts (cut (format nil "~{~A~^, ~}" texts) 300))))
 
