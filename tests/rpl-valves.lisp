@@ -159,3 +159,96 @@
                                  :later))))
     (is (null (rpl:valve-owner a)))
     (is (null (rpl:valve-owner b)))))
+
+;;; Parts of an owner.
+
+(defmacro log-under-valve ((note valve) &body branches)
+  "Return what BRANCHES note by NOTE, run side by side by a task that owns VALVE."
+  `(let ((,valve (rpl:make-valve 'hand)))
+     (with-log (,note)
+       (plan-value (rpl:with-valve (,valve) (rpl:par ,@branches)))
+       (is (null (rpl:valve-owner ,valve))))))
+
+(test with-valve.one-part-of-an-owner-at-a-time
+  (is (equal '((:a 0) (:a-too 0) (:b 2) (:b-done 3))
+             (log-under-valve (note hand)
+               (rpl:with-valve (hand)
+                 (note :a)
+                 (rpl:with-valve (hand) (note :a-too) (rpl:wait-time 2)))
+               (rpl:with-valve (hand) (note :b) (rpl:wait-time 1) (note :b-done))))))
+
+(test with-valve.a-part-of-a-part
+  "Nor do those two levels below the owner have it at once with those beside it."
+  (is (equal '((:a 0) (:b 1) (:c 2))
+             (log-under-valve (note hand)
+               (rpl:par (rpl:with-valve (hand)
+                          (rpl:par (rpl:with-valve (hand) (note :a) (rpl:wait-time 1))
+                                   (rpl:with-valve (hand) (note :b) (rpl:wait-time 1)))))
+               (rpl:seq (rpl:wait-time 1) (rpl:with-valve (hand) (note :c)))))))
+
+(test with-valve.parts-have-priorities-among-themselves
+  "Who is not of the owner goes by the owner's: it is suspended with all of its parts."
+  (is (equal '((:a 0) (:b 1) (:b 3) (:a 4))
+             (log-under-valve (note hand)
+               (rpl:with-valve (hand) (note :a) (rpl:wait-time 4) (note :a))
+               (rpl:seq (rpl:wait-time 1)
+                        (rpl:with-valve (hand :priority 1)
+                          (note :b) (rpl:wait-time 2) (note :b))))))
+  (let ((hand (rpl:make-valve 'hand)))
+    (is (equal '((:taken 3) (:back 5) (:part 5) (:beside 5) (:middle 5))
+               (with-log (note)
+                 (plan-value
+                   (rpl:par (rpl:with-valve (hand :priority 2)
+                              (rpl:par (rpl:with-valve (hand) (rpl:wait-time 4) (note :part))
+                                       (rpl:seq (rpl:wait-time 4) (note :beside))))
+                            (rpl:seq (rpl:wait-time 1)
+                                     (rpl:with-valve (hand :priority 1) (note :middle)))
+                            (rpl:seq (rpl:wait-time 3)
+                                     (rpl:with-valve (hand :priority 3)
+                                       (note :taken) (rpl:wait-time 2) (note :back))))))))
+    (is (null (rpl:valve-owner hand)))
+    (is (null (rpl:valve-losers hand)))))
+
+(test with-valve.a-circle-of-parts-is-reported
+  (let ((base:*message-queue* (base:make-message-queue))
+        (hand (rpl:make-valve 'hand)) (eye (rpl:make-valve 'eye)))
+    (rpl:run-plan-alone
+     (rpl:interp-lambda ()
+       (rpl:with-valves (hand eye)
+         (rpl:par (:tag left (rpl:with-valve (hand) (rpl:wait-time 1) (rpl:with-valve (eye) 1)))
+                  (:tag right (rpl:with-valve (eye)
+                                (rpl:wait-time 1) (rpl:with-valve (hand) 1)))))))
+    (is-true (has-words-p (base:message-text (first (base:take-messages)))
+                          "left waits for the valve eye that right has"
+                          "right waits for the valve hand that left has"))
+    (is (null (rpl:valve-owner hand)))))
+
+(test with-valve.a-part-that-waits-for-another-is-reported
+  (let ((base:*message-queue* (base:make-message-queue)) (hand (rpl:make-valve 'hand)))
+    (rpl:run-plan-alone
+     (rpl:interp-lambda ()
+       (let ((done (rpl:create-fluent 'done)))
+         (rpl:with-valve (hand)
+           (rpl:par (:tag left (rpl:with-valve (hand) (rpl:wait-for done)))
+                    (:tag right (rpl:with-valve (hand) (rpl:set-value done t))))))))
+    (is-true (has-words-p (base:message-text (first (base:take-messages)))
+                          "the valve hand that left has" "right"))))
+
+;;; Many.
+
+(defun looks-of-queue (count)
+  "Return how often it is asked whether a claim can be granted while COUNT tasks have a valve."
+  (let ((looks 0) (valve (rpl:make-valve 'hand)))
+    (host:wrap-function 'constructs::available-p
+                        (lambda (function &rest arguments)
+                          (incf looks)
+                          (apply function arguments))
+                        'test)
+    (unwind-protect (plan-value (rpl:par-loop (i (make-list count))
+                                  (rpl:with-valve (valve) (rpl:wait-time 1))))
+      (host:unwrap-function 'constructs::available-p 'test))
+    looks))
+
+(test with-valve.to-queue-takes-the-same-however-many-do
+  (is (< (looks-of-queue 1000) 10000))
+  (is (< (looks-of-queue 2000) 20000)))

@@ -158,3 +158,17 @@ succeeded, the ticks that took, the plan's value, and a digest."
       (is-true (ars-worlds:near-p vase '(5 8) 4))
       (world:move-thing vase (world:find-thing 'box))
       (is-false (ars-worlds:near-p vase '(5 5))))))
+
+;;; Sharing a robot.
+
+(test patrol.parts-of-an-owner-have-the-robot-one-after-the-other
+  "Two patrols side by side, of a plan that owns the robot itself."
+  (let ((base:*message-queue* (base:make-message-queue)))
+    (run:with-simulation (ars-worlds:dot :seed 1 :clean t)
+      (let ((way '((5.5 5.5) (3.5 6.5))))
+        (is (eql 2 (driver:run-plan
+                    (rpl:interp-lambda ()
+                      (rpl:with-valve ((driver:rpl-robot-valve))
+                        (rpl:par (ars-worlds:patrol-places way :start '(3.5 6.5 0))
+                                 (ars-worlds:patrol-places way :start '(3.5 6.5 0)))))))))
+      (is (null (remove :message (base:take-messages) :key #'base:message-kind))))))

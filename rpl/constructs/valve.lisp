@@ -2,26 +2,47 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted:
-;;; the first is its owner's, the others were preempted by the one before, and have LOST it; their
-;;; tasks do not run meanwhile. The claims that wait for it queue by priority, by level, then first
-;;; in first out; one that wants several can be overtaken by such as can have what they want.
-;;; What an owner's own parts ask for they have: it is for the owner to keep them apart.
+;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted,
+;;; the newest first. A part of a task that holds a valve may hold it as well, one part at a time.
+;;; So HOLDERS of a valve are the first claim, its owner's, and those after it of tasks that this is
+;;; part of. Any other claim was preempted: it has LOST the valve, and its task does not run.
+;;; The claims that wait for a valve queue by priority, by level, then first in first out, in a LINE
+;;; for each priority and level; one that wants several can be overtaken by such as can have what
+;;; they want. To queue, to leave, and to be the next take the same time however many wait.
 
 (defstruct (valve (:include entity) (:constructor %make-valve (name)) (:copier nil))
-  "What guarantees that one task at a time has a resource."
+  "What guarantees that one task at a time has a resource. LINES are of those that wait for it."
   (name nil :read-only t)
   (claims '() :type list)
-  (waiting '() :type list))
+  (lines '() :type list))
 
 (defstruct (claim (:constructor make-claim (task valves priority)) (:copier nil))
-  "That TASK wants or has VALVES. TAKEN are those that it did not have before, LOST those of them
-that have been taken from it."
+  "That TASK wants or has VALVES. TAKEN are those that it has, LOST those of them that have been
+taken from it. TURNS are its places in the lines of VALVES while it waits."
   (task nil :type task :read-only t)
   (valves '() :type list :read-only t)
   (priority 0 :type real :read-only t)
   (taken '() :type list)
-  (lost '() :type list))
+  (lost '() :type list)
+  (turns '() :type list))
+
+(defstruct (line (:constructor make-line (valve priority level)) (:copier nil))
+  "The turns of claims of one PRIORITY to VALVE, by tasks of one LEVEL, first come first."
+  (valve nil :type valve :read-only t)
+  (priority 0 :type real :read-only t)
+  (level 0 :type fixnum :read-only t)
+  (first-turn nil)
+  (last-turn nil))
+
+(defstruct (turn (:constructor make-turn (claim line)) (:copier nil))
+  "That CLAIM waits in LINE."
+  (claim nil :type claim :read-only t)
+  (line nil :type line :read-only t)
+  (previous nil :type (or null turn))
+  (next nil :type (or null turn)))
+(declaim-final line turn)
+
+(define-membership turn turn-line :in line :join join-line :leave leave-line)
 
 ;; In a fork whose plans did not lead to it, nobody has it.
 (defmethod fresh-twin ((valve valve) realm)
@@ -43,18 +64,30 @@ that have been taken from it."
   valve-name "Return the name that the valve was made with.")
 
 (defun valve-owner (valve)
-  "Return the task that has VALVE, or NIL."
+  "Return the task that has VALVE, or NIL; if a part of that has claimed it too, the part."
   (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
   (let ((claims (valve-claims (here valve))))
     (and claims (claim-task (first claims)))))
 
+(defun claims-in-line (line)
+  (loop for turn = (line-first-turn line) then (turn-next turn)
+        while turn collect (turn-claim turn)))
+
 (defun valve-requests (valve)
   "Return the tasks that wait for VALVE, the next to have it first."
-  (mapcar #'claim-task (valve-waiting (here valve))))
+  (mapcar #'claim-task (mapcan #'claims-in-line (valve-lines (here valve)))))
+
+(defun holders (valve)
+  "Return the claims that hold VALVE: that of its owner, and those of tasks that this is part of,
+innermost first."
+  (loop for (claim next) on (valve-claims valve)
+        collect claim
+        while (and next (part-of-p (claim-task claim) (claim-task next)))))
 
 (defun valve-losers (valve)
   "Return the tasks from which VALVE was taken and which are to have it back, the next first."
-  (mapcar #'claim-task (rest (valve-claims (here valve)))))
+  (let ((valve (here valve)))
+    (mapcar #'claim-task (nthcdr (length (holders valve)) (valve-claims valve)))))
 
 (defun valve-text (valve)
   "Return the name of VALVE as text."
@@ -72,18 +105,16 @@ that have been taken from it."
 
 ;;; Who may have what.
 
-(defun had-p (valve task)
-  "True if TASK has VALVE as a part of its owner."
-  (let ((owner (valve-owner valve)))
-    (and owner (part-of-p task owner))))
+(defun rivals (valve task)
+  "Return the claims that hold VALVE and are of tasks that TASK is no part of, innermost first."
+  (remove-if (lambda (claim) (part-of-p task (claim-task claim))) (holders valve)))
 
 (defun available-p (valve claim)
-  "True if CLAIM may take VALVE, from its owner if need be: one that evaporates keeps it."
-  (let ((owner (first (valve-claims valve))))
-    (or (null owner)
-        (had-p valve (claim-task claim))
-        (and (> (claim-priority claim) (claim-priority owner))
-             (not (evaporating-p (claim-task owner)))))))
+  "True if CLAIM may take VALVE, from its rivals if need be: one that evaporates keeps it."
+  (every (lambda (rival)
+           (and (> (claim-priority claim) (claim-priority rival))
+                (not (evaporating-p (claim-task rival)))))
+         (rivals valve (claim-task claim))))
 
 (defun grantable-p (claim)
   (every (lambda (valve) (available-p valve claim)) (claim-valves claim)))
@@ -102,41 +133,61 @@ that have been taken from it."
 (defun grant (claim)
   "Let CLAIM have its valves."
   (dolist (valve (claim-valves claim))
-    (unless (had-p valve (claim-task claim))
-      (let ((owner (first (valve-claims valve))))
-        (when owner (lose valve owner)))
-      (push claim (valve-claims valve))
-      (push valve (claim-taken claim)))))
+    (dolist (rival (reverse (rivals valve (claim-task claim))))
+      (lose valve rival))
+    (push claim (valve-claims valve))
+    (push valve (claim-taken claim))))
 
 ;;; Queueing.
 
-(defun before-p (claim other)
-  "True if CLAIM goes before OTHER, which came first."
-  (or (> (claim-priority claim) (claim-priority other))
-      (and (= (claim-priority claim) (claim-priority other))
-           (> (task-level (claim-task claim)) (task-level (claim-task other))))))
+(defun before-p (line other)
+  "True if who is in LINE goes before who is in OTHER."
+  (or (> (line-priority line) (line-priority other))
+      (and (= (line-priority line) (line-priority other))
+           (> (line-level line) (line-level other)))))
+
+(defun line-for (claim valve)
+  "Return the line of VALVE that CLAIM is to wait in, a new one if there is none for its like."
+  (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
+    (or (find-if (lambda (other) (not (or (before-p line other) (before-p other line))))
+                 (valve-lines valve))
+        (progn (setf (valve-lines valve) (merge 'list (valve-lines valve) (list line) #'before-p))
+               line))))
 
 (defun queue-up (claim)
   (dolist (valve (claim-valves claim))
-    (setf (valve-waiting valve)
-          (merge 'list (valve-waiting valve) (list claim) #'before-p))))
+    (let ((turn (make-turn claim (line-for claim valve))))
+      (join-line turn)
+      (push turn (claim-turns claim)))))
 
 (defun leave-queues (claim)
-  (dolist (valve (claim-valves claim))
-    (setf (valve-waiting valve) (remove claim (valve-waiting valve)))))
+  (dolist (turn (shiftf (claim-turns claim) '()))
+    (leave-line turn)
+    (let ((line (turn-line turn)))
+      (unless (line-first-turn line)
+        (let ((valve (line-valve line)))
+          (setf (valve-lines valve) (remove line (valve-lines valve))))))))
 
 (defmethod withdraw (task (claim claim))
   (leave-queues claim))
 
+(defun next-in-line (line)
+  "Return the first claim in LINE that can be granted, or NIL."
+  (loop for turn = (line-first-turn line) then (turn-next turn)
+        while turn
+        when (grantable-p (turn-claim turn)) return (turn-claim turn)))
+
+;; The one who has it now has no parts yet, and no less priority than those behind: no other can.
 (defun grant-waiting (valve)
-  "Grant the claims that wait for VALVE and can be granted, and give it back to who lost it last."
-  (dolist (claim (valve-waiting valve))
-    (when (grantable-p claim)
+  "Grant the first of the claims that wait for VALVE and can be granted, or else give it back to
+those who lost it last."
+  (let ((claim (some #'next-in-line (valve-lines valve))))
+    (when claim
       (leave-queues claim)
       (grant claim)
       (wake (claim-task claim) nil)))
-  (when (valve-claims valve)
-    (regain valve (first (valve-claims valve)))))
+  (dolist (holder (holders valve))
+    (regain valve holder)))
 
 (defun give-back (claim)
   "Let CLAIM have nothing any more."
@@ -149,14 +200,20 @@ that have been taken from it."
 
 ;;; Circles.
 
+(defun outermost-rival (valve task)
+  "Return the task without whose end, or that of its hold, TASK cannot have VALVE; or NIL."
+  (let ((rival (first (last (rivals valve task)))))
+    (and rival (claim-task rival))))
+
 (defmethod hinderers ((claim claim))
   (loop for valve in (claim-valves claim)
         unless (available-p valve claim)
-          collect (valve-owner valve)))
+          collect (outermost-rival valve (claim-task claim))))
 
 (defmethod hindrance-text ((claim claim))
   (format nil "the ~A that ~{~A~^ and ~} has" (awaited-text claim)
           (remove-duplicates (mapcar #'task-label (hinderers claim)) :test #'string=)))
 
 (defmethod taken-from (task (claim claim))
-  (mapcar #'valve-owner (claim-lost claim)))
+  (remove nil (mapcar (lambda (valve) (outermost-rival valve (claim-task claim)))
+                      (claim-lost claim))))

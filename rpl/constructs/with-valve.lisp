@@ -28,14 +28,14 @@
   (value-lambda `(cons ,priority (list ,@valves)) scope))
 
 (define-construct with-valve ((valve &key priority) &body body)
-  "Run BODY in a plan while the task owns VALVE, waiting for it first if another task has it. Who
-waits queues by PRIORITY, a number, 0 if not given; policies before others of the same. Who has a
-higher PRIORITY than the owner takes VALVE from it: the owner is suspended, with all that it
-consists of, until it is given back; so never two of them run who own one resource. What the owner
-does about it ON-SUSPENSION and RETRY-AFTER-SUSPENSION say. The cleanups of an owner that
-evaporates are not disturbed. The valve is given back however BODY ends. Return all values of
-BODY. If tasks wait for each other's valves, an error message says so (manual D; priorities
-ours)."
+  "Run BODY in a plan while the task owns VALVE, waiting for it first if another task has it. A part
+of the owner can own VALVE as well, one part at a time. Who waits queues by PRIORITY, a number, 0 if
+not given; policies before others of the same. Who has a higher PRIORITY than the owner takes VALVE
+from it: the owner is suspended, with all that it consists of, until it is given back; so never two
+of them run who own one resource. What the owner does about it ON-SUSPENSION and
+RETRY-AFTER-SUSPENSION say. The cleanups of an owner that evaporates are not disturbed. The valve is
+given back however BODY ends. Return all values of BODY. If tasks wait for each other's valves, an
+error message says so (manual D; priorities ours)."
   (:arguments valve priority)
   (:parts (request function (claim-form priority (list valve) scope))
           (body node (body-code body scope)))

@@ -147,33 +147,33 @@ WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
 
 ;;; Doubly linked lists, so that leaving one costs the same however many are in it.
 
-(defmacro define-membership (type list-of &key join leave)
+(defmacro define-membership (type list-of &key (in 'fluent) join leave)
   "Define JOIN and LEAVE, functions of a member of TYPE that append it to and remove it from the
-list that the fluent (LIST-OF member) keeps in its slots FIRST-TYPE and LAST-TYPE."
-  (let ((first (symbolicate 'fluent-first- type))
-        (last (symbolicate 'fluent-last- type))
+list that (LIST-OF member), a structure IN, keeps in its slots FIRST-TYPE and LAST-TYPE."
+  (let ((first (symbolicate in '-first- type))
+        (last (symbolicate in '-last- type))
         (previous (symbolicate type '-previous))
         (next (symbolicate type '-next)))
     `(progn
        (defun ,join (member)
-         (let* ((fluent (,list-of member))
-                (tail (,last fluent)))
+         (let* ((list (,list-of member))
+                (tail (,last list)))
            (setf (,previous member) tail
                  (,next member) nil
-                 (,last fluent) member)
+                 (,last list) member)
            (if tail
                (setf (,next tail) member)
-               (setf (,first fluent) member))))
+               (setf (,first list) member))))
        (defun ,leave (member)
-         (let ((fluent (,list-of member))
+         (let ((list (,list-of member))
                (before (,previous member))
                (after (,next member)))
            (if before
                (setf (,next before) after)
-               (setf (,first fluent) after))
+               (setf (,first list) after))
            (if after
                (setf (,previous after) before)
-               (setf (,last fluent) before))
+               (setf (,last list) before))
            (setf (,previous member) nil
                  (,next member) nil))))))
 

@@ -16,7 +16,7 @@ no plan.")
   ;; fluent
   (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
            #:make-watcher #:state #:watcher #:watcher-client #:watcher-wake #:watcher-pending
-           #:watcher-fluent #:watcher-p)
+           #:watcher-fluent #:watcher-p #:define-membership)
   ;; network
   (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
            #:fluent-value #:operand-value #:unwatch #:watch)

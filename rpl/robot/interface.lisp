@@ -241,8 +241,8 @@ work ends. Signals MISUSE if there is none."
 (addition rpl-robot-valve)
 (defun rpl-robot-valve ()
   "Return the valve of the robot that plans drive. Nobody needs it to drive the robot; plans that
-may run beside others own it while they do: (with-valve ((rpl-robot-valve)) ...). The shipped
-errands do. Signals MISUSE without a robot."
+may run beside others, and parts of one plan, own it while they do: (with-valve ((rpl-robot-valve))
+...). The shipped errands do. Signals MISUSE without a robot."
   (interface-valve (the-interface)))
 
 (addition rpl-runner)
