@@ -32,6 +32,53 @@
       (is (= 2 (turns :once)))
       (is (= 5 (turns :all))))))
 
+(defun turns-of-network (missed network &rest then)
+  "Return when (WHENEVER (NETWORK :MISSED MISSED) ...) runs its body. NETWORK is a function of two
+fluents, of which the second is true from tick 1 on; the first is pulsed at the ticks 2 to 5 with
+each of THEN."
+  (let ((bell (fluent)) (on (fluent)))
+    (mapcar #'second
+            (with-log (note)
+              (plan-value
+                (rpl:pursue (rpl:whenever ((funcall network bell on) :missed missed)
+                              (note :turn))
+                            (rpl:seq (rpl:wait-time 1) (rpl:set-value on t)
+                                     (rpl:n-times 4
+                                       (rpl:wait-time 1)
+                                       (dolist (value then) (rpl:pulse bell value)))
+                                     (rpl:wait-time 3))))))))
+
+(test whenever.hears-pulses-in-a-network-that-is-true
+  (let ((either (lambda (bell on) (ars-magna.rpl.lifted:or on bell)))
+        (deep (lambda (bell on)
+                (ars-magna.rpl.lifted:not
+                 (ars-magna.rpl.lifted:not
+                  (ars-magna.rpl.lifted:or (ars-magna.rpl.lifted:eq bell 9) on)))))
+        (both (lambda (bell on) (ars-magna.rpl.lifted:and on (ars-magna.rpl.lifted:not bell)))))
+    (dolist (network (list either deep))
+      (is (equal '(1 2 3 4 5) (turns-of-network :once network t)))
+      (is (equal '(1 2 3 4 5) (turns-of-network :all network t)))
+      (is (equal '(1 2 2 3 3 4 4 5 5) (turns-of-network :all network 1 2))))
+    (is (equal '(1 2 3 4 5) (turns-of-network :all both t)))))
+
+(test whenever.hears-a-pulse-once-that-changes-what-is-true
+  (is (equal '(1 2 3 4 5)
+             (turns-of-network :all (lambda (bell on) (ars-magna.rpl.lifted:or bell on)) 7))))
+
+(test whenever.hears-no-pulse-in-a-network-that-is-false
+  (is (equal '(1)
+             (turns-of-network :all (lambda (bell on) (ars-magna.rpl.lifted:and
+                                                       on (ars-magna.rpl.lifted:not
+                                                           (ars-magna.rpl.lifted:eq bell 5))))))))
+
+(test whenever.a-pulse-computes-what-it-does-not-change-once
+  (let* ((count 0) (bell (fluent)) (base (rpl:fl-funcall (constantly t) bell))
+         (above (rpl:fl-funcall (lambda (value) (incf count) value) base)))
+    (plan-value (rpl:pursue (rpl:whenever above nil)
+                            (rpl:seq (rpl:wait-time 1)
+                                     (rpl:n-times 5 (rpl:pulse bell) (rpl:wait-time 1)))))
+    (is (= 1 count))))
+
 (test whenever.a-body-that-leaves-it-true-does-not-spin
   (let ((f (fluent t)))
     (is (= 1 (length (with-log (note)

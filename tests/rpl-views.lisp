@@ -65,6 +65,38 @@
                                         (rpl:wait-time 1) (rpl:pulse f)
                                         (rpl:wait-time 1)))))))))
 
+(defun turns-of-view (how missed span)
+  "Return how often a WHENEVER, whose body takes SPAN ticks, runs on a view that misses pulses as HOW
+says: of a fluent that is pulsed twice before, then set and pulsed four times all at once."
+  (let ((f (fluent)))
+    (rpl:pulse f)
+    (rpl:pulse f)
+    (length (with-log (note)
+              (plan-value
+                (rpl:pursue (rpl:whenever ((rpl:fl-pulsed f :handle-missed-pulses how)
+                                           :missed missed)
+                              (note :turn)
+                              (rpl:wait-time span))
+                            (rpl:seq (rpl:wait-time 20)
+                                     (funcall (lambda ()
+                                                (rpl:set-value f t)
+                                                (loop repeat 4 do (rpl:pulse f))))
+                                     (rpl:wait-time 100))))))))
+
+(test fl-pulsed.is-counted-by-whenever-if-it-misses-nothing
+  "As in CRAM's tests of WHENEVER."
+  (dolist (span '(0 1 9))
+    (dolist (missed '(:once :all))
+      (is (= 7 (turns-of-view :always missed span)))))
+  (is (= 2 (turns-of-view :once :once 0)))
+  (is (= 1 (turns-of-view :never :once 0))))
+
+(test fl-pulsed.is-left-by-whenever-as-it-was
+  (let ((f (fluent)))
+    (plan-value (rpl:pursue (rpl:whenever (rpl:fl-pulsed f :handle-missed-pulses :always) 1)
+                            (rpl:wait-time 2)))
+    (is (null (fluents::fluent-first-link f)))))
+
 (test fl-pulsed.in-a-network-holds-for-an-instant
   "A pulse, or a setting, at a time when the rest was false is no reason to wake later."
   (let ((f (fluent)) (rest (fluent)))

@@ -14,26 +14,32 @@
       (wake task nil))))
 
 (defun listen-to (condition task)
-  "Return a watcher by which TASK hears of CONDITION; NIL if that is no fluent, and cannot change."
-  (when (fluent-p condition)
-    (let ((watcher (make-watcher condition #'hear task)))
-      (watch watcher)
-      watcher)))
+  "Return by what TASK hears of CONDITION, its SOURCE of events: a watcher; CONDITION itself if that
+is a view that misses nothing; NIL if it is no fluent, and cannot change."
+  (cond ((not (fluent-p condition)) nil)
+        ((misses-nothing-p condition) condition)
+        (t (let ((watcher (make-watcher condition #'hear task)))
+             (watch watcher)
+             watcher))))
 
-(defun await-event (task watcher)
-  "Let TASK wait until WATCHER has heard something. Return what a step returns."
-  (if watcher
-      (park task (watcher-fluent watcher))
-      (wait-for-no-fluent task))
+(defun await-event (task source)
+  "Let TASK wait until there is another event from SOURCE. Return what a step returns."
+  (cond ((watcher-p source)
+         (if (plusp (watcher-pending source))
+             (give-way task)
+             (park task (watcher-fluent source))))
+        ((null source) (wait-for-no-fluent task))
+        ((fluent-value source) (give-way task))
+        (t (wait-until-heard task source)))
   +parked+)
 
-(defun answer-events (watcher missed)
-  "Note that the body will answer the events that WATCHER has heard: all, or one if MISSED is :all.
-Signals WRONG-ARGUMENT."
+(defun answer-events (source missed)
+  "Note that the body will answer the events that SOURCE has, all, or one if MISSED is :all or a
+view counts them. Signals WRONG-ARGUMENT."
   (check-argument whenever missed (member missed '(:once :all)) ":once or :all")
-  (if (eq missed :all)
-      (decf (watcher-pending watcher))
-      (setf (watcher-pending watcher) 0)))
+  (cond ((not (watcher-p source)))
+        ((eq missed :all) (decf (watcher-pending source)))
+        (t (setf (watcher-pending source) 0))))
 
 (defun fluent-with-options-p (condition environment)
   "True if CONDITION, as WHENEVER has it, is a list of a form and keywords, and no call."
@@ -53,9 +59,10 @@ SCOPE. Signals MALFORMED-DEFINITION."
 
 (define-construct whenever (fluent &body body)
   "Run BODY in a plan whenever FLUENT, or a network, becomes true or is pulsed, and at once if it is
-true. Several such events while BODY runs count as one, as (FLUENT :missed :once) says too; with
-(FLUENT :missed :all) as the first argument as many runs follow. Ends only by RETURN, failure or
-evaporation (manual D.4)."
+true. A pulse of what a network is computed from is one of the network, if that is true then.
+Several such events while BODY runs count as one, as (FLUENT :missed :once) says too; with
+(FLUENT :missed :all) as the first argument, or a view with :ALWAYS as FLUENT, as many runs follow.
+Ends only by RETURN, failure or evaporation (manual D.4)."
   (:manual)
   (:arguments (first (split-condition fluent scope)))
   (:parts (condition function (awaited-lambda (first (split-condition fluent scope)) form scope))
@@ -70,14 +77,12 @@ evaporation (manual D.4)."
             (t (next waiting) (await-event task memory)))))
    (reacting
     (next waiting)
-    (if (and memory (plusp (watcher-pending memory)))
-        (give-way task)
-        (await-event task memory)))
+    (await-event task memory))
    (waiting
     (answer-events memory (funcall missed environment))
     (next reacting)
     (enter body environment frame)))
   (:unwind
-   (let ((watcher (shiftf memory nil)))
-     (when watcher (unwatch watcher)))
+   (let ((source (shiftf memory nil)))
+     (when (watcher-p source) (unwatch source)))
    nil))

@@ -25,13 +25,13 @@
 (defstruct (derived (:include fluent) (:constructor %make-derived (name operator sources height))
                     (:copier nil))
   "A fluent whose value is what OPERATOR returns for the values of SOURCES, fluents and others.
-TROUBLE is the error that it met when it was last computed."
+TROUBLE is the error that it met when it was last computed. QUEUED says how it is to be renewed."
   (operator #'list :type function :read-only t)
   (sources '() :type list :read-only t)
   (users 0 :type fixnum)
   (links '() :type list)
   (trouble nil :type (or null condition))
-  (queued nil :type boolean)
+  (queued nil :type (member nil t :pulsed))
   (successor nil :type (or null derived)))
 
 (defstruct (watcher (:constructor make-watcher (fluent wake client)) (:copier nil))

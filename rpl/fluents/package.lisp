@@ -35,6 +35,6 @@ no plan.")
   ;; propagation
   (:export #:apply-settings #:give-back-all #:repair-fluents #:pulse #:set-value)
   ;; views
-  (:export #:fl-pulsed #:fl-value-changed)
+  (:export #:fl-pulsed #:fl-value-changed #:misses-nothing-p)
   ;; operators
   (:export #:lifting #:lifting-and #:lifting-or))

@@ -6,6 +6,9 @@
 ;;; dependent fluents in order of height, so that none is computed from a mixture of old and new
 ;;; values and each at most once. Watchers hear only of true values (and of errors). A watcher that
 ;;; has heard of a true value will wake, whatever happens to the fluent afterwards.
+;;;
+;;; A pulse is heard by the watchers of all dependent fluents that are true at its instant, also of
+;;; those that it does not change. What changes back after that is heard where it was false.
 
 (defvar *spreading* nil
   "While a change is being spread, when networks must not set fluents, a list of one element: the
@@ -29,31 +32,34 @@ views that are true for the instant at which that change happened.")
     (setf (backlog-heads backlog) (grown (backlog-heads backlog))
           (backlog-tails backlog) (grown (backlog-tails backlog)))))
 
-(defun enqueue (derived backlog)
-  (let ((height (fluent-height derived)))
-    (unless (derived-queued derived)
-      (when (>= height (length (backlog-heads backlog))) (grow-backlog backlog height))
-      (setf (derived-queued derived) t
-            (derived-successor derived) nil
-            (backlog-highest backlog) (max height (backlog-highest backlog)))
-      (let ((tail (svref (backlog-tails backlog) height)))
-        (if tail
-            (setf (derived-successor tail) derived)
-            (setf (svref (backlog-heads backlog) height) derived))
-        (setf (svref (backlog-tails backlog) height) derived)))))
+(defun append-to-backlog (derived backlog height)
+  (when (>= height (length (backlog-heads backlog))) (grow-backlog backlog height))
+  (setf (derived-successor derived) nil
+        (backlog-highest backlog) (max height (backlog-highest backlog)))
+  (let ((tail (svref (backlog-tails backlog) height)))
+    (if tail
+        (setf (derived-successor tail) derived)
+        (setf (svref (backlog-heads backlog) height) derived))
+    (setf (svref (backlog-tails backlog) height) derived)))
+
+(defun enqueue (derived backlog how)
+  "Let DERIVED be renewed when it is its turn, HOW: see RENEW."
+  (unless (derived-queued derived)
+    (setf (derived-queued derived) how)
+    (append-to-backlog derived backlog (fluent-height derived)))
+  (when (eq t how) (setf (derived-queued derived) t)))
 
 (defun dequeue (height backlog)
-  "Return the next derived fluent of HEIGHT, or NIL."
+  "Return the next derived fluent of HEIGHT, and how to renew it; or NIL."
   (let ((derived (svref (backlog-heads backlog) height)))
     (when derived
       (let ((successor (shiftf (derived-successor derived) nil)))
-        (setf (svref (backlog-heads backlog) height) successor
-              (derived-queued derived) nil)
+        (setf (svref (backlog-heads backlog) height) successor)
         (unless successor (setf (svref (backlog-tails backlog) height) nil))
-        derived))))
+        (values derived (shiftf (derived-queued derived) nil))))))
 
 (defun announce (fluent)
-  "Tell the watchers of FLUENT, whose value has changed, if it is true now."
+  "Tell the watchers of FLUENT, of which there is something to tell, if it is true now."
   (let ((value (fluent-now fluent))
         (trouble (and (derived-p fluent) (derived-trouble fluent))))
     (when (or value trouble)
@@ -62,20 +68,36 @@ views that are true for the instant at which that change happened.")
             for next = (watcher-next watcher)
             do (funcall (watcher-wake watcher) watcher value trouble)))))
 
-(defun enqueue-dependents (fluent backlog)
+(defun enqueue-dependents (fluent backlog &optional (how t))
   (loop for link = (fluent-first-link fluent) then (link-next link)
         while link
-        do (enqueue (link-dependent link) backlog)))
+        do (enqueue (link-dependent link) backlog how)))
 
-(defun spread-by-height (backlog)
-  "Compute all that is in BACKLOG, and what depends on it, lowest first."
+(declaim (inline renew))
+(defun renew (derived how kind)
+  "Compute DERIVED anew if HOW is T, as it is if one of its sources has changed, and not if it is
+:PULSED; and tell its watchers of what is being spread. KIND of that is :PULSE, :BACK after a pulse,
+or else :CHANGE. Return how what depends on DERIVED is to be renewed, NIL if not at all. A view only
+says what has happened."
+  (let* ((true-p (fluent-now derived))
+         (changed (and (eq t how) (recompute derived))))
+    (cond (changed
+           (unless (and (eq :back kind) true-p (null (derived-trouble derived)))
+             (announce derived))
+           t)
+          ((and (eq :pulse kind) (not (view-p derived)))
+           (announce derived)
+           :pulsed))))
+
+(defun spread-by-height (backlog &optional (kind :change))
+  "Renew all that is in BACKLOG, and what depends on it, lowest first. See RENEW."
   (loop for height from 1
         while (<= height (backlog-highest backlog))
-        do (loop for derived = (dequeue height backlog)
-                 while derived
-                 do (when (and (plusp (derived-users derived)) (recompute derived))
-                      (announce derived)
-                      (enqueue-dependents derived backlog))))
+        do (loop
+             (multiple-value-bind (derived how) (dequeue height backlog)
+               (unless derived (return))
+               (let ((next (and (plusp (derived-users derived)) (renew derived how kind))))
+                 (when next (enqueue-dependents derived backlog next))))))
   (setf (backlog-highest backlog) 0))
 
 ;;; Views, see views.lisp.
@@ -100,37 +122,37 @@ views that are true for the instant at which that change happened.")
      ,@body
      (when (first instants) (end-instants instants))))
 
-(defun spread-to-dependents (fluent)
-  "Compute what depends on FLUENT. As long as only one fluent does, no backlog is needed."
+(defun spread-to-dependents (fluent kind)
+  "Renew what depends on FLUENT. As long as only one fluent does, no backlog is needed."
   (declare #.*hot*)
   (spreading
-    (loop
-      (let ((link (fluent-first-link fluent)))
-        (cond ((null link) (return))
-              ((link-next link)
-               (let ((backlog (backlog-now)))
-                 (enqueue-dependents fluent backlog)
-                 (return (spread-by-height backlog))))
-              (t (setf fluent (link-dependent link))
-                 (if (recompute fluent)
-                     (announce fluent)
-                     (return))))))))
+    (let ((how t))
+      (loop
+        (let ((link (fluent-first-link fluent)))
+          (cond ((null link) (return))
+                ((link-next link)
+                 (let ((backlog (backlog-now)))
+                   (enqueue-dependents fluent backlog how)
+                   (return (spread-by-height backlog kind))))
+                (t (setf fluent (link-dependent link)
+                         how (renew fluent how kind))
+                   (unless how (return)))))))))
 
-(defun spread (fluent)
-  "Let everybody concerned know that the base fluent FLUENT has changed."
+(defun spread (fluent kind)
+  "Let everybody concerned know that the base fluent FLUENT has changed, or was pulsed: see RENEW."
   (announce fluent)
   (when (fluent-first-link fluent)
-    (spread-to-dependents fluent)))
+    (spread-to-dependents fluent kind)))
 
-(defun spread-all (fluents)
-  "Let everybody concerned know that the base FLUENTS have changed, all at one instant."
+(defun spread-all (fluents kind)
+  "Do as SPREAD does for the base FLUENTS, all at one instant."
   (if (and fluents (null (rest fluents)))
-      (spread (first fluents))
+      (spread (first fluents) kind)
       (let ((backlog (backlog-now)))
         (spreading
           (mapc #'announce fluents)
           (dolist (fluent fluents) (enqueue-dependents fluent backlog))
-          (spread-by-height backlog)))))
+          (spread-by-height backlog kind)))))
 
 (defun check-settable (operator fluent)
   (unless (and (fluent-p fluent) (not (derived-p fluent)))
@@ -158,7 +180,7 @@ views that are true for the instant at which that change happened.")
     (setf (fluent-now fluent) value)
     (incf (fluent-sets fluent))
     (note-change :set fluent value)
-    (spread fluent)))
+    (spread fluent :change)))
 
 (defun set-elsewhere (home fluent value)
   "Give FLUENT, of HOME, VALUE: now if nobody has HOME or attends to it, otherwise when that gets to
@@ -208,7 +230,7 @@ a pause (manual D.2)."
           for value in values
           do (setf (fluent-now fluent) value)
              (note-change :pulse fluent value))
-    (spread-all fluents)
+    (spread-all fluents :pulse)
     (loop for fluent in fluents
           for value in before
           do (setf (fluent-now fluent) value))
@@ -220,7 +242,7 @@ a pause (manual D.2)."
     (let ((backlog (backlog-now)))
       (spreading
         (dolist (fluent fluents) (enqueue-dependents fluent backlog))
-        (spread-by-height backlog)))))
+        (spread-by-height backlog :back)))))
 
 (defun pulse-now (fluent value)
   (before-change fluent)
@@ -261,7 +283,7 @@ all together. So whoever sees the pulses sees the values that came with them (re
                (:pulse (incf (fluent-pulses fluent))
                 (push fluent pulsed)
                 (push (if more (first more) t) values))))
-    (when changed (spread-all (nreverse changed)))
+    (when changed (spread-all (nreverse changed) :change))
     (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))
 
 ;;; A run that was rewound has gone on in a fork. When it is over, those who are left have what it

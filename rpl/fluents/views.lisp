@@ -66,6 +66,10 @@ WRONG-ARGUMENT. (CRAM's; what a network's pulse is, is ours.)"
          (seen (if (eq handle-missed-pulses :never) (count-events bases) 0)))
     (make-view 'fl-pulsed bases bases seen :always-p (eq handle-missed-pulses :always))))
 
+(defun misses-nothing-p (fluent)
+  "True if FLUENT is a view that is true as often as things happen, whenever it is read."
+  (and (view-p fluent) (view-always-p fluent)))
+
 (defun function-given-p (object)
   "True if OBJECT is a function or the name of one that there is."
   (or (functionp object)
