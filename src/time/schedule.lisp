@@ -27,7 +27,7 @@
 (defun call-in-tick (function timeline)
   "Call FUNCTION, where the tick of TIMELINE that is under way counts, as in all users' code of it."
   (let ((agenda (timeline-agenda timeline)))
-    (cond ((= 1 (timeline-phase timeline))
+    (cond ((= (phase-number :requests) (timeline-phase timeline))
            (incf (agenda-tick agenda))
            (in-any-case (funcall function) (decf (agenda-tick agenda))))
           (t (funcall function)))))
