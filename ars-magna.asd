@@ -469,8 +469,8 @@
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")
                                (:file "session") (:file "newcomer")))
-                 (:file "cli-scripts") (:file "printing") (:file "isolation") (:file "budgets")
-                 (:file "children") (:file "children-uses")
+                 (:file "cli-scripts") (:file "cli-batches") (:file "printing") (:file "isolation")
+                 (:file "budgets") (:file "children") (:file "children-uses")
                  (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

@@ -39,9 +39,17 @@ it last said so. Can be set."
       (setf (simulation-environment simulation) environment)
       (setf (simulation-left simulation) environment)))
 
+(defun publish-variables (simulation)
+  "Let all threads of the live SIMULATION see what *SIMULATION-VARIABLES* are here, where a headless
+simulation around it may have bound them."
+  (when (live-p simulation)
+    (dolist (symbol *simulation-variables*)
+      (setf (global-value symbol) (symbol-value symbol)))))
+
 (defun note-environment (simulation)
   "Let SIMULATION, in which this thread works, know what its variables are."
-  (setf (known-environment simulation) (environment-here simulation)))
+  (setf (known-environment simulation) (environment-here simulation))
+  (publish-variables simulation))
 
 (defun environment-with-dice (simulation)
   "Return what ENVIRONMENT-HERE does, with the dice that SIMULATION has brought with it, if any."

@@ -8,6 +8,14 @@
 (defvar *program-input* #'identity
   "A function of a stream: return the one that users' code in a run's threads reads instead.")
 
+(defun call-with-robots (simulation function)
+  "Call FUNCTION with the variables bound that name robots where SIMULATION was begun: those of
+WITH-SIMULATION, around SIMULATOR."
+  (let ((variables (set-difference (simulation-variables simulation)
+                                   (cons *lisps-dice* *simulation-variables*))))
+    (progv variables (robots-meant variables)
+      (funcall function))))
+
 (defun call-as-owner (simulation function)
   "Call FUNCTION with the bindings under which the thread of SIMULATION runs."
   (let ((*simulation* simulation)
@@ -15,8 +23,11 @@
         (*message-queue* (simulation-messages simulation))
         (*standard-output* (or (simulation-output simulation) *standard-output*))
         (*standard-input* (funcall *program-input* *standard-input*)))
-    (call-with-parameters '() (lambda ()
-                                (call-with-lisps-dice function (simulation-seed simulation))))))
+    (call-with-robots
+     simulation
+     (lambda ()
+       (call-with-parameters
+        '() (lambda () (call-with-lisps-dice function (simulation-seed simulation))))))))
 
 (defun start-clock (simulation &key (rate *default-rate*) (real t) paused-p)
   "Run SIMULATION live, in a thread of its own, at RATE; if PAUSED-P, from when it is told to
@@ -158,9 +169,11 @@ One whose map or definition has been replaced means the robot that is called so 
 (defun restart-world (world seed)
   "Make WORLD, which this thread has in custody, and its robots what they were at the start, with a
 timeline and run of their own. Return the run."
-  (let ((custody (timeline-custody (world-timeline world))))
+  (let ((custody (timeline-custody (world-timeline world)))
+        (variables (simulation-variables (world-simulation world))))
     (writing (world) (reset-world world :seed seed))
-    (setf (world-timeline world) (make-timeline (map-name (world-map world)) custody)))
+    (setf (world-timeline world) (make-timeline (map-name (world-map world)) custody)
+          (simulation-variables (world-simulation world)) variables))
   (world-simulation world))
 
 (defun fresh-p (simulation journal)
@@ -277,6 +290,7 @@ MISUSE if the robot no longer fits into its map. See reading 238."
                      when (start-live candidate rate seed journal keep thinking)
                        return candidate)))
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
+    (publish-variables (robot-simulation robot))
     robot))
 
 (addition stop-simulator)
