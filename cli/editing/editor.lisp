@@ -286,14 +286,11 @@ they are read."
         finally (stand-as-first-line stream)
                 (return end)))
 
-(defvar *program-reads-p* nil
-  "True while what is typed is read by a program of its user, not by the prompt.")
-
 (defun edit-line (stream)
   "Let a line be typed. Return it, which has newlines in it if several were pasted; :EOF at the end
 of the input."
   (flet ((edit () (call-editing (lambda () (press-keys stream)) stream)))
-    (prog1 (if *program-reads-p* (call-asking (edited-console stream) #'edit) (edit))
+    (prog1 (if *program-reads* (call-asking (edited-console stream) #'edit) (edit))
       (look-ahead stream))))
 
 ;;; As a stream.

@@ -62,8 +62,8 @@ few."
                        (reject-line "It is: ~{MANIPULATE ~A~^ or ~}. Objects and parts go by their ~
                                      numbers." (manipulation-usages manipulation)))
                    (list (lambda (code value)
-                           (declare (ignore code value))
-                           (setf (errand-done-p errand) t)))))
+                           (declare (ignore value))
+                           (end-errand errand code)))))
     (push errand (session-errands session))))
 
 (defmethod choices ((type (eql :manipulation)) session typed)

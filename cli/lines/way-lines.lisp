@@ -39,5 +39,5 @@ of SIMULATION."
                        (if (eq simulation (latest simulation))
                            (tell-arrival err robot point)
                            (tell-rewound point simulation)))
-                     (setf (errand-done-p errand) t))))
+                     (end-errand errand err))))
     (push errand (session-errands session))))

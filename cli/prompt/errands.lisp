@@ -18,6 +18,10 @@
 several commands one after the other, or NIL; if VERDICT-P is true, that recovers from their errors,
 and says itself how it has ended."
   (done-p nil)
+  ;; It has ended with an error.
+  (failed-p nil)
+  ;; It is reported by itself, as a line had to wait for it.
+  (apart-p nil)
   (name nil :type (or null string) :read-only t)
   (verdict-p nil :read-only t))
 
@@ -27,13 +31,18 @@ and says itself how it has ended."
 (defun endless-p (command)
   (find (command-name command) *endless-commands* :test #'same-name-p))
 
+(defun end-errand (errand error-code)
+  "Let ERRAND be done, with ERROR-CODE, or NIL if it has succeeded."
+  (setf (errand-failed-p errand) (and error-code t)
+        (errand-done-p errand) t))
+
 (defun issue-errand (command resource arguments)
   "Issue COMMAND on RESOURCE with ARGUMENTS. Return an errand that is done when it completes."
   (let ((errand (make-errand)))
     (apply (command-name command) resource
-           (append arguments (list (lambda (&rest results)
+           (append arguments (list (lambda (&optional error-code &rest results)
                                      (declare (ignore results))
-                                     (setf (errand-done-p errand) t)))))
+                                     (end-errand errand error-code)))))
     errand))
 
 ;;; Waiting.
@@ -137,3 +146,27 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
              (when (shiftf (session-lisp-p session) nil) (settle))
              (tell-whereabouts session))
       (setf (session-errands session) (remove-if #'errand-done-p (session-errands session)))))
+
+(defun stands-still-p (session)
+  "True if time does not pass in the run of SESSION, as that is paused."
+  (and *simulation*
+       (null (session-visit session))
+       (live-p *simulation*)
+       (paused-p *simulation*)))
+
+(defun how-ended (errands lisp-p)
+  "Return :OK or :FAILED if ERRANDS are done and, if LISP-P, what Lisp has issued is; else NIL."
+  (cond ((notevery #'errand-done-p errands) nil)
+        ((and lisp-p (not (settled-p))) nil)
+        ((some #'errand-failed-p errands) :failed)
+        (t :ok)))
+
+(defun end-of-errands (session)
+  "Return NIL if what SESSION has issued last has ended, or what CATCH-UP has not waited for: a
+function that returns what HOW-ENDED does."
+  (let* ((errands (remove-if #'errand-apart-p (errands-under-way session)))
+         (text (account-text (session-account session)))
+         (lisp-p (and text (lisp-p text) (stands-still-p session))))
+    (unless (how-ended errands lisp-p)
+      (dolist (errand errands) (setf (errand-apart-p errand) t))
+      (lambda () (how-ended errands lisp-p)))))

@@ -145,7 +145,9 @@ that a plan, or GO-TO, gives are its own."
   "Count ERRAND, whose end has been told, as done."
   (with-lock (*plan-errands-lock*)
     (setf *plan-errands* (remove errand *plan-errands*)))
-  (setf (errand-done-p errand) t)
+  ;; There is no task if the plan has not begun.
+  (let ((task (plan-errand-task errand)))
+    (end-errand errand (not (and task (eq :succeeded (task-state task))))))
   (signal-semaphore (plan-errand-told errand)))
 
 ;;; Deadlocks.

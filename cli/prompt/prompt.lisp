@@ -37,7 +37,14 @@ tell somebody who sits there."
 (defun begin-line-of (session text)
   "Note that TEXT, which SESSION has read last, is about to be done."
   (note-line-begun (session-account session) (if (comment-p text) nil text)
-                   (session-errors session)))
+                   (lines-typed (session-input session)) (session-errors session)))
+
+(defun read-next (session)
+  "Return the next line of SESSION, or NIL at the end. One that is too long to be done is begun, so
+that its end is reported."
+  (handler-bind ((line-too-long (lambda (condition)
+                                  (begin-line-of session (line-beginning condition)))))
+    (read-input session (if (session-breaks session) "Break> " "Robot> "))))
 
 (defun find-place (session)
   "Let SESSION command the robot that it is for, in a run that goes on, and listen to that."
@@ -52,8 +59,7 @@ tell somebody who sits there."
   (tell-whereabouts session)
   (find-place session)
   (when (session-account session) (account-for-last session))
-  (let ((text (unless (stopped-p session)
-                (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
+  (let ((text (unless (stopped-p session) (read-next session))))
     (cond (text
            ;; While it was typed, its run may have ended and another begun.
            (unless (session-breaks session) (find-place session))
@@ -72,10 +78,12 @@ tell somebody who sits there."
     (plusp (session-errors session))))
 
 (defun account-for-last (session)
-  "Wait until all is done that the last line of SESSION has asked for, and report that it is."
+  "Wait until all is done that the last line of SESSION has asked for, and report that it is; or
+that it waits, since time stands still."
   (catch-up session)
   (show-messages session)
-  (note-line-ended (session-account session) (session-errors session)))
+  (note-line-ended (session-account session) (session-errors session)
+                   (end-of-errands session)))
 
 (defun load-first (session)
   "Load the files that SESSION begins with."
@@ -89,13 +97,14 @@ tell somebody who sits there."
   (load-first session)
   (loop until (or (session-over-p session) (session-next-robot session))
         do (call-guarded session (lambda () (next-line session)))
-           (call-guarded session (lambda () (show-messages session)))))
+           (call-guarded session (lambda () (show-messages session))))
+  (when (session-account session) (call-guarded session (lambda () (account-for-last session)))))
 
 (defun call-with-streams (session function)
   "Call FUNCTION, which writes to SESSION and asks its user."
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
-         (*program-reads-p* t)
+         (*program-reads* (lambda () (report-asking (session-account session))))
          (*robot-meant* #'session-robot)
          (*robot-to-drive* #'robot-commanded)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))

@@ -27,7 +27,7 @@ it, and have it again; if BEFORE is a text, together with that, which it goes on
          (line (progn
                  ;; What goes on over lines is kept whole.
                  (unless before (keep-lines (session-input session)))
-                 (let ((*program-reads-p* nil)) (read-line (session-input session) nil))))
+                 (let ((*program-reads* nil)) (read-line (session-input session) nil))))
          (line (and line (line-pasted (without-program session line) before))))
     (unless (or (null line) (and (null before) (answer-p session line)))
       (remember-line (session-input session) line before))
@@ -53,7 +53,6 @@ that."
                  (answered console)))
         (count-anew (session-told session))
         (begin-flood-anew (session-flood session)))
-      (note-read (session-account session))
       line)))
 
 (defun split-line (text)

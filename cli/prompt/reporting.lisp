@@ -7,15 +7,16 @@
 ;;; there is no account, NIL stands for it, and nothing is reported.
 
 (defstruct (account (:constructor make-account (file &optional console)) (:copier nil))
-  "Where a session is in FILE, the name of a script or NIL. LINES have been read; the line under
-way, TEXT, begins at LINE; ERRORS were there before it. CONSOLE is where objects are written, or
-NIL."
+  "Where a session is in FILE, the name of a script or NIL. The line under way, TEXT, is the one
+with the number LINE, or 0 if an option has asked for it; ERRORS were there before it. CONSOLE is
+where objects are written, or NIL. WAITING are lines before it whose work waits for time to pass,
+the newest first."
   (file nil :type (or null string) :read-only t)
   (console nil :type (or null console) :read-only t)
-  (lines 0 :type fixnum)
   (line 0 :type fixnum)
   (text nil :type (or null string))
-  (errors 0 :type fixnum))
+  (errors 0 :type fixnum)
+  (waiting '() :type list))
 
 (defun reports-p (account)
   "True if what has ACCOUNT reports by objects."
@@ -34,7 +35,8 @@ reports by objects. True if it is."
     t))
 
 (defun line-under-way (account)
-  "Return the number of the line that is being done, or NIL before the first."
+  "Return the number of the line that is being done; NIL before the first, and for what an option
+has asked for."
   (and (plusp (account-line account)) (account-line account)))
 
 (defun report-message (account kind text)
@@ -59,30 +61,46 @@ reports by objects. True if it is."
 
 (defun placed-text (account text)
   "Return TEXT, of what goes wrong in a line, after the place of that line if it is of a script."
-  (if (and account (account-file account) (account-text account))
+  (if (and account (account-file account) (account-text account) (line-under-way account))
       (format nil "~A, line ~D: ~A" (account-file account) (account-line account) text)
       text))
 
 ;;; Lines.
 
-(defun note-read (account)
-  "Note that a line has been read."
-  (when account (incf (account-lines account))))
-
-(defun note-line-begun (account text errors)
-  "Note that TEXT, the line that was read last, or NIL if there is nothing to do in it, is about to
-be done, and that there were ERRORS so far."
+(defun note-line-begun (account text line errors)
+  "Note that TEXT, that of the line with the number LINE, which was read last, or NIL if there is
+nothing to do in it, is about to be done, and that there were ERRORS so far."
   (when account
-    (setf (account-line account) (account-lines account)
+    (setf (account-line account) line
           (account-text account) text
           (account-errors account) errors)))
 
-(defun note-line-ended (account errors)
+(defun report-line (account type line text &rest properties)
+  "Report, as an object of TYPE, of the line with the number LINE, or NIL, that says TEXT."
+  (apply #'report-object account type :line line :text text (append properties (list :tick (now)))))
+
+(defun report-waiting-lines (account)
+  "Report the ends of lines that had to wait for time to pass, the oldest first."
+  (dolist (waiting (reverse (account-waiting account)))
+    (destructuring-bind (line text end) waiting
+      (let ((how (funcall end)))
+        (when how
+          (removef (account-waiting account) waiting)
+          (report-line account "done" line text :ok (if (eq :ok how) t :false)))))))
+
+(defun note-line-ended (account errors end)
   "Note, and report, that all that the line under way has asked for is done, and that there were
-ERRORS so far."
+ERRORS so far. If END is not NIL, that waits for time to pass: END returns NIL until it is done, and
+then :OK or :FAILED."
+  (when account (report-waiting-lines account))
   (when (and account (account-text account))
-    (report-object account "done" :line (account-line account)
-                                  :text (string-trim " " (account-text account))
-                                  :ok (if (= errors (account-errors account)) t :false)
-                                  :tick (now))
+    (let ((text (string-trim " " (account-text account))) (line (line-under-way account)))
+      (cond (end (push (list line text end) (account-waiting account))
+                 (report-line account "waiting" line text))
+            (t (report-line account "done" line text
+                            :ok (if (= errors (account-errors account)) t :false)))))
     (setf (account-text account) nil)))
+
+(defun report-asking (account)
+  "Report that a program reads the line that is sent next."
+  (when account (report-object account "asking" :line (line-under-way account))))

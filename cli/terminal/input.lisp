@@ -8,14 +8,30 @@
 
 (defconstant +longest-line-typed+ 1000000 "How many bytes a line has at most.")
 
+(define-condition line-too-long (bad-line)
+  ((beginning :initarg :beginning :reader line-beginning))
+  (:documentation "A line that was typed is too long. BEGINNING is how it begins."))
+
+(defvar *program-reads* nil
+  "What is called before a program of the user, not the prompt, reads a line that is typed; NIL
+while the prompt reads.")
+
 (defclass typed-text (fundamental-character-input-stream)
   ((octets :initarg :octets :reader typed-octets)
    (by-hand-p :initarg :by-hand-p :initform nil :reader typed-by-hand-p)
    ;; What is left of the line that is being read, and where that begins.
    (rest :initform "" :accessor typed-line)
-   (position :initform 0 :accessor typed-position))
+   (position :initform 0 :accessor typed-position)
+   (count :initform 0 :accessor typed-count))
   (:documentation "The text in UTF-8 that the characters of the stream OCTETS stand for. BY-HAND-P
-is true if somebody types it."))
+is true if somebody types it, COUNT how many lines of it have been read."))
+
+(defgeneric lines-typed (stream)
+  (:documentation "Return how many lines have been read of STREAM, by the prompt or a program.")
+  (:method (stream)
+    (declare (ignore stream))
+    0)
+  (:method ((stream typed-text)) (typed-count stream)))
 
 (defmethod typed-by-hand-p ((stream stream))
   (interactive-stream-p stream))
@@ -34,23 +50,30 @@ line has at most; and whether there were more."
                    (stream-error () nil)))))
     (values line (< (1+ +longest-line-typed+) count))))
 
+(defun reject-length (octets)
+  "Signal LINE-TOO-LONG of a line that begins with OCTETS."
+  (error 'line-too-long
+         :beginning (cut (decoded octets) 60)
+         :text (format nil "The line is longer than ~D bytes. Put what is in it into a file, and ~
+                            (load \"FILE\")."
+                       +longest-line-typed+)))
+
 (defgeneric next-typed-line (stream)
   (:documentation "Return the next line that is typed into STREAM, with the newline at its end, if
 there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
   (:method ((stream typed-text))
     (multiple-value-bind (octets too-long-p) (read-octets (typed-octets stream))
-      (when too-long-p
-        (reject-line "The line is longer than ~D bytes. Put what is in it into a file, ~
-                      and (load \"FILE\")."
-                     +longest-line-typed+))
+      (when too-long-p (reject-length octets))
       ;; Some editors begin files with a mark of the order of bytes.
       (string-left-trim '(#.(code-char #xFEFF)) (decoded octets)))))
 
 (defun fill-line (stream)
   "Let STREAM have something left of a line, unless it is at its end."
   (when (= (typed-position stream) (length (typed-line stream)))
+    (when *program-reads* (funcall *program-reads*))
     (setf (typed-position stream) 0
           (typed-line stream) "")
+    (incf (typed-count stream))
     (setf (typed-line stream) (next-typed-line stream))))
 
 (defun line-left-p (stream)
