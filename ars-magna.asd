@@ -296,7 +296,8 @@
      (:module "shell" :serial t
       :components ((:file "options") (:file "texts") (:file "report") (:file "experiments")
                    (:file "executable") (:file "spreading") (:file "experiment-command")
-                   (:file "table-commands") (:file "commands") (:file "scripts") (:file "main")))))))
+                   (:file "table-commands") (:file "commands") (:file "scripts") (:file "time-limit")
+                   (:file "main")))))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."

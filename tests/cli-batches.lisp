@@ -76,3 +76,37 @@
 turn 1
 (camera-turn (elt !>dot.cameras 0) 1)
 resume" "--rate" "free")))))
+
+(test scripts.do-not-wait-while-time-stands-still
+  "Nobody is there to let it go on: not for REPEAT, nor when a continuation has paused."
+  (let ((lines (run-script "pause
+repeat 2 turn 1
+resume
+(robot-turn dot 1 (lambda (&rest results) (declare (ignore results)) (pause)))
+turn 2
+resume" "--rate" "free")))
+    (is-true (has-words-p (second lines) "line 2: Time stands still: turn 1" "RESUME"))
+    (is-true (has-words-p (third lines) "Robot turned 1.00"))
+    (is-true (has-words-p (first (last lines)) "Robot turned 2.00"))))
+
+(defun run-endless-script (&rest options)
+  "Run a script whose continuation does not return, in a process of its own, with OPTIONS. Return
+its error output and status."
+  (uiop:with-temporary-file (:pathname path :stream stream :type "ars")
+    (write-string "(robot-turn dot 1 (lambda (&rest results) (loop (list results))))" stream)
+    :close-stream
+    (multiple-value-bind (output errors status)
+        (uiop:run-program (list* (base:native-name (project-file "cli/ars-magna"))
+                                 (base:native-name path) "--world" "tiny" options)
+                          :error-output :string :ignore-error-status t)
+      (declare (ignore output))
+      (values errors status))))
+
+(test scripts.name-code-that-does-not-return-and-end-at-a-time-limit
+  (multiple-value-bind (errors status) (run-endless-script "--time-limit" "5")
+    (is (= 124 status))
+    (is-true (has-words-p errors "line 1: the continuation of robot-turn has not returned for 3 s"
+                          "stopped in the continuation of robot-turn"
+                          "the time limit of 5 s is over")))
+  (is (= 124 (nth-value 1 (run-endless-script "--time-limit" "0.5" "--rate" "free"))))
+  (signals cli::usage-error (cli::parse-options '("--time-limit" "-1"))))

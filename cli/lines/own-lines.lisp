@@ -54,6 +54,11 @@ only what comes of your own; say which, if SETTING is left out."
   (format t "What comes of the commands of plans and programs is ~:[~;not ~]shown.~%"
           (session-quiet-p session)))
 
+(defun check-time-passes (session cmd)
+  "Signal BAD-LINE if what SESSION has issued, by the line CMD, waits for RESUME."
+  (when (and (errands-under-way session) (waits-for-resume-p session))
+    (reject-line "Time stands still: ~A is carried out after RESUME, and not repeated." cmd)))
+
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :line "a command, with its arguments"))
     (:general)
@@ -62,7 +67,10 @@ trial without waiting."
   (loop repeat num
         until (session-over-p session)
         do (run-text session cmd)
-           (unless (session-visit session) (await-errands session))))
+           (unless (session-visit session)
+             (check-time-passes session cmd)
+             (await-errands session)
+             (check-time-passes session cmd))))
 
 (define-line "QUIT" (session)
     (:general)

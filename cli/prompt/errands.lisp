@@ -47,6 +47,13 @@ and says itself how it has ended."
 
 ;;; Waiting.
 
+(defvar *waits-while-paused-p* t
+  "True if somebody sits where this thread waits, and may let a run go on that is paused.")
+
+(defun held-up-p (simulation)
+  "True if SIMULATION, which is live, is paused, and nobody is there to let it go on."
+  (and (not *waits-while-paused-p*) (stands-still-p simulation)))
+
 (defun await-live (test simulation)
   (let ((true (make-semaphore "fact")))
     (flet ((look (simulation)
@@ -58,6 +65,7 @@ and says itself how it has ended."
       (unwind-protect (loop until (or (wait-a-while true 0.2)
                                       ;; The answer to a break may have stopped its clock.
                                       (not (live-p simulation))
+                                      (held-up-p simulation)
                                       (simulation-over simulation)))
         (asking (simulation) (remove-observer #'look simulation)))))
   (funcall test))
@@ -74,7 +82,8 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
 (defgeneric await-errand (errand)
   (:documentation "Wait until ERRAND is done; signal BAD-LINE if it is not in good time.")
   (:method (errand)
-    (unless (await (lambda () (errand-done-p errand)))
+    (unless (or (await (lambda () (errand-done-p errand)))
+                (held-up-p *simulation*))
       (reject-line "The command has not completed within ~D ticks; it goes on." *patience*))))
 
 (defun send (session command resource arguments)
@@ -82,14 +91,16 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
   (let ((errand (issue-errand command resource arguments)))
     (unless (endless-p command) (push errand (session-errands session)))))
 
-(defun await-errands (session)
-  "Wait until all that SESSION has issued is done."
-  (unwind-protect (mapc #'await-errand (reverse (session-errands session)))
-    (setf (session-errands session) '())))
-
 (defun errands-under-way (session)
   "Return what SESSION has issued and has not ended, newest first."
   (remove-if #'errand-done-p (session-errands session)))
+
+(defun await-errands (session)
+  "Wait until all that SESSION has issued is done, or its run is paused with nobody to let it go
+on."
+  (unwind-protect (mapc #'await-errand (reverse (session-errands session)))
+    (setf (session-errands session)
+          (and *simulation* (held-up-p *simulation*) (errands-under-way session)))))
 
 ;;; Lisp may have issued commands too. Plans that it has begun go on by themselves: nobody waits for
 ;;; what they ask for, of which there may be no end.
@@ -147,12 +158,12 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
              (tell-whereabouts session))
       (setf (session-errands session) (remove-if #'errand-done-p (session-errands session)))))
 
-(defun stands-still-p (session)
+(defun waits-for-resume-p (session)
   "True if time does not pass in the run of SESSION, as that is paused."
   (and *simulation*
        (null (session-visit session))
        (live-p *simulation*)
-       (paused-p *simulation*)))
+       (stands-still-p *simulation*)))
 
 (defun how-ended (errands lisp-p)
   "Return :OK or :FAILED if ERRANDS are done and, if LISP-P, what Lisp has issued is; else NIL."
@@ -166,7 +177,7 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
 function that returns what HOW-ENDED does."
   (let* ((errands (remove-if #'errand-apart-p (errands-under-way session)))
          (text (account-text (session-account session)))
-         (lisp-p (and text (lisp-p text) (stands-still-p session))))
+         (lisp-p (and text (lisp-p text) (waits-for-resume-p session))))
     (unless (how-ended errands lisp-p)
       (dolist (errand errands) (setf (errand-apart-p errand) t))
       (lambda () (how-ended errands lisp-p)))))

@@ -236,7 +236,8 @@ answer to the last such question."
 
 (defmethod await-errand ((errand plan-errand))
   (cond ((live-p (plan-errand-simulation errand))
-         (wait-on-semaphore (plan-errand-told errand))
+         (loop until (or (wait-a-while (plan-errand-told errand) 0.2)
+                         (held-up-p (plan-errand-simulation errand))))
          (show-messages (plan-errand-session errand)))
         (t (await-plan-headless errand))))
 

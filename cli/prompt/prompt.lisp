@@ -105,6 +105,7 @@ that it waits, since time stands still."
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
          (*program-reads* (lambda () (report-asking (session-account session))))
+         (*waits-while-paused-p* (terminal-p session))
          (*robot-meant* #'session-robot)
          (*robot-to-drive* #'robot-commanded)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))

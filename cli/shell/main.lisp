@@ -39,10 +39,8 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
   (call-by-name (robots-beside robot-name))
-  ;; Whoever interrupts it is told whose code was under way.
-  (let ((*user-calls* (make-user-calls)))
-    (call-with-simulation (lambda () (run-session session)) (robots-beside robot-name)
-                          :seed seed :journal t :keep *forks-to-keep*))
+  (call-with-simulation (lambda () (run-session session)) (robots-beside robot-name)
+                        :seed seed :journal t :keep *forks-to-keep*)
   (session-next-robot session))
 
 (defun run-batch (session robot-name seed)
@@ -130,7 +128,10 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
          (robot-name (robot-asked-for session options)))
     (when (option-value :json options) (write-all-as-objects session))
     (report-beginning session robot-name options)
-    (call-typing (lambda () (run-in-world session robot-name options)) (session-input session))
+    (call-with-watchers session options
+                        (lambda ()
+                          (call-typing (lambda () (run-in-world session robot-name options))
+                                       (session-input session))))
     (report-end session
                 (if (and (session-batch-p session) (plusp (session-errors session))) 1 0))))
 

@@ -24,6 +24,12 @@
     (bad-line ()
       (reject-usage "--rate takes a number of ticks per second, or free, not ~A." text))))
 
+(defun parse-seconds (text)
+  (let ((seconds (ignore-errors (read-data-from-string text 0))))
+    (if (and (realp seconds) (< 0 seconds 1000000000))
+        seconds
+        (reject-usage "--time-limit takes a number of seconds, more than 0, not ~A." text))))
+
 (defun parse-color (text)
   (if (member text +color-settings+ :test #'string-equal)
       (make-keyword (string-upcase text))
@@ -34,6 +40,7 @@
     ("--rate" :rate parse-pace) ("--load" :load identity)
     ("--window" :window nil) ("--plan" :plan identity)
     ("--batch" :batch nil) ("--json" :json nil) ("--stop" :stop nil)
+    ("--time-limit" :time-limit parse-seconds)
     ("--color" :color parse-color) ("--list" :list nil))
   "Lists (option key parser [:optional]); PARSER is NIL for an option without a value. If the value
 is optional, an empty one stands for none.")

@@ -20,6 +20,11 @@
   "True if no tick is to pass, since PACING is paused."
   (and (pacing-paused-p pacing) (zerop (pacing-steps pacing))))
 
+(defun stands-still-p (simulation)
+  "True if the live SIMULATION is paused, and passes no ticks that somebody has let it pass."
+  (let ((pacing (timeline-pacing (timeline-of simulation))))
+    (and pacing (held-p pacing))))
+
 (defun standing-still-p (pacing)
   "True if no tick may pass, as somebody has told PACING to pause or to stop."
   (or (pacing-stopping-p pacing) (held-p pacing)))

@@ -1,0 +1,69 @@
+;;;; time-limit.lisp -- code that does not return is named, and a time limit ends this program.
+
+(in-package :ars-magna.cli)
+
+;;; A thread looks now and then at what the session is at, as that of a live run is watched by its
+;;; own (src/time/hogs.lisp).
+
+(defparameter *hog-patience* 3
+  "How many seconds a batch may be in one call of users' code before that is named.")
+
+(defconstant +time-over+ 124 "The status to exit with at a time limit, as that of timeout(1).")
+
+(defparameter *grace* 3
+  "How many seconds what a time limit has ended may take to put itself in order.")
+
+(defun call-under-way (session calls)
+  "Return in words whose code SESSION is in, of which CALLS tells, or its live run; and how many
+calls were begun before."
+  (let ((origin (user-calls-origin calls)) (simulation (session-simulation session)))
+    (cond (origin (values (text-of-origin origin) (user-calls-count calls)))
+          ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
+
+(defun say-where (session text)
+  "Say TEXT on the error output, with the place of the line of SESSION that is under way."
+  (say-on-error-output (placed-text (session-account session) text)))
+
+(defun say-who-stays (session whose)
+  (say-where session (format nil "~A has not returned for ~D s and goes on. Control-C ends the ~
+                                  batch, and so does the option --time-limit SECONDS."
+                             whose *hog-patience*)))
+
+(defun watch-for-calls (session calls ended)
+  "Name users' code that keeps SESSION, of which CALLS tells, until the semaphore ENDED is
+signalled. What is seen four times on end, a third of *HOG-PATIENCE* apart, has been there so long."
+  (loop with seen = nil and looks = 0
+        until (wait-on-semaphore ended (/ *hog-patience* 3))
+        do (multiple-value-bind (whose count) (call-under-way session calls)
+             (unless (eql count seen) (setf seen count looks 0))
+             (when (and whose (= 4 (incf looks))) (say-who-stays session whose)))))
+
+(defun leave-at-limit (session seconds whose)
+  "Say that SESSION has gone on for SECONDS, in code of WHOSE at last, or NIL, and leave it."
+  (say-where session (format nil "stopped~@[ in ~A~]: the time limit of ~A s is over."
+                             whose (amount-text seconds)))
+  (throw 'leave +time-over+))
+
+(defun end-at-limit (session calls thread seconds ended)
+  "End SESSION, which THREAD is at, after SECONDS, unless the semaphore ENDED is signalled before.
+If it does not let itself be ended, end this process."
+  (unless (wait-on-semaphore ended seconds)
+    (let ((whose (call-under-way session calls)))
+      (interrupt-thread thread (lambda ()
+                                 (allowing-interrupts
+                                   (leave-at-limit session seconds whose))))
+      (unless (wait-on-semaphore ended *grace*) (end-process +time-over+)))))
+
+(defun call-with-watchers (session options function)
+  "Call FUNCTION, which runs SESSION. If nobody sits there, code that does not return is named. The
+time limit of OPTIONS, if any, ends FUNCTION."
+  (let* ((calls (make-user-calls)) (*user-calls* calls)
+         (ended (make-semaphore "session ended"))
+         (thread (current-thread)) (seconds (option-value :time-limit options)))
+    (unless (terminal-p session)
+      (start-thread (lambda () (watch-for-calls session calls ended)) "watcher of the batch"))
+    (when seconds
+      (start-thread (lambda () (end-at-limit session calls thread seconds ended)) "time limit"))
+    (unwind-protect (funcall function)
+      (signal-semaphore ended)
+      (signal-semaphore ended))))
