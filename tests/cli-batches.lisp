@@ -110,3 +110,33 @@ its error output and status."
                           "the time limit of 5 s is over")))
   (is (= 124 (nth-value 1 (run-endless-script "--time-limit" "0.5" "--rate" "free"))))
   (signals cli::usage-error (cli::parse-options '("--time-limit" "-1"))))
+
+(command:define-command probe-sink (operation (probe probe)) ()
+    ((:family :handling) (:delay 30) (:report () "The probe has sunk"))
+    "Succeed after 30 ticks."
+  (command:succeed operation))
+
+(defun diver-batch (text)
+  "Return the lines that a batch of TEXT, read here, writes in a run of DIVER."
+  (let ((output (make-string-output-stream)))
+    (with-diver ()
+      (cli:run-session (cli:make-session :input (make-string-input-stream text) :output output
+                                         :batch t :package (find-package :ars-magna.tests))))
+    (lines-of (get-output-stream-string output))))
+
+(test batches.wait-for-parts-of-users-and-for-the-mind
+  "Whatever of the robot is at work when the input ends."
+  (is (equal '("NIL" "probe-sink: The probe has sunk")
+             (diver-batch "(progn (probe-sink (the-probe diver)) nil)")))
+  (is (equal '("NIL" "think: Robot has thought")
+             (diver-batch "(progn (command:think diver 5) nil)"))))
+
+(test batches.are-told-that-an-empty-hand-cannot-be-tracked
+  "3.6: :NOT-GRASPING is signalled; of a hand that holds something nobody waits for the end."
+  (is (equal '("*ERROR* -> Hand 0 is not holding anything") (type-batch "hand-track 0")))
+  (is (equal '("get-designator: Camera 0 found Designator 0"
+               "camera-track: Camera 0 tracking Designator 0"
+               "hand-grasp: Hand 0 grasped LAMP#1"
+               "Tick 16.")
+             (type-batch "obj-desig 0 local ((:color lightred))" "cam-track 0 0" "hand-grasp 0 0"
+                         "hand-track 0" "step 1"))))

@@ -5,31 +5,37 @@
 ;;; A command is issued and the prompt is back at once. A patient session, and each in a headless
 ;;; simulation, reads on when what was issued has completed, that is, when its continuation is
 ;;; called. REPEAT waits in the same way. Tracking a grasp goes on until the grasp is lost, so
-;;; nobody waits for that. Plans are errands, too: see plans.lisp.
+;;; what is waited for is that it has begun. Plans are errands, too: see plans.lisp.
 
 (defparameter *patience* 100000
   "How many ticks a headless prompt waits for one command to complete.")
 
-(defparameter *endless-commands* '("HAND-TRACK")
-  "Commands that are not expected to complete.")
-
-(defstruct (errand (:constructor make-errand (&key name verdict-p)) (:copier nil))
+(defstruct (errand (:constructor make-errand (&key name verdict-p resource)) (:copier nil))
   "A command, or a plan, that the prompt has issued. NAME is what the line is called that gives
 several commands one after the other, or NIL; if VERDICT-P is true, that recovers from their errors,
-and says itself how it has ended."
+and says itself how it has ended. RESOURCE is what carries out a single command, or NIL."
   (done-p nil)
   ;; It has ended with an error.
   (failed-p nil)
   ;; It is reported by itself, as a line had to wait for it.
   (apart-p nil)
   (name nil :type (or null string) :read-only t)
-  (verdict-p nil :read-only t))
+  (verdict-p nil :read-only t)
+  (resource nil :read-only t))
 
 ;; It is the prompt's, whatever of a run leads to it.
 (define-shared errand)
 
-(defun endless-p (command)
-  (find (command-name command) *endless-commands* :test #'same-name-p))
+(defun requests-waiting ()
+  "Return what waits for the next tick of the current simulation, a list."
+  (and *simulation* (timeline-inbox (timeline-of *simulation*))))
+
+(defun errand-over-p (errand)
+  "True if ERRAND is done, or goes on until something happens, such as the loss of a grip."
+  (or (errand-done-p errand)
+      (and (errand-resource errand)
+           (null (requests-waiting))
+           (grip-watched-p (errand-resource errand)))))
 
 (defun end-errand (errand error-code)
   "Let ERRAND be done, with ERROR-CODE, or NIL if it has succeeded."
@@ -38,7 +44,7 @@ and says itself how it has ended."
 
 (defun issue-errand (command resource arguments)
   "Issue COMMAND on RESOURCE with ARGUMENTS. Return an errand that is done when it completes."
-  (let ((errand (make-errand)))
+  (let ((errand (make-errand :resource resource)))
     (apply (command-name command) resource
            (append arguments (list (lambda (&optional error-code &rest results)
                                      (declare (ignore results))
@@ -82,18 +88,17 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
 (defgeneric await-errand (errand)
   (:documentation "Wait until ERRAND is done; signal BAD-LINE if it is not in good time.")
   (:method (errand)
-    (unless (or (await (lambda () (errand-done-p errand)))
+    (unless (or (await (lambda () (errand-over-p errand)))
                 (held-up-p *simulation*))
       (reject-line "The command has not completed within ~D ticks; it goes on." *patience*))))
 
 (defun send (session command resource arguments)
   "Issue COMMAND on RESOURCE with ARGUMENTS."
-  (let ((errand (issue-errand command resource arguments)))
-    (unless (endless-p command) (push errand (session-errands session)))))
+  (push (issue-errand command resource arguments) (session-errands session)))
 
 (defun errands-under-way (session)
   "Return what SESSION has issued and has not ended, newest first."
-  (remove-if #'errand-done-p (session-errands session)))
+  (remove-if #'errand-over-p (session-errands session)))
 
 (defun await-errands (session)
   "Wait until all that SESSION has issued is done, or its run is paused with nobody to let it go
@@ -112,17 +117,14 @@ on."
 (defun at-work-p (resource)
   "True if RESOURCE, a robot or part, carries out a command that is expected to complete."
   (let ((event (resource-event resource)))
-    (and (typep event 'operation) (not (endless-p (operation-command event))))))
+    (and (typep event 'operation) (not (grip-watched-p resource)))))
 
 (defun busy-p (resource)
   "True if RESOURCE carries out a command that is waited for."
   (and (at-work-p resource) (awaited-p (resource-event resource))))
 
 (defun robot-busy-p (robot)
-  (or (busy-p robot)
-      (some #'busy-p (robot-cameras robot))
-      (some #'busy-p (robot-hands robot))
-      (some #'busy-p (robot-bins robot))))
+  (some #'busy-p (robot-resources robot)))
 
 (defun settled-p ()
   "True if no command but those of plans waits to begin, or goes on, in the current simulation."
@@ -156,7 +158,7 @@ on."
       (progn (await-errands session)
              (when (shiftf (session-lisp-p session) nil) (settle))
              (tell-whereabouts session))
-      (setf (session-errands session) (remove-if #'errand-done-p (session-errands session)))))
+      (setf (session-errands session) (errands-under-way session))))
 
 (defun waits-for-resume-p (session)
   "True if time does not pass in the run of SESSION, as that is paused."
@@ -167,7 +169,7 @@ on."
 
 (defun how-ended (errands lisp-p)
   "Return :OK or :FAILED if ERRANDS are done and, if LISP-P, what Lisp has issued is; else NIL."
-  (cond ((notevery #'errand-done-p errands) nil)
+  (cond ((notevery #'errand-over-p errands) nil)
         ((and lisp-p (not (settled-p))) nil)
         ((some #'errand-failed-p errands) :failed)
         (t :ok)))

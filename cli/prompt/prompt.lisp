@@ -19,10 +19,6 @@ SESSION had ERRANDS, and the simulation INBOX."
        (requests-waiting)
        t))
 
-(defun requests-waiting ()
-  "Return what waits for the next tick of the current simulation, a list."
-  (and *simulation* (timeline-inbox (timeline-of *simulation*))))
-
 (defun do-telling-of-time (session text)
   "Do what TEXT, a line of SESSION, says. If it asks for what cannot begin, since time stands still,
 tell somebody who sits there."

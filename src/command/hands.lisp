@@ -122,9 +122,10 @@ first (reading 162)."
       (watch-grip operation)
       (fail-with operation :not-grasping)))
 
-(defun watched-p (hand)
-  "True if a HAND-TRACK of HAND is under way."
-  (let ((operation (resource-event hand)))
+(defun grip-watched-p (resource)
+  "True if RESOURCE carries out a HAND-TRACK that has begun: one that ends only when something
+happens."
+  (let ((operation (resource-event resource)))
     (and (operation-p operation)
          (eq 'watch-grip (operation-step operation)))))
 
@@ -133,5 +134,5 @@ first (reading 162)."
   (declare #.*hot*)                     ; in each tick
   (dolist (robot (world-robots world))
     (loop for hand across (robot-hands robot)
-          do (when (and (resource-event (the hand hand)) (watched-p hand))
+          do (when (and (resource-event (the hand hand)) (grip-watched-p hand))
                (run-operation (resource-event hand))))))

@@ -49,7 +49,8 @@
            #:camera-track #:camera-untrack #:camera-turn #:camera-align-robot
            #:camera-align-place #:robot-goto-designator)
   ;; handling
-  (:export #:hand-grasp-desig #:hand-ungrasp #:hand-grasp-check #:hand-track #:hand-insert
+  (:export #:hand-grasp-desig #:hand-ungrasp #:hand-grasp-check #:hand-track #:grip-watched-p
+           #:hand-insert
            #:hand-insert-bin #:hand-remove #:camera-insert #:camera-remove #:storage-bin-open
            #:storage-bin-close)
   ;; manipulations
