@@ -54,6 +54,21 @@
                                    "(robot-set-speed gofer 0 nil)"
                                    "(robot-go-forward gofer 1 nil)"))))))
 
+(test robots.that-are-commanded-are-driven-by-plans-that-lisp-begins
+  "Also after plans of another; but what RPL-INIT-ROBOT has said since holds."
+  (with-names ("MARVIN" "GOFER")
+    (let ((turn "(car (list (run-plan (interp-lambda ()
+  (rpl-robot-turn 1) (wait-for robot-stopped*)))))"))
+      (is (equal '("robot-turn: Robot turned 1.00" "T" "robot-turn: Robot turned 1.00" "T"
+                   "#<MARVIN>" "marvin: robot-turn: Robot turned 1.00" "T")
+                 (type-to 'ars-worlds:marvin turn "robot gofer" turn "(rpl-init-robot marvin)"
+                          turn)))
+      (is-true (has-words-p (car (last (type-to 'ars-worlds:marvin
+                                                "(car (list (begin-plan (interp-lambda ()
+  (wait-time 5)))))"
+                                                "robot gofer" turn)))
+                            "one robot of a run at a time, now MARVIN" "end-plan")))))
+
 (test robots.that-run-live-are-known
   (with-names ("DOT")
     (unwind-protect (run:simulator 'ars-worlds:dot :rate :free :display nil)

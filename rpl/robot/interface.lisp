@@ -19,11 +19,12 @@
 plan: of all that happens to tasks and fluents, some 50 octets for each. See PLAN-TRACE, WHY and
 SAVE-PLAN-TIMELINE.")
 
-(define-kind (interface :constructor (make-interface (robot simulation eras)))
+(define-kind (interface :constructor (make-interface (robot simulation eras commanded)))
     "The robot that plans drive, and what runs them."
   (:fixed
    (robot nil (or null robot) "the robot that plans drive")
    (simulation nil t "the simulation that the robot is in")
+   (commanded nil (or null robot) "the robot that a prompt commanded when this was made, or NIL")
    (valve (make-valve "robot") valve "the valve of the robot, for plans that want to have it"))
   (:state
    (runner nil (or null plan-runner) "what runs the plans")

@@ -6,26 +6,41 @@
 (defparameter *plan-limit* 100000
   "How many ticks RUN-PLAN lets pass, headless, before it gives a plan up.")
 
-;; The prompt sets it to know the robot that it commands.
-(defvar *robot-to-drive* (constantly nil)
-  "A function that returns which of several robots plans are to drive if nobody has said so; or NIL
-if there is none.")
-
 (defun robot-to-drive ()
   "Return the robot of the current simulation that plans are to drive if nobody has said which: the
 only one, or that of the prompt. Signals MISUSE if that could be several."
   (let ((robots (simulation-robots (current-simulation))))
     (cond ((= 1 (length robots)) (first robots))
-          ((find (funcall *robot-to-drive*) robots))
+          ((find (commanded-robot) robots))
           (t (reject-use "There are ~D robots here. Say which is to be driven: (rpl-init-robot ~
                           ~:[ROBOT~;~:*~(~A~)~])."
                          (length robots)
                          (and robots (robot-name (first robots))))))))
 
+(defun robot-commanded-since (interface)
+  "Return the robot that the prompt commands if it did not yet when INTERFACE was made, and plans
+drive another; or NIL."
+  (let ((robot (and (interface-commanded interface) (commanded-robot))))
+    (and robot
+         (not (eq robot (interface-commanded interface)))
+         (not (eq robot (interface-robot interface)))
+         robot)))
+
+(defun check-no-plans (interface)
+  "Signal MISUSE if plans of INTERFACE are under way, as others are to drive another robot."
+  (when (tasks-of interface)
+    (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends what drives ~
+                 that."
+                (interface-robot interface))))
+
 (defun ensure-interface ()
-  "Return the interface in use; make one for ROBOT-TO-DRIVE if there is none."
-  (or (usable-interface)
-      (init-robot (robot-to-drive))))
+  "Return the interface in use; make one for ROBOT-TO-DRIVE if there is none, and for the robot that
+the prompt has begun to command since."
+  (let* ((interface (usable-interface))
+         (robot (and interface (robot-commanded-since interface))))
+    (cond (robot (check-no-plans interface)
+                 (init-robot robot))
+          (t (or interface (init-robot (robot-to-drive)))))))
 
 (defun begin-in (interface plan arguments note)
   "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
@@ -158,7 +173,8 @@ but somebody outside can let plans go on, say so, once."
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT; else
-on the only one of the current simulation, or at the prompt on the one that it commands. Return what
+on the only one of the current simulation, or at the prompt on the one that it commands, also if it
+commands that since RPL-INIT-ROBOT. Return what
 it returns, or the failure with which it failed, and how it ended: :succeeded, :failed, :evaporated,
 :deadlock (headless; it waits for what can never come; live somebody may still bring that about, and
 there is a warning), :limit (*PLAN-LIMIT* ticks have passed, headless) or :stopped (the simulator

@@ -23,6 +23,15 @@ another thread or around this call, when they get to it."
       (add-participant interface simulation)
       (push (interface-ender interface) (robot-enders (interface-robot interface))))))
 
+;; The prompt sets it to know the robot that it commands.
+(defvar *robot-to-drive* (constantly nil)
+  "A function that returns which of several robots plans are to drive if nobody has said so; or NIL
+if there is none.")
+
+(defun commanded-robot ()
+  "Return the robot that the prompt commands in which this thread is, or NIL."
+  (and *simulation* (funcall *robot-to-drive*)))
+
 (defun check-world (robot)
   "Signal MISUSE if ROBOT is in another world than the one that we are in, if any."
   (let ((world (robot-world robot)))
@@ -53,7 +62,7 @@ simulation inside of a live one has only inherited is left alone."
     (note-doing simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
     (when (and before (ended-by-p before simulation)) (close-interface before))
     (make-fluents robot)
-    (let ((interface (make-interface robot simulation eras)))
+    (let ((interface (make-interface robot simulation eras (commanded-robot))))
       (attach interface)
       (setf *interface* interface)
       (when (eq simulation *simulation*) (note-environment simulation))
