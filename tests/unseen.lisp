@@ -233,6 +233,16 @@ output."
       (is (string= "" (displayed))))
     (run:stop-simulator)))
 
+(test commands.of-plans-are-not-said-to-be-kept
+  (run:simulator 'rover :rate :free :display nil)
+  (run:stop-simulator)
+  (with-messages
+    (driver:rpl-init-robot 'rover)
+    (is (eql 1 (driver:run-plan (plan-of (driver:rpl-robot-turn 1)
+                                         (rpl:wait-for driver:robot-stopped*)
+                                         1))))
+    (is (not (search "kept" (displayed))))))
+
 ;;; What is of another run.
 
 (test another-run.its-designators-and-things-are-refused

@@ -63,8 +63,9 @@ begin, or to go on."
          (not (timeline-passing-p timeline)))))
 
 (defun tell-if-kept (command robot)
-  "Say once for ROBOT that COMMAND is kept for a later run, if so."
-  (when (kept-p (robot-world robot))
+  "Say once for ROBOT that COMMAND is kept for a later run, if so; but not of what a plan asks for,
+as running a plan lets ticks pass."
+  (when (and (kept-p (robot-world robot)) (not (asker-forked-p *asker*)))
     (warn-once (list :kept (robot-name robot)) (robot-world robot)
                (format nil "~(~A~) is kept for a later run, as none of ~A is under way. (simulator ~
                             '~(~A~)) begins one, and does then what was asked before."

@@ -21,12 +21,20 @@ Signals MISUSE where no window is to be had: see ars-magna/clim."
   (funcall *display-opener* robot)
   robot)
 
+(defvar *told-reasons* '()
+  "Why no display could be opened, texts, as far as the user has been told.")
+
+(defun tell-once (text)
+  "Print the line TEXT, unless it has been printed before."
+  (unless (member text *told-reasons* :test #'string=)
+    (push text *told-reasons*)
+    (out text t)))
+
 (defun announce-display (robot options)
-  "When SIMULATOR has started ROBOT, open its display, or say in a line that there is none and how
-to get one. The option :DISPLAY NIL of SIMULATOR leaves both out."
+  "When SIMULATOR has started ROBOT, open its display, or say in a line, once, that there is none
+and how to get one. The option :DISPLAY NIL of SIMULATOR leaves both out."
   (when (getf options :display t)
     (handler-case (open-display robot)
-      (error (condition)
-        (out (one-line (text-of-condition condition)) t)))))
+      (error (condition) (tell-once (one-line (text-of-condition condition)))))))
 
 (pushnew 'announce-display *simulator-hooks*)
