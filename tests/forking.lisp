@@ -47,7 +47,8 @@
 
 (defun call-in-random-plan (function moments seed)
   "Call FUNCTION with a simulation in which a random plan is under way, MOMENTS times."
-  (let ((dice (base:make-dice seed "forks")) (driver:*trace-plans* t) (rpl:*runaway-limit* 2000))
+  (let ((dice (base:make-dice seed "forks")) (driver:*trace-plans* t) (rpl:*runaway-limit* 2000)
+        (base:*echo-output* (make-broadcast-stream)))
     (run:with-simulation (rover :seed seed)
       (driver:rpl-init-robot rover)
       (let ((things (list (fluent nil 'f) (fluent nil 'g) (fluent nil 'h)

@@ -110,6 +110,7 @@
          (valves (list (rpl:make-valve 'v) (rpl:make-valve 'w)))
          (base:*message-queue* (base:make-message-queue))
          (rpl:*runaway-limit* 2000)
+         (base:*echo-output* (make-broadcast-stream))
          (runner (rpl:make-plan-runner :on-end #'identity))
          (end (base:roll-index 15 dice))
          (close (base:chance .2 dice)))

@@ -246,6 +246,7 @@ last one run with its start."
          (runner (rpl:make-plan-runner :trace t :on-end #'identity))
          (base:*message-queue* (base:make-message-queue))
          (rpl:*runaway-limit* 2000)
+         (base:*echo-output* (make-broadcast-stream))
          (plan (rpl:make-plan `(destructuring-bind (f g h v w) ',(append fluents valves)
                                  (declare (ignorable f g h v w))
                                  ,form))))

@@ -42,10 +42,10 @@ TASK, or NIL if it was at none."
 
 (defun warn-of-plan (task)
   "Queue a warning that TASK is at Lisp code that does not return."
-  (warning-set (format nil "The plan ~A has kept the plans' thread for ~,1F s and goes on, at ~A ~
-                            in ~{~A~^ > ~}; (end-plan :all) or (stop-simulator) ends it"
-                       (task-label (task-top task)) (hog-seconds)
-                       (form-text (task-form task)) (task-path task))))
+  (warn-at-once (format nil "The plan ~A has kept the plans' thread for ~,1F s and goes on, at ~A ~
+                             in ~{~A~^ > ~}; (end-plan :all) or (stop-simulator) ends it"
+                        (task-label (task-top task)) (hog-seconds)
+                        (form-text (task-form task)) (task-path task))))
 
 (defun abort-step (interface steps)
   "Abort the Lisp code that the plans of INTERFACE are at in this thread, if it still is the same."

@@ -117,8 +117,8 @@ returns true if it brought something new. Return :idle or :budget."
          (form (and task (task-form task))))
     (when (and task (not (member form (runner-warned runner))))
       (push form (runner-warned runner))
-      (warning-set "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
-                   " in " (task-label task) "; time passes all the same."))))
+      (warn-at-once "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
+                    " in " (task-label task) "; time passes all the same."))))
 
 (defun react-hearing (runner hear)
   "Let RUNNER react, as RUN-ROUNDS does."

@@ -30,7 +30,7 @@ robot whose command that is, or NIL. RUN is what it belongs to, as several runs 
 or NIL. CAUSE is what is wrong with users' code, which SUMMARY says in a line, or NIL, see
 troubles.lisp. TOLD-P is true if users' code has been told of it otherwise. NOTABLE-P is true of a
 warning that is shown like an error if nobody reads it; or a function that returns that in the
-end."
+end; or :AT-ONCE of one that is shown as it comes if nobody listens, as the run may never end."
   (kind :message :type (member :error :warning :message) :read-only t)
   (items '() :type list :read-only t)
   (asker *told-of* :read-only t)
@@ -39,7 +39,7 @@ end."
   (cause nil :read-only t)
   (summary "" :type string :read-only t)
   (told-p nil :type boolean :read-only t)
-  (notable-p nil :type (or boolean function) :read-only t))
+  (notable-p nil :type (or boolean (eql :at-once) function) :read-only t))
 
 (defstruct (message-queue (:constructor make-message-queue (&key (error-policy :report) echoed))
                           (:copier nil))
@@ -104,6 +104,12 @@ guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked wit
              (null (message-queue-unsignalled queue)))
     (setf (message-queue-unsignalled queue) message)))
 
+(defun echoed-p (message queue)
+  "True if MESSAGE is shown as it comes where nobody listens to QUEUE."
+  (or (eq :at-once (message-notable-p message))
+      (and (message-queue-echoed queue)
+           (or (message-cause message) (eq t (message-notable-p message))))))
+
 (defun queue-message (message queue)
   "Add MESSAGE to QUEUE, and let whoever listens to that know."
   (with-lock ((message-queue-lock queue))
@@ -118,9 +124,7 @@ guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked wit
             (message-queue-count queue) *message-limit*)))
   (let ((listener (message-queue-listener queue)))
     (cond (listener (funcall listener))
-          ((and (or (message-cause message) (eq t (message-notable-p message)))
-                (message-queue-echoed queue))
-           (funcall *message-echo* message queue)))))
+          ((echoed-p message queue) (funcall *message-echo* message queue)))))
 
 (public error-set)
 (defun error-set (&rest stuff)
@@ -133,6 +137,12 @@ guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked wit
 (defun warning-set (&rest stuff)
   "Queue a warning made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
   (queue-message (make-message :warning stuff) *message-queue*)
+  (values))
+
+(defun warn-at-once (&rest stuff)
+  "Queue a warning made of the items STUFF that is shown as it comes if nobody listens. Return
+nothing."
+  (queue-message (make-message :warning stuff :notable-p :at-once) *message-queue*)
   (values))
 
 (public message-set)

@@ -140,7 +140,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
   ;; messages
-  (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
+  (:export #:error-set #:warning-set #:warn-at-once #:message-set #:error-display
+           #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-listener #:message-queue-error-policy
            #:message #:message-kind #:message-items #:message-asker

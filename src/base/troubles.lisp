@@ -9,7 +9,8 @@
 ;;;   :SIGNAL   the first error is signalled as USER-CODE-ERROR where ticks are passed
 ;;;   :COLLECT  the message is queued; SIMULATION-ERRORS returns the errors
 ;;;
-;;; A queue with a table ECHOED shows errors at once, unless it has a listener.
+;;; A queue with a table ECHOED shows errors at once, unless it has a listener. Each queue does that
+;;; with warnings of what may never end.
 
 (deftype error-policy ()
   "What becomes of errors in users' code."
@@ -99,7 +100,7 @@ it otherwise."
 (defun notable-now-p (message)
   "True if MESSAGE is a warning to be shown like an error."
   (let ((notable (message-notable-p message)))
-    (if (functionp notable) (funcall notable) notable)))
+    (if (functionp notable) (funcall notable) (eq t notable))))
 
 (defun take-unseen (queue)
   "Return the messages in QUEUE that nobody has seen, the oldest first. All in it counts as seen."
@@ -152,10 +153,14 @@ unless they were read or told before."
 
 (defconstant +most-echoed+ 1000 "How many texts are counted.")
 
+(defvar *echo-counter* (make-message-queue :echoed (make-hash-table :test 'equal))
+  "The queue that counts what is shown of queues without a table.")
+
 (defun count-echo (text queue)
   "Return how often TEXT has been shown, or would have been, since it was last forgotten."
-  (let ((counts (message-queue-echoed queue)))
-    (with-lock ((message-queue-lock queue))
+  (let* ((counter (if (message-queue-echoed queue) queue *echo-counter*))
+         (counts (message-queue-echoed counter)))
+    (with-lock ((message-queue-lock counter))
       (when (< +most-echoed+ (hash-table-count counts)) (clrhash counts))
       (incf (gethash text counts 0)))))
 

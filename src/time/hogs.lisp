@@ -6,9 +6,9 @@
 ;;; three times on end has been there for so long.
 
 (defun warn-of-hog (origin)
-  (warning-set (format nil "~A has kept the simulator waiting for ~,1F s and goes on; ~
-                            (stop-simulator) interrupts it"
-                       (text-of-origin origin) (hog-seconds))))
+  (warn-at-once (format nil "~A has kept the simulator waiting for ~,1F s and goes on; ~
+                             (stop-simulator) interrupts it"
+                        (text-of-origin origin) (hog-seconds))))
 
 (defun watch-for-hogs (pacing)
   "Warn of what users' code the thread of PACING does not get out of, until that ends."
