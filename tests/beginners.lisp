@@ -162,6 +162,45 @@ muffled."
       (is-false (says-p (plan-of (rpl:wait-time 50))))
       (is-false (says-p (plan-of (loop (rpl:wait-time 1) (when (car (list nil)) (return)))))))))
 
+;;; What may never end.
+
+(test runaways.are-told-of-while-they-run
+  (let* ((driver:*plan-limit* 1)
+         (told nil)
+         (text (error-output
+                 (let ((output *error-output*) (rpl:*runaway-limit* 1000))
+                   (run:with-simulation (rover)
+                     (driver:run-plan (plan-of (loop (identity :unheard-of))))
+                     (setf told (get-output-stream-string output)))))))
+    (is-true (has-words-p told "*WARNING* -> A plan took 1000 steps without waiting, at"
+                          "unheard-of"))
+    (is (not (search "without waiting" text)) "told once: ~A" text)))
+
+(test warnings.at-once-are-for-a-listener-if-there-is-one
+  (with-messages
+    (setf (base:message-queue-listener base:*message-queue*) (constantly nil))
+    (is (string= "" (error-output (base:warn-at-once "still at it")))))
+  (with-messages
+    (is (string= (format nil "*WARNING* -> still at it~%")
+                 (error-output (base:warn-at-once "still at it"))))
+    (is-true (has-words-p (displayed) "still at it") "it can be read, too")))
+
+;;; Waits for what does not wait.
+
+(test wait-for.tells-once-of-numbers-tasks-and-functions
+  (flet ((told (value)
+           (rover-writes ()
+             (driver:run-plan (rpl:interp-lambda (given) (dotimes (i 3) (rpl:wait-for given)))
+                              value))))
+    (is (= 1 (length (lines-of (told 7)))))
+    (is-true (has-words-p (told 7) "(wait-for given) does not wait: it was given a number, 7"
+                          "(wait-time 7)"))
+    (is-true (has-words-p (told #'car) "a function" "wait-until"))
+    (dolist (value '(t ball :done "open" (1 2))) (is (string= "" (told value)))))
+  (is-true (has-words-p (rover-writes ()
+                          (driver:run-plan (plan-of (rpl:wait-for (driver:begin-plan 'turn-once)))))
+                        "a task" "(join-task task)")))
+
 ;;; Definitions.
 
 (test maps.say-where-kickers-of-a-thing-stand

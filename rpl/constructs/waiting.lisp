@@ -54,7 +54,9 @@ return NIL (manual C). TIMEOUT is a number up to 1e15."
     (let* ((fluent (funcall fluent environment))
            (value (fluent-value fluent))
            (timeout (if value nil (checked-timeout (funcall timeout environment)))))
-      (cond (value (values (frame-up frame) value))
+      (cond (value
+             (unless (fluent-p fluent) (doubt-awaited task value))
+             (values (frame-up frame) value))
             ((and timeout (<= (the real timeout) 0)) (values (frame-up frame) nil))
             (t (next waiting)
                (when timeout (start-timer task timeout))

@@ -93,7 +93,7 @@ plans nor a simulator.")
   ;; places
   (:export #:find-task #:task-place #:task-source)
   ;; stillness
-  (:export #:report-deadlock #:report-stillness #:+no-fluent+ #:warn-of-no-fluent
+  (:export #:report-deadlock #:report-stillness #:+no-fluent+ #:warn-of-no-fluent #:doubt-awaited
            #:waiting-parts #:text-of-plans
            #:advice-on-stillness #:endless-advice #:fluents-awaited)
   ;; alone

@@ -98,15 +98,33 @@
 
 ;;; Reports.
 
-(defun warn-of-no-fluent (task)
-  "Queue a warning that TASK, which has come to wait, was given no fluent, once for each form."
+(defun warn-of-wait (task text)
+  "Queue a warning that TASK is at a wait that does not do what was meant, as TEXT says, once for
+each form."
   (let ((form (task-form task)) (runner (task-runner task)))
     (unless (member form (runner-warned runner) :test #'eq)
       (push form (runner-warned runner))
       (queue-message (make-message :warning (list "In the plan " (task-label (task-top task)) ", "
-                                                  (no-fluent-advice task))
+                                                  text)
                                    :notable-p t)
                      *message-queue*))))
+
+(defun warn-of-no-fluent (task)
+  "Queue a warning that TASK, which has come to wait, was given no fluent, once for each form."
+  (warn-of-wait task (no-fluent-advice task)))
+
+(defun doubt-awaited (task value)
+  "Queue a warning, once for each form, if TASK does not wait as it was given VALUE, which is true,
+and which nobody means to wait for."
+  (multiple-value-bind (kind remedy)
+      (typecase value
+        (number (values "number" (format nil "(wait-time ~A) waits for so many ticks" value)))
+        (task (values "task" "(join-task task) waits for its end"))
+        (function (values "function" "(wait-until (funcall function)) calls it in each tick")))
+    (when kind
+      (warn-of-wait task (format nil "~A does not wait: it was given a ~A, ~A, which counts as ~
+                                      true. ~A."
+                                 (form-text (task-form task)) kind (form-text value 40) remedy)))))
 
 (defun tree-text (runner)
   "Return all tasks of RUNNER as a text of bounded length."
