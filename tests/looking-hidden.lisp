@@ -20,8 +20,12 @@
              thereis (member thing (robot::things-in-view (eye) type)))
        t))
 
+(defun free-line-p (thing)
+  (robot:line-clear-p world:*world* (robot:robot-x watcher) (robot:robot-y watcher)
+                      (world:thing-x thing) (world:thing-y thing)))
+
 (test track.ends-where-no-search-would-find-the-thing
-  "Reading 242."
+  "Reading 141."
   (let ((dice (base:make-dice 8)) (kept 0) (lost 0))
     (loop repeat 400
           do (with-watcher (:clean t)
@@ -37,7 +41,8 @@
                    (cond ((robot:tracking-p (eye) designator)
                           (incf kept)
                           (robot:end-track (eye) :interrupt)
-                          (is-true (found-p ball) "kept, but ~A is not found from ~A" ball watcher))
+                          (is-true (or (found-p ball) (free-line-p ball))
+                                   "kept, but ~A is not found from ~A" ball watcher))
                          ;; The camera has turned no more.
                          (t (incf lost)
                             (unless (robot:in-same-cell-p watcher (world:thing-x ball)
@@ -53,21 +58,21 @@
   (rect (0 0) (29 19) bricks 10)
   (wall (18 8) (25 14) slate 30))
 
-(robot:defrobot lodger (walled-yard (13 9) 0) :cameras (((* 2 pi) 9)))
+(robot:defrobot inmate (walled-yard (13 9) 0) :cameras (((* 2 pi) 9)))
 
 (defun lodge (x y goal-x goal-y)
-  "Let LODGER go from (X,Y) to a ball at (GOAL-X,GOAL-Y). Return the error code, and true if a
+  "Let INMATE go from (X,Y) to a ball at (GOAL-X,GOAL-Y). Return the error code, and true if a
 search finds the ball as something local."
-  (run:with-simulation (lodger :clean t :errors :collect)
-    (robot:set-robot-pose lodger x y)
-    (let* ((ball (put 'ball (list goal-x goal-y))) (camera (robot:robot-camera lodger 0))
+  (run:with-simulation (inmate :clean t :errors :collect)
+    (robot:set-robot-pose inmate x y)
+    (let* ((ball (put 'ball (list goal-x goal-y))) (camera (robot:robot-camera inmate 0))
            (designator (loop for sighting in (robot:look-for-things camera :non-local '() :all t)
                              when (eq ball (robot::sighting-denotation sighting))
                                return (robot:designate sighting camera)))
            (code :unseen))
       (when designator
         (robot:start-track camera designator nil)
-        (command:robot-goto-designator lodger camera
+        (command:robot-goto-designator inmate camera
                                        (lambda (err &rest results)
                                          (declare (ignore results))
                                          (setf code err)))

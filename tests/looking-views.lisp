@@ -111,8 +111,7 @@
   (wall (0 7) (0 12) slate 30))
 
 (defun cells-by-walks (world x y angle)
-  "Return what OCCUPIED-CELLS finds with 50 rays over a right angle and one straight
-ahead, walked by WALK-GRID."
+  "Return what OCCUPIED-CELLS finds with 50 rays over a right angle, walked by WALK-GRID."
   (let* ((flags (world:world-flags world)) (map (world:world-map world)) (found '()))
     (labels ((visit (index)
                (when (logtest world:+occupied+ (aref flags index)) (pushnew index found))
@@ -131,8 +130,7 @@ ahead, walked by WALK-GRID."
                  (unless (or (null x) (visit (world:map-index map x y)))
                    (walk x y dx dy)))))
       (robot::do-fan (dx dy) (angle (/ pi 2) 50)
-        (walk x y (robot::nonzero dx) (robot::nonzero dy)))
-      (walk x y (robot::nonzero (base:cosine angle)) (robot::nonzero (base:sine angle))))
+        (walk x y (robot::nonzero dx) (robot::nonzero dy))))
     (nreverse found)))
 
 (defun cells-near (world x y reach cells)

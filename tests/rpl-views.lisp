@@ -66,8 +66,8 @@
                                         (rpl:wait-time 1)))))))))
 
 (defun turns-of-view (how missed span)
-  "Return how often a WHENEVER, whose body takes SPAN ticks, runs on a view that misses pulses as HOW
-says: of a fluent that is pulsed twice before, then set and pulsed four times all at once."
+  "Return how often a WHENEVER, whose body takes SPAN ticks, runs on a view that misses pulses as
+HOW says: of a fluent that is pulsed twice before, then set and pulsed four times all at once."
   (let ((f (fluent)))
     (rpl:pulse f)
     (rpl:pulse f)

@@ -29,8 +29,8 @@ drive another; or NIL."
 (defun check-no-plans (interface)
   "Signal MISUSE if plans of INTERFACE are under way, as others are to drive another robot."
   (when (tasks-of interface)
-    (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends what drives ~
-                 that."
+    (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends what ~
+                 drives that."
                 (interface-robot interface))))
 
 (defun ensure-interface ()

@@ -124,6 +124,8 @@ interval as FACTOR gives the interval or point interval of all products (manual,
 (defun scaled-length (x y most)
   "Return the length of (X,Y), of which MOST is the greater size, where squares are no floats."
   (declare (type double-float x y most))
+  ;; So that a box's sides and diagonals can be added.
+  (when (<= 1d308 most) (error 'floating-point-overflow :operation 'norm :operands (list x y)))
   (let ((x (/ x most)) (y (/ y most)))
     (* most (sqrt (+ (* x x) (* y y))))))
 

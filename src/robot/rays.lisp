@@ -59,24 +59,19 @@ of the two cells beside that, if one of them lets it through (reading 100)."
             (return)))
         (setf x beyond-x y beyond-y)))))
 
-(defun cells-along (world x y dx dy &optional (first (map-index (world-map world) x y)))
-  "Return a list of the cells of WORLD with things on their floor that the ray from (X,Y) in the
-direction (DX,DY) meets after the FIRST, an index, where it is; that included if FIRST is NIL."
-  (let ((cells '()))
-    (flet ((visit (index flag)
-             (when (logtest flag +occupied+) (push index cells))
-             (logtest flag +opaque+)))
-      (let ((index (map-index (world-map world) x y)))
-        (unless (or (null index)
-                    (and (null first) (visit index (aref (world-flags world) index))))
-          (walk-ray #'visit world x y dx dy))))
-    (nreverse cells)))
-
 (defun cells-past-corner (world x y dx dy)
   "Return a list of the cells with things that a ray in direction (DX,DY) meets which an opaque cell
 stops at (X,Y), if it only meets a corner there and goes on."
-  (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
-    (and beyond-x (cells-along world beyond-x beyond-y dx dy nil))))
+  (let ((cells '()))
+    (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
+      (when beyond-x
+        (flet ((visit (index flag)
+                 (when (logtest flag +occupied+) (push index cells))
+                 (logtest flag +opaque+)))
+          (let ((index (map-index (world-map world) beyond-x beyond-y)))
+            (unless (or (null index) (visit index (aref (world-flags world) index)))
+              (walk-ray #'visit world beyond-x beyond-y dx dy))))))
+    (nreverse cells)))
 
 (defmacro do-fan ((dx dy &optional (per-x (gensym)) (per-y (gensym))) (angle width count)
                   &body body)

@@ -30,40 +30,36 @@
 
 (defun occupied-cells (world x y angle width count reach)
   "Return a list of the cells of WORLD with things on their floor that a fan of COUNT rays from
-(X,Y) meets, of WIDTH radians around ANGLE, within REACH columns and rows, and another ray straight
-ahead (readings 130 and 242)."
+(X,Y) meets, of WIDTH radians around ANGLE, within REACH columns and rows (reading 130)."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 15) reach) (type (unsigned-byte 30) count))
   (let* ((flags (world-flags world)) (map (world-map world))
          (columns (map-width map)) (rows (map-height map)) (found '()))
-    (labels ((visit (index flag)
-               (declare (type cell-index index) (type (unsigned-byte 8) flag))
-               (when (logtest flag +occupied+)
+    (flet ((visit (index flag)
+             (declare (type cell-index index) (type (unsigned-byte 8) flag))
+             (when (logtest flag +occupied+)
+               (mark-seen flags index)
+               (push index found))
+             (logtest flag +opaque+))
+           (corner (dx dy at)
+             (declare (type double-float dx dy at))
+             (dolist (index (cells-past-corner world (+ x (* dx at)) (+ y (* dy at)) dx dy))
+               (when (logtest (aref flags index) +occupied+)
                  (mark-seen flags index)
-                 (push index found))
-               (logtest flag +opaque+))
-             (add (cells)
-               (dolist (index cells)
-                 (when (logtest (aref flags index) +occupied+)
-                   (mark-seen flags index)
-                   (push index found))))
-             (corner (dx dy at)
-               (declare (type double-float dx dy at))
-               (add (cells-past-corner world (+ x (* dx at)) (+ y (* dy at)) dx dy))))
+                 (push index found)))))
       (declare (inline visit corner))
       (macrolet ((walk (reach)
                    `(walk-fan #'visit #'corner (logior +occupied+ +opaque+) flags columns rows x y
                               angle width count ,reach)))
         (if (and (= reach +no-limit+) (walls-around-p map x y))
             (walk nil)
-            (walk reach)))
-      (add (cells-along world x y (cosine angle) (sine angle))))
+            (walk reach))))
     (unmark-seen flags found)
     (nreverse found)))
 
 (defun place-cells (world number x y angle width count)
-  "Return a list of the cells of WORLD that rays as in OCCUPIED-CELLS meet and whose place type has
-NUMBER in the map."
+  "Return a list of the cells of WORLD that a fan of rays as in OCCUPIED-CELLS meets and whose
+place type has NUMBER in the map."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 30) count) (type (unsigned-byte 8) number))
   (let ((flags (world-flags world)) (places (map-places (world-map world))) (found '()))
@@ -76,8 +72,7 @@ NUMBER in the map."
              (logtest flag +opaque+)))
       (declare (inline visit))
       (do-fan (dx dy) (angle width count)
-        (walk-ray #'visit world x y dx dy))
-      (walk-ray #'visit world x y (cosine angle) (sine angle)))
+        (walk-ray #'visit world x y dx dy)))
     (unmark-seen flags found)
     (nreverse found)))
 

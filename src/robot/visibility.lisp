@@ -21,37 +21,47 @@
       (walk-ray #'visit world x y (cosine angle) (sine angle)))
     reached))
 
-(defun rays-reach-p (world x y to-x to-y heading width count)
-  "True if one of COUNT rays from (X,Y), evenly spaced over WIDTH radians around HEADING, reaches
-the cell of (TO-X,TO-Y) in WORLD."
+(defun sight-by-rays (world x y to-x to-y heading width count)
+  "Return :CLEAR if one of COUNT rays from (X,Y), evenly spaced over WIDTH radians around HEADING,
+reaches the cell of (TO-X,TO-Y) in WORLD; :OBSTRUCTED if all that cross it are stopped before; NIL
+if none crosses it."
   (let* ((index (map-index (world-map world) to-x to-y))
          (dx (- (+ 0.5d0 (floor to-x)) x)) (dy (- (+ 0.5d0 (floor to-y)) y))
          (spacing (/ width count)) (first (- heading (* 0.5d0 (- width spacing))))
          (middle (- (+ heading (angle-difference (arctangent dy dx) heading)) first))
          ;; A circle around the cell, seen from there.
-         (half (arctangent 0.75d0 (sqrt (+ (* dx dx) (* dy dy))))))
+         (half (arctangent 0.75d0 (sqrt (+ (* dx dx) (* dy dy)))))
+         (sight nil))
     (loop for number from (max 0 (ceiling (- middle half) spacing))
             to (min (1- count) (floor (+ middle half) spacing))
           for angle = (+ first (* number spacing))
-          thereis (and (ray-crosses-cell-p dx dy angle)
-                       (ray-reaches-p world x y angle index)))))
+          when (ray-crosses-cell-p dx dy angle)
+            do (if (ray-reaches-p world x y angle index)
+                   (return :clear)
+                   (setf sight :obstructed))
+          finally (return sight))))
 
+;; Where a robot can drive straight ahead it can see, too, however few the rays are.
 (defun seen-by-p (camera designator)
-  "True if a search by CAMERA, pointing at what DESIGNATOR denotes, would find it: straight ahead,
-by another ray, or within reach."
+  "True if a search by CAMERA, pointing at what DESIGNATOR denotes, would find it, or would miss it
+though nothing obstructs it."
   (let* ((robot (camera-robot camera)) (world (robot-world robot))
          (own-x (robot-x robot)) (own-y (robot-y robot))
          (x (designator-x designator)) (y (designator-y designator)))
     (or (in-same-cell-p robot x y)
         (line-clear-p world own-x own-y x y)
-        (and (within-reach-p robot x y) (in-sight-p world own-x own-y x y))
-        (rays-reach-p world own-x own-y x y
-                      (+ (robot-angle robot) (designator-angle designator))
-                      (camera-field-of-view camera) scan-density*))))
+        (and (or (approached-p camera) (within-reach-p robot x y))
+             (in-sight-p world own-x own-y x y))
+        (ecase (sight-by-rays world own-x own-y x y
+                              (+ (robot-angle robot) (designator-angle designator))
+                              (camera-field-of-view camera) scan-density*)
+          (:clear t)
+          (:obstructed nil)
+          ((nil) (in-sight-p world own-x own-y x y))))))
 
 (defun visible-p (designator camera)
   "True if nothing hides the DESIGNATOR's denotation, in the open, from CAMERA, or if that is NIL
-from its robot (reading 242)."
+from its robot (reading 141)."
   (let ((robot (designator-robot designator)))
     (cond ((null (designator-denotation designator)) t)
           (camera (seen-by-p camera designator))
