@@ -47,7 +47,8 @@ would wait."
 
 (defun suspends-p (form scope)
   "True if FORM in SCOPE makes its task wait, or may do so."
-  (and (consp form) (suspension form scope)))
+  (and (or (consp form) (symbol-macro-p form (scope-environment scope)))
+       (suspension form scope)))
 
 (defun binds-fluents-p (form scope)
   "True if FORM is a LET of the plan's text that binds variables to fluents; leaves do not keep an
@@ -98,10 +99,6 @@ it, and those to the left of them too, to keep the order."
         ((call-suspends form scope (scope-environment scope)) (call-code form scope))
         (t (leaf-code form scope))))
 
-(defun container-p (form)
-  "True if FORM is of a kind for which there is advice: plans cannot wait inside."
-  (some (lambda (entry) (member (first form) (car entry) :test #'string=)) *advice*))
-
 (defun plan-code (form scope)
   "Return code that builds the node for FORM."
   (let ((*form-at-hand* (if (in-source-p form) form *form-at-hand*)))
@@ -129,14 +126,15 @@ the names of the variables there."
   "Return code that builds the node for FORM, which makes its task wait."
   (let* ((environment (scope-environment scope))
          (plan-form (find-plan-form form environment)))
-    (cond (plan-form (funcall (plan-form-compiler plan-form) form scope))
+    (cond ((symbolp form) (expansion-code form scope))
+          (plan-form (funcall (plan-form-compiler plan-form) form scope))
           ((not (symbolp (first form))) (refuse-code form scope))
           ((assoc (first form) (scope-procedures scope)) (function-form-code form scope))
           ((local-function-p (first form) environment)
            (if (macro-function (first form) environment)
                (expansion-code form scope)
                (function-form-code form scope)))
-          ((container-p form) (refuse-code form scope))
+          ((own-advice-for form) (refuse-code form scope))
           ((macro-function (first form) environment) (expansion-code form scope))
           ((special-operator-p (first form)) (refuse-code form scope))
           ((operator-in-p form *stirring-functions*)
@@ -146,9 +144,9 @@ the names of the variables there."
           (t (function-form-code form scope)))))
 
 (defun expansion-code (form scope)
-  "Return code for FORM, a macro call."
+  "Return code for FORM, a macro call or a symbol macro."
   (let ((expansion (macroexpand-1 form (scope-environment scope))))
-    (if (lisps-own-p (first form))
+    (if (and (consp form) (lisps-own-p (first form)))
         (note-written-as expansion form)
         (note-own-text expansion))
     (plan-code expansion scope)))

@@ -43,14 +43,29 @@ make its task wait, bind it before FORM, and so those to the left of it."
                       ,form ,scope (lambda () ,@body))))
 
 (defun call-hoisting (arguments form scope coder)
-  (let ((last (position-if (lambda (argument) (suspends-p argument scope)) arguments
-                           :from-end t)))
-    (if last
-        (plan-code (note-expansion (hoisted-form (remove-if #'atom (subseq arguments 0 (1+ last)))
-                                                 form)
-                                   form)
-                   scope)
-        (funcall coder))))
+  (let* ((last (position-if (lambda (argument) (suspends-p argument scope)) arguments
+                            :from-end t))
+         (symbol (and last (find-if (lambda (argument)
+                                      (and (symbolp argument) (suspends-p argument scope)))
+                                    arguments))))
+    (cond (symbol (plan-code (note-expansion (with-symbol-expanded symbol form scope) form) scope))
+          (last (plan-code (note-expansion
+                            (hoisted-form (remove-if #'atom (subseq arguments 0 (1+ last))) form)
+                            form)
+                           scope))
+          (t (funcall coder)))))
+
+(defun with-symbol-expanded (symbol form scope)
+  "Return FORM with what SYMBOL, a symbol macro that is an argument of it, stands for in its place:
+the first one, as arguments come before bodies."
+  (let ((expansion (note-own-text (macroexpand-1 symbol (scope-environment scope)))) (done-p nil))
+    (labels ((expanded (part)
+               (cond (done-p part)
+                     ((eq part symbol) (setf done-p t) expansion)
+                     ((consp part) (let ((first (expanded (car part))))
+                                     (cons first (expanded (cdr part)))))
+                     (t part))))
+      (cons (first form) (expanded (rest form))))))
 
 (defun hoisted-form (parts form)
   "Return FORM with variables for PARTS, conses in it, that are bound around it."

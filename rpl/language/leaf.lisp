@@ -97,7 +97,9 @@
 
 (defun leaf-meaning (form environment)
   "Return FORM, met in a leaf, with its plan meaning."
-  (cond ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
+  (cond ((global-symbol-macro-p form environment)
+         (note-own-text (macroexpand-1 form environment)))
+        ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
         ((plan-in-leaf-p form) (values form t))
         ((look-at-operands form environment))
         (t (let ((meaning (if (local-function-p (first form) environment)
@@ -111,7 +113,7 @@
 
 (defun as-lisp (form scope)
   "Return FORM, a leaf's, as Lisp is to compile it."
-  (cond ((atom form) form)
+  (cond ((and (atom form) (not (symbol-macro-p form (scope-environment scope)))) form)
         (t (check-commands form)
            (let ((*fluents-here* (scope-fluents scope)))
              (walk-form form (scope-environment scope) #'leaf-meaning)))))

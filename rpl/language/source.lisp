@@ -43,7 +43,8 @@
     (("HANDLER-CASE" "HANDLER-BIND" "IGNORE-ERRORS" "RESTART-CASE" "WITH-SIMPLE-RESTART")
      . "Write (handle-failure ((type (e) ...)) body...): it also handles Lisp errors.")
     (("CATCH" "THROW") . "Write block and return-from: they work across tasks.")
-    (("LOOP") . "Write (loop UNTIL test ...), dolist, dotimes, n-times or par-loop.")
+    (("LOOP" "ITER" "ITERATE")
+     . "Write (loop UNTIL test ...), dolist, dotimes, n-times or par-loop.")
     (("LAMBDA" "FUNCTION" "NAMED-LAMBDA" "CONTINUATION")
      . "Write dolist or par-loop for mapcar, flet or labels for a local plan.")
     (("LET" "LET*" "PROGV" "MULTIPLE-VALUE-BIND")
@@ -57,10 +58,24 @@
      . "Open the file in a leaf, and close it in the cleanup of an evap-protect."))
   "What to write instead of Lisp forms that a plan cannot wait inside.")
 
+(defun of-iterate-p (form)
+  "True if FORM is one of the library iterate, whose macro looks into all that is in it."
+  (and (symbolp (first form))
+       (member (first form) '("ITER" "ITERATE") :test #'string=)
+       (symbol-package (first form))
+       (string= "ITERATE" (package-name (symbol-package (first form))))))
+
+(defun own-advice-for (form)
+  "Return what is advised about forms like FORM, in which plans cannot wait, or NIL. A macro of a
+user's that is called as iterate's are is none."
+  (and (consp form)
+       (symbolp (first form))
+       (or (not (member (first form) '("ITER" "ITERATE") :test #'string=)) (of-iterate-p form))
+       (cdr (find-if (lambda (names) (member (first form) names :test #'string=))
+                     *advice* :key #'car))))
+
 (defun advice-for (form)
-  (or (and (consp form) (symbolp (first form))
-           (cdr (find-if (lambda (names) (member (first form) names :test #'string=))
-                         *advice* :key #'car)))
+  (or (own-advice-for form)
       "Bind the value that it needs with let before, so that the plan waits there."))
 
 (defun reject-suspension (form container)

@@ -81,6 +81,41 @@ LAMBDA."
         ((and plan-form (string= "LOOP" (plan-form-name plan-form)))
          (values (remove-if #'atom (rest form)) '(nil)))))
 
+;;; Symbol macros.
+
+(defun symbol-macro-p (form environment)
+  "True if FORM is a symbol macro in ENVIRONMENT, and no task variable."
+  (and (symbolp form)
+       (eq :symbol-macro (variable-kind form environment))
+       (not (task-variable-p form environment))))
+
+;; The walk goes into those that are local by itself.
+(defun global-symbol-macro-p (form environment)
+  "True if FORM, met by a walk in ENVIRONMENT, is a symbol macro that is known everywhere."
+  (and (symbolp form)
+       (symbol-macro-p form nil)
+       (not (local-variable-p form environment))
+       (not (bound-in-walk-p form environment))))
+
+;;; The macro of the library iterate expands all that is in its forms, as Lisp.
+
+(defun waiting-call-in (forms environment)
+  "Return a call in FORMS, or in what is in them, that makes a task wait; or NIL."
+  (loop for tail = forms then (rest tail)
+        while (consp tail)
+        thereis (let ((form (first tail)))
+                  (cond ((or (atom form) (eq 'quote (first form))) nil)
+                        ((and (symbolp (first form)) (waits-p form environment)) form)
+                        (t (waiting-call-in form environment))))))
+
+(defun waits-p (form environment)
+  "True if FORM is a call of a construct that makes a task wait, or of a plan procedure."
+  (let ((plan-form (find-plan-form form environment)))
+    (if plan-form
+        (eq :must (plan-form-suspends plan-form))
+        (and (not (local-function-p (first form) environment))
+             (procedure-name-p (first form))))))
+
 (defun suspension (form scope)
   "Return :MUST, :MAY or NIL, and the expression in FORM that is the reason."
   (let ((result nil) (reason nil))
@@ -92,15 +127,20 @@ LAMBDA."
                (let ((*inner-exits* (append exits *inner-exits*)))
                  (dolist (form forms) (walk-form form environment #'visit))))
              (visit (form environment)
-               (cond ((atom form) form)
+               (cond ((atom form)
+                      (if (global-symbol-macro-p form environment)
+                          (note-own-text (macroexpand-1 form environment))
+                          form))
                      ((not (symbolp (first form))) (check-operator form) form)
                      ((plan-in-leaf-p form) (values form t))
                      (t (check-own-form form environment)
                         (visit-call form environment (find-plan-form form environment)))))
              (visit-call (form environment plan-form)
-               (let ((kind (or (and plan-form (plan-form-suspends plan-form))
-                               (call-suspends form scope environment))))
-                 (when kind (note kind form))
+               (let* ((inner (and (of-iterate-p form) (waiting-call-in (rest form) environment)))
+                      (kind (cond (inner :must)
+                                  ((and plan-form (plan-form-suspends plan-form)))
+                                  (t (call-suspends form scope environment)))))
+                 (when kind (note kind (or inner form)))
                  (multiple-value-bind (parts exits) (exits-in form plan-form)
                    (cond ((eq kind :must) (values form t))
                          (exits

@@ -1,0 +1,127 @@
+;;;; rpl-symbol-macros.lisp -- symbol macros in plans stand for plan text; what iterate is told.
+
+(in-package :ars-magna.tests)
+(in-suite rpl)
+
+(rpl:def-interp-proc symbol-later ()
+  (rpl:wait-time 1)
+  :later)
+
+(define-symbol-macro everywhere-later (rpl:seq (rpl:wait-time 1) :everywhere))
+
+(test symbol-macros.that-wait-wait
+  (is (equal '(:yes 1) (plan-value (symbol-macrolet ((next (rpl:seq (rpl:wait-time 1) :yes)))
+                                     (list next (rpl:plan-time))))))
+  (is (eq :later (plan-value (symbol-macrolet ((next (symbol-later))) next))))
+  (is (equal '(:later 2) (plan-value (symbol-macrolet ((first (symbol-later)) (next first))
+                                       next
+                                       (let ((x next)) (list x (rpl:plan-time)))))))
+  (is (equal '(:everywhere :everywhere 2)
+             (plan-value (list everywhere-later everywhere-later (rpl:plan-time))))))
+
+(test symbol-macros.leave-blocks-and-go-to-tags
+  (is (= 3 (plan-value (block nil
+                         (tagbody
+                            (symbol-macrolet ((next (go end)))
+                              (rpl:wait-time 1)
+                              next
+                              (return 4))
+                          end
+                            (return 3))))))
+  (is (= 5 (plan-value (block nil
+                         (rpl:par (symbol-macrolet ((out (return 5))) (if (rpl:wait-time 1) 1 out))
+                                  (rpl:wait-time 9)))))))
+
+(test symbol-macros.are-arguments
+  (is (= 3 (plan-value (symbol-macrolet ((span (rpl:seq (rpl:wait-time 1) 2)))
+                         (rpl:wait-time span)
+                         (rpl:plan-time)))))
+  (is (equal '(:in 2) (plan-value
+                        (let ((valve (rpl:make-valve 'hand)))
+                          (symbol-macrolet ((hand (rpl:seq (rpl:wait-time 1) valve)))
+                            (rpl:with-valve (hand)
+                              (if hand (list :in (rpl:plan-time))))))))))
+
+(test symbol-macros.mean-what-plans-mean
+  (let ((f (fluent t)) (g (fluent)))
+    (is (equal '(2 :yes)
+               (plan-value
+                 (symbol-macrolet ((ready (and f g)))
+                   (rpl:par (rpl:wait-for ready)
+                            (rpl:seq (rpl:wait-time 2) (rpl:set-value g t)))
+                   (list (rpl:plan-time) (if ready :yes :no))))))))
+
+(test symbol-macros.are-hidden-by-variables
+  (is (equal '(7 (7) 7 (7))
+             (plan-value
+               (symbol-macrolet ((next (rpl:seq (rpl:wait-time 1) 2)))
+                 (append (let ((next 7) (everywhere-later 7))
+                           (rpl:wait-time 1)
+                           (list next (list everywhere-later)))
+                         (let ((everywhere-later 7)) (list everywhere-later (list 7)))))))))
+
+;; What a pattern matcher makes of (match object ((list x y) ...) ...): to fail is to go on.
+(defmacro match-pair (object pair-form otherwise)
+  "Return what PAIR-FORM returns if OBJECT is a list of two, bound to X and Y, of which X is not
+greater, else what OTHERWISE returns."
+  (let ((value (gensym)) (next (gensym)))
+    `(let ((,value ,object))
+       (block match
+         (tagbody
+            (symbol-macrolet ((fail-here (go ,next)))
+              (if (and (consp ,value) (= 2 (length ,value)))
+                  (let ((x (first ,value)) (y (second ,value)))
+                    (if (> x y) fail-here)
+                    (return-from match ,pair-form))
+                  fail-here))
+            ,next
+            (return-from match ,otherwise))))))
+
+(test symbol-macros.let-pattern-matchers-match
+  (is (equal '(3 :other :none 5)
+             (plan-value
+               (rpl:wait-time 1)
+               (flet ((sum (object)
+                        (match-pair object
+                            (rpl:seq (rpl:wait-time (- y x)) (+ x y))
+                          (if (consp object) :other :none))))
+                 (list (sum '(1 2)) (sum '(2 1)) (sum 3) (+ 3 (rpl:plan-time))))))))
+
+;;; Iterate.
+
+(defun call-with-iterate (function)
+  "Call FUNCTION with a symbol that is a macro, named and at home as the one of the library iterate;
+it expands all that is in it, as that does."
+  (let* ((there (find-package "ITERATE"))
+         (package (or there (make-package "ITERATE" :use '())))
+         (symbol (intern "ITER" package)))
+    (unless there
+      (setf (macro-function symbol)
+            (lambda (form environment)
+              `(progn ,@(mapcar (lambda (form) (macroexpand form environment)) (rest form))))))
+    (unwind-protect (funcall function symbol)
+      (unless there (delete-package package)))))
+
+(test iterate.a-wait-inside-gets-the-advice-for-loop
+  (call-with-iterate
+   (lambda (iter)
+     (handler-case (progn (rpl:make-plan `(rpl:seq (rpl:wait-time 1)
+                                                   (,iter (progn x in (list 1 2))
+                                                          (if x (rpl:wait-time x)))))
+                          (fail "it was accepted"))
+       (rpl:misplaced-suspension (trouble)
+         (is (equal '(rpl:wait-time x) (rpl:misplaced-form trouble)))
+         (is (eq iter (first (rpl:misplaced-container trouble))))
+         (is (search "(loop UNTIL test ...)" (rpl:misplaced-advice trouble)))))
+     (is (equal '(2 1) (plan-value-of `(list (,iter '(rpl:wait-time 1) (+ 1 1)) 1)))))))
+
+(defun plan-value-of (form)
+  "Return the value of FORM as a plan."
+  (values (rpl:run-plan-alone (rpl:make-plan form))))
+
+(defmacro iter (&body forms)
+  "A macro of a user's that is called as one of iterate's is."
+  `(progn ,@forms))
+
+(test iterate.a-users-macro-of-that-name-is-a-plans
+  (is (= 1 (plan-value (iter (rpl:wait-time 1) (rpl:plan-time))))))
