@@ -8,7 +8,8 @@
 ;;; part of. Any other claim was preempted: it has LOST the valve, and its task does not run.
 ;;; The claims that wait for a valve queue by priority, by level, then first in first out, in a LINE
 ;;; for each priority and level; one that wants several can be overtaken by such as can have what
-;;; they want. To queue, to leave, and to be the next take the same time however many wait.
+;;; they want. To queue, to leave, and to be the next take the same time however many wait, but for
+;;; a look at each line.
 
 (defstruct (valve (:include entity) (:constructor %make-valve (name)) (:copier nil))
   "What guarantees that one task at a time has a resource. LINES are of those that wait for it."
@@ -149,10 +150,12 @@ innermost first."
 (defun line-for (claim valve)
   "Return the line of VALVE that CLAIM is to wait in, a new one if there is none for its like."
   (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
-    (or (find-if (lambda (other) (not (or (before-p line other) (before-p other line))))
-                 (valve-lines valve))
-        (progn (setf (valve-lines valve) (merge 'list (valve-lines valve) (list line) #'before-p))
-               line))))
+    (loop for before = nil then tail
+          for tail = (valve-lines valve) then (rest tail)
+          while (and tail (before-p (first tail) line))
+          finally (return (cond ((and tail (not (before-p line (first tail)))) (first tail))
+                                (before (setf (rest before) (cons line tail)) line)
+                                (t (setf (valve-lines valve) (cons line tail)) line))))))
 
 (defun queue-up (claim)
   (dolist (valve (claim-valves claim))
@@ -166,7 +169,7 @@ innermost first."
     (let ((line (turn-line turn)))
       (unless (line-first-turn line)
         (let ((valve (line-valve line)))
-          (setf (valve-lines valve) (remove line (valve-lines valve))))))))
+          (setf (valve-lines valve) (delete line (valve-lines valve) :count 1)))))))
 
 (defmethod withdraw (task (claim claim))
   (leave-queues claim))
