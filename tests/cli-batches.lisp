@@ -140,3 +140,30 @@ its error output and status."
                "Tick 16.")
              (type-batch "obj-desig 0 local ((:color lightred))" "cam-track 0 0" "hand-grasp 0 0"
                          "hand-track 0" "step 1"))))
+
+(test scripts.leave-errors-to-continuations-that-are-told
+  "As those of plans: a program that is told may try again. What nobody is told counts."
+  (flet ((status (text) (nth-value 1 (run-script text))))
+    (is (= 0 (status "(hand-ungrasp (robot-hand dot 0) (lambda (&rest results) results))")))
+    (is (= 0 (status "(run-plan (interp-lambda () (rpl-hand-ungrasp 0) (wait-for (vref hand-moved* 0))))")))
+    (is (= 1 (status "(hand-ungrasp (robot-hand dot 0) nil)")))
+    (is (= 1 (status "hand-ungrasp 0")))
+    (is (= 1 (status "repeat 2 hand-ungrasp 0")))
+    (is (= 1 (status "(run-plan (interp-lambda () (fail :no-luck)))")))))
+
+(test batches.name-the-robot-whose-designator-is-removed
+  (is-true (find "*WARNING* -> gofer: Removing Designator 0"
+                 (type-to 'ars-worlds:marvin "(new-thing tin (office 15 24) ((:size 1)))"
+                          "(camera-get-object-designator (robot-camera gofer 0) :local nil nil)"
+                          "(robot-go-forward gofer 3 nil)")
+                 :test #'string=)))
+
+(test sessions.lines-pasted-together-wait-for-each-other
+  "As piped ones do."
+  (in-talk (talk)
+    (type-keys talk (list :paste (format nil "turn 1~%turn 0.5~%(+ 20 22)")) :return)
+    (is-true (await-turns talk 6))
+    (let ((told (told-to talk)))
+      (is (not (search "interrupted" told)) "~A" told)
+      (is-true (search "Robot turned 1.00" told))
+      (is-true (search "Robot turned 0.50" told)))))

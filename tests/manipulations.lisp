@@ -194,8 +194,8 @@
         (is (equal '(:failed nil) (poke (designate 'crate :type :non-local))))
         (world:move-thing (thing 'apple) 9.5 9.5)
         (is (equal '(:failed nil) (poke apple)))
-        (is (string= (format nil "poke: APPLE#6 by Hand 0~@
-                                  poke: PEN#4 by Hand 0~@
+        (is (string= (format nil "poke: APPLE#6 by Hand 0: DONE~@
+                                  poke: PEN#4 by Hand 0: DONE~@
                                   *ERROR* -> poke failed~@
                                   *ERROR* -> poke failed~@
                                   *ERROR* -> poke failed~@

@@ -57,6 +57,14 @@ that is not NIL.")
         (amend-entry (edited-history input) (concatenate 'string before '(#\Newline) line))
         (add-entry (edited-history input) line))))
 
+(defgeneric pasted-lines-left-p (input)
+  (:documentation "True if lines that were pasted into INPUT, with the one read last, wait to be
+read.")
+  (:method (input)
+    (declare (ignore input))
+    nil)
+  (:method ((input edited-text)) (and (edited-lines input) t)))
+
 (defgeneric take-waiting (input)
   (:documentation "Return the lines that wait to be read of INPUT, and leave them unread.")
   (:method (input)

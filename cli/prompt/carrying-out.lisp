@@ -23,7 +23,9 @@ for, or 79."
 
 (defun run-line (session line text)
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
-  (let ((arguments (read-arguments line text)) (*text-width* (text-width session)))
+  (let ((arguments (read-arguments line text))
+        (*text-width* (text-width session))
+        (*asker* *line-asker*))
     (if (unhurried-p line)
         (apply (line-action line) session arguments)
         (write-string (fitted (with-output-to-string (*standard-output*)

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-;;; A command is issued and the prompt is back at once. A patient session, and each in a headless
-;;; simulation, reads on when what was issued has completed, that is, when its continuation is
-;;; called. REPEAT waits in the same way. Tracking a grasp goes on until the grasp is lost, so
+;;; A command is issued and the prompt is back at once. A patient session, each that has more lines
+;;; pasted with the one read last, and each in a headless simulation, reads on when what was issued
+;;; has completed, that is, when its continuation is called. REPEAT waits in the same way. Tracking a grasp goes on until the grasp is lost, so
 ;;; what is waited for is that it has begun. Plans are errands, too: see plans.lisp.
 
 (defparameter *patience* 100000
@@ -142,7 +142,8 @@ on."
        (null (session-visit session))
        (null (simulation-over *simulation*))
        (if (live-p *simulation*)
-           (and (session-patient-p session) (not (paused-p *simulation*)))
+           (and (or (session-patient-p session) (pasted-lines-left-p (session-input session)))
+                (not (paused-p *simulation*)))
            ;; One that STOP-SIMULATOR has stopped waits for RESUME.
            (or (session-patient-p session) (headless-p *simulation*)))))
 

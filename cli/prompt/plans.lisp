@@ -104,10 +104,11 @@ message. Prints as TEXT."
 
 (defun error-counts-p (message session)
   "True if SESSION counts the error MESSAGE. Those of a trial are the trial's, and those of commands
-that a plan, or GO-TO, gives are its own."
+that a plan, GO-TO or a program gives that is told of them are its own."
   (and (null (session-visit session))
        (or (verdict-p (first (message-items message)))
-           (not (or (waiting-for-plan-p session)
+           (not (or (left-to-program-p message)
+                    (waiting-for-plan-p session)
                     (and (others-p message)
                          (some #'errand-verdict-p (errands-under-way session))))))))
 

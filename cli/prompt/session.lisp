@@ -173,6 +173,17 @@ DISPLAY says so."
 (define-constant +asker+ "the prompt" :test #'string=
   :documentation "Who asks for what lines ask for.")
 
+;; Equal to that, but another object: an error of what a line has asked for is the line's.
+(defparameter *line-asker* (copy-seq +asker+)
+  "Who asks for what lines that are no Lisp ask for.")
+
+(defun left-to-program-p (message)
+  "True if MESSAGE tells how a command ended that a program has given, with a continuation: that is
+told, and may recover from an error."
+  (and (message-robot message)
+       (message-told-p message)
+       (not (eq *line-asker* (message-asker message)))))
+
 (defun others-p (message)
   "True if MESSAGE tells how a command ended that a plan or program has given."
   (let ((asker (message-asker message)))

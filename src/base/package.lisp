@@ -145,7 +145,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-listener #:message-queue-error-policy
            #:message #:message-kind #:message-items #:message-asker
-           #:message-robot #:*robot-told-of* #:message-run #:*run-that-reports* #:*told-of*
+           #:message-robot #:message-told-p #:*robot-told-of* #:message-run
+           #:*run-that-reports* #:*told-of*
            #:take-messages #:queue-message
            #:message-text #:phrase
            #:write-message #:write-items #:out #:*message-limit*)

@@ -114,6 +114,12 @@ none if the manipulation has been undefined since."
 
 ;;; Issuing.
 
+(defun outcome-text (operation value)
+  "Return in words what OPERATION has done to what, and the VALUE that it has returned, unless that
+is NIL (manual E)."
+  (format nil "~A~@[: ~A~]" (objects-text operation)
+          (and value (one-line (safe-text value :escape nil :length 100)))))
+
 (defun objects-text (operation)
   (format nil "~{~A~^, ~} by ~A"
           (loop for argument in (operation-arguments operation)
@@ -142,7 +148,7 @@ none if the manipulation has been undefined since."
      :results (list (make-spec 'value t "what the manipulation returns"))
      :errors (list (make-error-code :failed (format nil "~A failed" prefix)))
      :delay (constantly 1)
-     :report (lambda (operation value) (declare (ignore value)) (objects-text operation))
+     :report #'outcome-text
      :body #'begin-manipulation)))
 
 (defun command-for (manipulation)

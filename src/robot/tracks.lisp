@@ -82,7 +82,9 @@ See reading 161."
   "Make DESIGNATOR invalid and its number free; the cameras that track it lose it. Warnings say
 so unless SILENTLY."
   (when (designator-valid-p designator)
-    (unless silently (warning-set (format nil "Removing ~A" designator)))
+    (unless silently
+      (let ((*robot-told-of* (robot-name (designator-robot designator))))
+        (warning-set (format nil "Removing ~A" designator))))
     (dolist (camera (tracking-cameras designator))
       (stop-track camera :lost-track
                   (unless silently
