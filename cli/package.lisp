@@ -10,6 +10,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:import-from :ars-magna.host
                 #:octet-input #:text-output #:descriptor-stream #:input-within-p
                 #:user-interrupt #:signal-user-interrupt #:call-on-interrupt
+                #:call-on-continuing
                 #:die-of-interrupts #:die-of-termination
                 #:rows-and-columns #:char-width #:disabled-hook-p)
   (:import-from :trivial-gray-streams

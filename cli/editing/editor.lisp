@@ -34,14 +34,18 @@ control C and its like, which are signals.")
   (:method ((stream edited-text) &key interrupts)
     (hand-over-keys :interrupts interrupts)))
 
+(defun show-again (stream)
+  "Show the line that is typed into STREAM, as this process goes on that was stopped."
+  (tell-pastes-apart (edited-console stream) t)
+  (change-line (edited-console stream) (constantly nil)))
+
 (defgeneric stop-here (stream)
   (:documentation "Stop this process until its user, who types into STREAM, wants it back.")
   (:method ((stream edited-text))
     (hide-line (edited-console stream))
     (tell-pastes-apart (edited-console stream) nil)
     (stop-for-a-while)
-    (tell-pastes-apart (edited-console stream) t)
-    (change-line (edited-console stream) (constantly nil))))
+    (show-again stream)))
 
 (defvar *while-typing* nil
   "NIL, or a function that is called now and then while a line is typed.")
@@ -53,6 +57,7 @@ control C and its like, which are signals.")
   (when (typep (typed-octets stream) 'descriptor-stream)
     (loop until (octets-within-p (typed-octets stream) (if *while-typing* 0.05 0.25))
           do (redraw-if-resized (edited-console stream))
+             (when (shiftf *continued-p* nil) (show-again stream))
              (when *while-typing* (funcall *while-typing*)))))
 
 (defun next-octet (stream)

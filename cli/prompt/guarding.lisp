@@ -21,13 +21,26 @@ that of no function, or NIL."
              (fboundp symbol)
              (format nil "ARS-WORLDS:~A" symbol))))))
 
+(defun complain-of-printing (session trouble)
+  "Say in SESSION that what went wrong cannot be printed, because of TROUBLE. At a terminal no line
+could be typed either: so signal that."
+  (when (terminal-p session) (error trouble))
+  (incf (session-errors session))
+  (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
+               (session-console session)))
+
+(defun complain-of (session condition)
+  "Show CONDITION as an error in SESSION."
+  (handler-case (complain session (format nil "~A~@[ There is ~A.~]" (condition-text condition)
+                                          (shipped-name condition)))
+    (error (trouble) (complain-of-printing session trouble))))
+
 (defun call-complaining (session function)
   "Call FUNCTION; complain of what goes wrong in it."
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
       (regain-room condition)
-      (complain session (format nil "~A~@[ There is ~A.~]" (condition-text condition)
-                                (shipped-name condition))))))
+      (complain-of session condition))))
 
 (defun command-carried-out (robot)
   "Return the name of the command that ROBOT carries out, or NIL."

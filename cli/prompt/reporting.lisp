@@ -94,12 +94,12 @@ ERRORS so far. If END is not NIL, that waits for time to pass: END returns NIL u
 then :OK or :FAILED."
   (when account (report-waiting-lines account))
   (when (and account (account-text account))
-    (let ((text (string-trim " " (account-text account))) (line (line-under-way account)))
+    (let ((text (string-trim " " (shiftf (account-text account) nil)))
+          (line (line-under-way account)))
       (cond (end (push (list line text end) (account-waiting account))
                  (report-line account "waiting" line text))
             (t (report-line account "done" line text
-                            :ok (if (= errors (account-errors account)) t :false)))))
-    (setf (account-text account) nil)))
+                            :ok (if (= errors (account-errors account)) t :false)))))))
 
 (defun report-asking (account)
   "Report that a program reads the line that is sent next."

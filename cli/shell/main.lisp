@@ -186,7 +186,7 @@ value."
 
 (defun give-reason (condition status)
   "Say on the error output what CONDITION says; return STATUS."
-  (ignore-errors (say-on-error-output (complaint-text (condition-text condition))))
+  (ignore-errors (say-on-error-output (complaint-text (ending-text condition))))
   status)
 
 (defun call-for-status (function)
@@ -234,6 +234,7 @@ only asks whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
   (die-of-termination)
   (mind-interrupts)
+  (call-on-continuing #'take-terminal-again)
   (refuse-exits "EXIT would end the whole program amid a run. QUIT at the prompt leaves.")
   ;; An interrupt that still waits when all is done is not to be taken then.
   (call-holding-interrupts (lambda () (end-process (run-process)))))

@@ -8,6 +8,8 @@
 ;;; key like others, so that nothing typed before or after it comes in another order.
 
 (defvar *first-manner* nil "The manner of the terminal before the prompt changed it, or NIL.")
+(defvar *keys-interrupt-p* nil "True if control C and its like are signals, as said last.")
+(defvar *continued-p* nil "True if this process was stopped and goes on, and nobody has seen that.")
 
 (defun manner ()
   "Return the manner of the terminal, as the system keeps it, or NIL if there is no terminal."
@@ -21,6 +23,7 @@
   "Let the terminal hand over keys as they are pressed, without showing them. If INTERRUPTS is true,
 control C and its like are signals instead, which let what is on its way to the screen arrive. Only
 within CALL-HANDING-OVER-KEYS."
+  (setf *keys-interrupt-p* interrupts)
   (let ((manner (manner))
         (line-manner (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))
     (when (and manner *first-manner*)
@@ -49,6 +52,12 @@ told to go on."
   (restore-manner)
   (sb-posix:kill 0 sb-posix:sigtstp)
   (hand-over-keys))
+
+;; Whoever had the terminal meanwhile, such as a shell, has left it in a manner of his own.
+(defun take-terminal-again ()
+  "Let the terminal hand over keys as before, as this process goes on that was stopped."
+  (hand-over-keys :interrupts *keys-interrupt-p*)
+  (setf *continued-p* t))
 
 (defun quit-by-signal ()
   "End this process as control \\ does where no keys are handed over."

@@ -21,10 +21,12 @@ can, or is.")
 
 (defun say-on-error-output (text)
   "Write TEXT to the error output, whatever state streams are in, as a line that says who says so."
-  (ignore-errors
-   (let ((output (text-output 2)))
-     (format output "ars-magna: ~A~%" text)
-     (finish-output output))))
+  (flet ((say (output)
+           (write-string (concatenate 'string "ars-magna: " text '(#\Newline)) output)
+           (finish-output output)))
+    ;; A stream cannot be made where numbers cannot be printed.
+    (handler-case (say (text-output 2))
+      (error () (ignore-errors (say *error-output*))))))
 
 ;;; Control C. It reaches this process's first thread, between any two of its instructions. So that
 ;;; it ends what the user wants to end and nothing else, the prompt holds it: see RUN-SESSION.

@@ -24,6 +24,15 @@
                 symbol (package-name (symbol-package symbol)) symbol)
         (format-briefly nil "~A" condition))))
 
+(define-constant +unprintable+
+    "What was to be said cannot be printed. Perhaps a method for PRINT-OBJECT fails."
+  :test #'string=
+  :documentation "What is said where not even an error can be.")
+
+(defun ending-text (condition)
+  "Return what CONDITION, which ends this process, says, if that can be printed."
+  (if (string= "" (own-text condition)) +unprintable+ (condition-text condition)))
+
 (defun condition-text (condition)
   "Return what CONDITION says, or what it is if it cannot say that."
   (if (typep condition 'lock-violation)

@@ -66,6 +66,8 @@ guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked wit
       "Return a note of who asked for what the message tells of, or NIL."
       (documentation 'message-robot 'function)
       "Return the name of the robot whose command the message tells of, or NIL."
+      (documentation 'message-told-p 'function)
+      "True if users' code has been told otherwise of what the message tells of."
       (documentation 'message-run 'function) "Return the run that the message belongs to, or NIL."
       (documentation 'make-message-queue 'function) "Return a new, empty queue of messages."
       (documentation 'message-queue-listener 'function)

@@ -45,7 +45,8 @@ file. No other folder names such parts of SBCL.")
   ;; streams
   (:export #:octet-input #:text-output #:descriptor-stream #:input-within-p)
   ;; signals
-  (:export #:user-interrupt #:signal-user-interrupt #:call-on-interrupt #:die-of-interrupts
+  (:export #:user-interrupt #:signal-user-interrupt #:call-on-interrupt #:call-on-continuing
+           #:die-of-interrupts
            #:die-of-termination)
   ;; terminal
   (:export #:rows-and-columns #:char-width))

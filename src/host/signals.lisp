@@ -22,6 +22,13 @@
                    (declare (ignore signal info context))
                    (funcall function))))
 
+(defun call-on-continuing (function)
+  "Call FUNCTION, in any thread, whenever this process goes on that was stopped, as by control Z."
+  (handle-signal sb-posix:sigcont
+                 (lambda (signal info context)
+                   (declare (ignore signal info context))
+                   (funcall function))))
+
 ;;; There are states in which no Lisp runs any more that would handle a signal, so the system itself
 ;;; ends the process. (With a terminal that goes away it does so anyway, unless it was told NOHUP.)
 
