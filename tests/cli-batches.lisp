@@ -89,18 +89,30 @@ resume" "--rate" "free")))
     (is-true (has-words-p (third lines) "Robot turned 1.00"))
     (is-true (has-words-p (first (last lines)) "Robot turned 2.00"))))
 
-(defun run-endless-script (&rest options)
-  "Run a script whose continuation does not return, in a process of its own, with OPTIONS. Return
-its error output and status."
+(defun run-script-apart (text &rest options)
+  "Run a script of TEXT in a process of its own, with OPTIONS. Return its error output, status and
+output."
   (uiop:with-temporary-file (:pathname path :stream stream :type "ars")
-    (write-string "(robot-turn dot 1 (lambda (&rest results) (loop (list results))))" stream)
+    (write-string text stream)
     :close-stream
     (multiple-value-bind (output errors status)
         (uiop:run-program (list* (base:native-name (project-file "cli/ars-magna"))
                                  (base:native-name path) "--world" "tiny" options)
-                          :error-output :string :ignore-error-status t)
-      (declare (ignore output))
-      (values errors status))))
+                          :output :string :error-output :string :ignore-error-status t)
+      (values errors status output))))
+
+(defun run-endless-script (&rest options)
+  (apply #'run-script-apart "(robot-turn dot 1 (lambda (&rest results) (loop (list results))))"
+         options))
+
+(test scripts.say-so-where-nothing-can-be-printed
+  (let ((text (joined '("(defmethod print-object :around ((x t) stream) (error \"no\"))" "turn 1"
+                        "(+ 1 2)"))))
+    (multiple-value-bind (errors status output) (run-script-apart text)
+      (declare (ignore errors))
+      (is (= 1 status))
+      (is-true (has-words-p output "*ERROR*" "PRINT-OBJECT fails")))
+    (is-true (has-words-p (run-script-apart text "--json") "PRINT-OBJECT fails"))))
 
 (test scripts.name-code-that-does-not-return-and-end-at-a-time-limit
   (multiple-value-bind (errors status) (run-endless-script "--time-limit" "5")
@@ -141,11 +153,43 @@ its error output and status."
              (type-batch "obj-desig 0 local ((:color lightred))" "cam-track 0 0" "hand-grasp 0 0"
                          "hand-track 0" "step 1"))))
 
+(test lines.that-end-with-no-unit-say-which-there-are
+  (is-true (has-words-p (complaint "turn 3 foo")
+                        "foo is too much" "no unit of an angle. Known: rad" "deg"))
+  (is-true (has-words-p (complaint "turn 3 4") "4 is too much")))
+
+(defvar *crew* '(fitter) "Robots of a run that a variable names.")
+
+(test with-simulation.takes-an-expression-for-its-robots
+  (is (eq 'fitter (run:with-simulation (*crew*) (robot:robot-name fitter))))
+  (is (eq 'fitter (run:with-simulation ((list 'fitter)) (robot:robot-name fitter))))
+  (let ((crew 'fitter))
+    (is (eq 'fitter (run:with-simulation (crew :seed 1) (robot:robot-name fitter))))))
+
+(test aliases.that-lead-back-to-themselves-say-so
+  (let ((cli::*aliases* cli::*aliases*))
+    (is-true (has-words-p (first (type-batch "alias around turn 1" "alias back around"
+                                             "alias around back"))
+                          "AROUND would stand for itself: AROUND = BACK = AROUND"))))
+
+(test process.takes-the-terminal-again-when-it-goes-on
+  "After control Z and FG, or STOP and CONT from outside."
+  (let ((heard (base:make-semaphore "heard")))
+    (unwind-protect
+         (progn (host:call-on-continuing (lambda () (base:signal-semaphore heard)))
+                (sb-posix:kill (sb-posix:getpid) sb-posix:sigcont)
+                (is-true (base:wait-on-semaphore heard 20)))
+      (host::handle-signal sb-posix:sigcont :default)))
+  (let ((cli::*continued-p* nil))
+    (cli::take-terminal-again)
+    (is-true cli::*continued-p* "the line that is typed is drawn again")))
+
 (test scripts.leave-errors-to-continuations-that-are-told
   "As those of plans: a program that is told may try again. What nobody is told counts."
   (flet ((status (text) (nth-value 1 (run-script text))))
     (is (= 0 (status "(hand-ungrasp (robot-hand dot 0) (lambda (&rest results) results))")))
-    (is (= 0 (status "(run-plan (interp-lambda () (rpl-hand-ungrasp 0) (wait-for (vref hand-moved* 0))))")))
+    (is (= 0 (status "(run-plan (interp-lambda () (rpl-hand-ungrasp 0)
+  (wait-for (vref hand-moved* 0))))")))
     (is (= 1 (status "(hand-ungrasp (robot-hand dot 0) nil)")))
     (is (= 1 (status "hand-ungrasp 0")))
     (is (= 1 (status "repeat 2 hand-ungrasp 0")))

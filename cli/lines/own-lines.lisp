@@ -7,15 +7,28 @@
       (format t "~:{~A = ~A~%~}" (sort (copy-list *aliases*) #'string< :key #'first))
       (format t "No aliases. ALIAS name command defines one.~%")))
 
+(defun circle-of (name text)
+  "Return the aliases that TEXT, which the alias NAME is to stand for, leads through on the way back
+to NAME, that one first and last; NIL if it does not."
+  (loop with aliases = (acons name (list text) *aliases*)
+        for word = name then (split-line (second alias))
+        for alias = (assoc word aliases :test #'string-equal)
+        while alias
+        collect (first alias) into names
+        when (and (rest names) (string= name (first alias))) return names
+        when (< (length aliases) (length names)) return nil))
+
 (defun check-alias (name text)
   "Signal BAD-LINE if TEXT, which the alias NAME is to stand for, begins with no command, or leads
 back to NAME."
+  (let ((circle (circle-of name text)))
+    (when circle
+      (reject-line "The alias ~A would stand for itself: ~{~A~^ = ~}. Give a command after its ~
+                    name."
+                   name circle)))
   (let ((expansion (expand-alias text)))
     (unless (lisp-p expansion)
-      (let ((command (split-line expansion)))
-        (when (string-equal name command)
-          (reject-line "The alias ~A would stand for itself. Give a command after its name." name))
-        (find-line command)))))
+      (find-line (values (split-line expansion))))))
 
 (defun define-alias (name text)
   (when (find name (all-line-names) :test #'string=)

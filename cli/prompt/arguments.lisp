@@ -185,6 +185,16 @@ another datum, and where that ends."
              (line-parameters line))
        (session-robot)))
 
+(defun reject-rest (line text)
+  "Signal BAD-LINE since TEXT stands behind the arguments of LINE. Where a unit could stand, say
+which there are."
+  (let* ((slot (first (last (line-parameters line))))
+         (dimension (and slot (dimension-of (slot-type slot)))))
+    (if (and dimension (alpha-char-p (char text 0)))
+        (reject-line "~A is too much: it is no unit of ~A. Known: ~{~A~^, ~}. ~A" text
+                     (words-for dimension) (unit-names dimension) (takes line))
+        (reject-line "~A is too much. ~A" text (takes line)))))
+
 (defun read-arguments (line text)
   "Return the arguments that TEXT, what follows the name of LINE, holds for it."
   (let ((position (skip-blanks text 0)))
@@ -194,5 +204,4 @@ another datum, and where that ends."
                    until (and (over-p) (slot-optional-p slot))
                    when (over-p) do (reject-line "~A is missing. ~A" (slot-name slot) (takes line))
                    collect (multiple-value-call #'advance (read-slot slot text position line)))
-        (unless (over-p)
-          (reject-line "~A is too much. ~A" (subseq text position) (takes line)))))))
+        (unless (over-p) (reject-rest line (subseq text position)))))))

@@ -4,8 +4,9 @@
 
 ;;; A command is issued and the prompt is back at once. A patient session, each that has more lines
 ;;; pasted with the one read last, and each in a headless simulation, reads on when what was issued
-;;; has completed, that is, when its continuation is called. REPEAT waits in the same way. Tracking a grasp goes on until the grasp is lost, so
-;;; what is waited for is that it has begun. Plans are errands, too: see plans.lisp.
+;;; has completed, that is, when its continuation is called. REPEAT waits in the same way. Tracking
+;;; a grasp goes on until the grasp is lost, so what is waited for is that it has begun. Plans are
+;;; errands, too: see plans.lisp.
 
 (defparameter *patience* 100000
   "How many ticks a headless prompt waits for one command to complete.")

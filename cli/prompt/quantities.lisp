@@ -106,19 +106,22 @@ NIL if there is none."
   (loop for (nil . names) in (cddr (assoc dimension *units*))
         append names))
 
+(defun words-for (dimension)
+  "Return what a quantity of DIMENSION is called, such as \"an angle\"."
+  (second (assoc dimension *units*)))
+
 (defun in-own-units (number unit dimension said reject)
   "Return NUMBER UNITs in the simulator's units of DIMENSION. If they are of another, call REJECT, a
 function, with what is wrong with what was SAID, in words."
   (destructuring-bind (&optional (other dimension) (factor 1)) unit
-    (flet ((words (dimension) (second (assoc dimension *units*))))
-      (unless (eq dimension other)
-        (funcall reject (format nil "~A is ~A, and what is wanted is ~A.~@[ ~A~]"
-                                said (words other) (words dimension)
-                                (third (find-if (lambda (way)
-                                                  (and (eq dimension (first way))
-                                                       (eq other (second way))))
-                                                *other-ways*)))))
-      (* number factor))))
+    (unless (eq dimension other)
+      (funcall reject (format nil "~A is ~A, and what is wanted is ~A.~@[ ~A~]"
+                              said (words-for other) (words-for dimension)
+                              (third (find-if (lambda (way)
+                                                (and (eq dimension (first way))
+                                                     (eq other (second way))))
+                                              *other-ways*)))))
+    (* number factor)))
 
 (defun read-quantity (datum text start end type reject)
   "Return the number that DATUM, read in TEXT from START to END, and a unit that may follow it mean

@@ -11,6 +11,18 @@
            (format nil "several robots are a list of their own: (with-simulation (~(~A~)) ...)"
                    (abridged names))))))
 
+(defun robots-form-p (form environment)
+  "True if FORM, for the robots of WITH-SIMULATION, is an expression that returns them, and no name
+or list of names."
+  (typecase form
+    (symbol (and form (known-variable-p form environment) (not (find-blueprint form nil))))
+    (cons (let ((head (first form)))
+            (and (symbolp head)
+                 (not (eq 'quote head))
+                 (not (find-blueprint head nil))
+                 (or (some #'consp (rest form))
+                     (known-function-p head environment)))))))
+
 (defun unquoted-settings-p (form)
   "True if FORM, for a list of settings, is such a list itself, or a setting: neither is a call."
   (and (consp form)

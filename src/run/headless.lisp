@@ -153,10 +153,12 @@ mode."
         (when journal (begin-journal simulation))
         simulation))))
 
+(addition call-with-simulation)
 (defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep
                                                (thinking :free) (errors :report) variables)
-  "Call FUNCTION in a fresh headless simulation; see WITH-SIMULATION. VARIABLES are symbols by which
-FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
+  "Call FUNCTION, with no arguments, in a fresh headless simulation of ROBOTS, a robot, its name or
+a list of such, and return its values: what WITH-SIMULATION does with its body. VARIABLES are
+symbols by which FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking 'with-simulation thinking)
   (check-argument with-simulation errors (typep errors 'error-policy)
@@ -280,9 +282,12 @@ Signals WRONG-ARGUMENT. See WITH-SIMULATION."
 (addition with-simulation)
 (define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal keep
                                             (thinking :free) (errors :report))
-                                    &body body)
-  "Run BODY with ROBOTS, the name of a robot or a list of names, of any package, bound to fresh
-robots in a fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The
+                                    &body body &environment environment)
+  "Run BODY with ROBOTS, the name of a robot or a list of names, of any package, or an expression
+that returns such, as (list 'a 'b) or a variable that is no robot's, bound to fresh robots in a
+fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. Only the thread of
+BODY sees these bindings: to another one that it starts, a name means the robot that it means at
+top level, so hand the robot to that. The
 integer SEED decides all chance. Parameters are bound to what they are here, or as the list
 PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
 journal, with KEEP forks, so that it can be rewound, see KEEP-FORKS. THINKING says how much time
@@ -299,11 +304,13 @@ its tick is over, or WITH-SIMULATION at the end. With :COLLECT they are only mes
 SIMULATION-ERRORS returns them. In any case it is written to the error output if no ticks have
 passed and something was asked for, or a plan that was begun waits for what nothing in the run will
 bring about."
-  (let* ((robots (unquoted robots)) (variables (variables-among robots)))
+  (let* ((form-p (robots-form-p robots environment))
+         (robots (if form-p robots (unquoted robots)))
+         (variables (if form-p '() (variables-among robots))))
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))
                              ,@body)
-                           ',robots
+                           ,(if form-p robots `',robots)
                            :variables ',variables
                            :seed ,seed :parameters ,(settings-form parameters) :clean ,clean
                            :journal ,journal :keep ,keep :thinking ,thinking
