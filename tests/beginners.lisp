@@ -201,6 +201,57 @@ muffled."
                           (driver:run-plan (plan-of (rpl:wait-for (driver:begin-plan 'turn-once)))))
                         "a task" "(join-task task)")))
 
+;;; Commands without a tick between them.
+
+(test commands.that-replace-each-other-before-a-tick-are-told-of-once
+  (flet ((hurry (rover) (command:robot-turn rover 1 nil) (command:robot-go-forward rover 1 nil)))
+    (let ((text (rover-writes () (hurry rover) (run:run-ticks 3) (hurry rover) (run:run-ticks 1))))
+      (is (= 1 (length (lines-of text))) "~A" text)
+      (is-true (has-words-p text "robot-turn does nothing: robot-go-forward was asked for before"
+                            "(robot-turn ... (continuation (err robot angle) (robot-go-forward"
+                            "(run-ticks N)")))
+    (is-true (has-words-p (rover-writes ()
+                            (command:robot-turn rover 1 (lambda (&rest told)
+                                                          (declare (ignore told))
+                                                          (hurry rover)))
+                            (run:run-ticks 30))
+                          "robot-turn does nothing"))))
+
+(test commands.that-may-replace-each-other-are-quiet
+  (is (string= "" (rover-writes ()
+                    (command:robot-turn rover 1 (constantly nil))
+                    (command:robot-go-forward rover 1 nil)
+                    (command:robot-stop rover nil)
+                    (run:run-ticks 1)
+                    (command:robot-set-speed rover 1 nil)
+                    (command:robot-turn rover 1 nil)
+                    (command:robot-turn rover 1/2 nil)
+                    (command:camera-turn (robot:robot-camera rover 0) 1 nil)
+                    (run:run-ticks 1)
+                    (command:robot-go-forward rover 1 nil)
+                    (run:run-ticks 1)))))
+
+(test plans.that-give-commands-without-a-wait-are-told-so-once
+  (flet ((told (plan) (rover-writes () (driver:run-plan plan) (driver:run-plan plan))))
+    (let ((text (told (plan-of (driver:rpl-robot-turn 1)
+                               (driver:rpl-robot-go-forward 1)
+                               (rpl:wait-for driver:robot-stopped*)))))
+      (is (= 1 (length (lines-of text))) "~A" text)
+      (is-true (has-words-p text "rpl-robot-turn of the plan"
+                            "rpl-robot-go-forward was given before" "(wait-for robot-stopped*)")))
+    (dolist (plan (list (plan-of (driver:rpl-robot-go-forward 1)
+                                 (driver:rpl-robot-set-speed 1)
+                                 (driver:rpl-robot-stop)
+                                 (rpl:wait-for driver:robot-stopped*))
+                        (plan-of (driver:rpl-robot-go-forward 1)
+                                 (rpl:wait-time 1)
+                                 (driver:rpl-robot-turn 1)
+                                 (rpl:wait-for driver:robot-stopped*))
+                        (plan-of (rpl:evap-protect (driver:rpl-robot-go-forward 1)
+                                   (driver:rpl-robot-turn 1))
+                                 (rpl:wait-for driver:robot-stopped*))))
+      (is (string= "" (told plan))))))
+
 ;;; Definitions.
 
 (test maps.say-where-kickers-of-a-thing-stand

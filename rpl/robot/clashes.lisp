@@ -73,3 +73,29 @@ happens."
                               have the robot while it needs it: (with-valve ((rpl-robot-valve)) ~
                               ...)."
                          interrupted by (deed-resource older))))))
+
+;;; A task that gives one command after the other has forgotten to wait.
+
+(defun hurry-p (older newer)
+  "True if the deed NEWER is of the task that has asked for the deed OLDER in the same tick, and
+does not react to an event."
+  (let ((task (deed-task older)))
+    (and task
+         (eq task (deed-task newer))
+         (eql (deed-tick older) (deed-tick newer))
+         (not (gentle-p older))
+         (not (gentle-p newer))
+         (not (reacting-to-events-p task nil)))))
+
+(defun tell-of-hurry (interface older newer)
+  "Say once if the deed NEWER of INTERFACE has cut the deed OLDER short before that has begun."
+  (when (and newer (hurry-p older newer))
+    (let ((before (command-name (deed-command older))) (after (command-name (deed-command newer))))
+      (warn-once (list :hurry-in-plan before after)
+                 (simulation-world (interface-simulation interface))
+                 (format nil "rpl-~(~A~) of the plan ~A does nothing: rpl-~(~A~) was given before ~
+                              a tick has passed, and ~A carries out one command at a time.~@[ Wait ~
+                              for the end of the first before it: ~A.~]"
+                         before (task-label (task-top (deed-task older))) after
+                         (deed-resource older)
+                         (wait-text (deed-outcome older) (deed-resource older)))))))

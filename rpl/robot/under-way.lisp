@@ -9,10 +9,10 @@
 ;;; command hears that command. What the simulator answers in the end for what has been told so
 ;;; sets only the fluents that say what the robot is or has: no error fluent, no pulse.
 
-(defstruct (deed (:constructor make-deed (command resource outcome task cleanup-p issue))
+(defstruct (deed (:constructor make-deed (command resource outcome task cleanup-p issue tick))
                  (:copier nil))
-  "That COMMAND is done on RESOURCE, as TASK (NIL: no plan) asked for, perhaps to clean up. OUTCOME
-makes settings of an answer."
+  "That COMMAND is done on RESOURCE, as TASK (NIL: no plan) asked for at TICK, perhaps to clean up.
+OUTCOME makes settings of an answer."
   (command nil :type command :read-only t)
   (resource nil :read-only t)
   (outcome nil :type function :read-only t)
@@ -20,6 +20,7 @@ makes settings of an answer."
   (cleanup-p nil :read-only t)
   ;; What the trace knows of it, or NIL.
   (issue nil :read-only t)
+  (tick 0 :type fixnum :read-only t)
   ;; By what the simulator knows it.
   (continuation nil :type (or null function))
   ;; It goes on in the background, as a track that has begun.
@@ -155,6 +156,7 @@ has been ended by the plan that is at work, if one is."
                  (deed-open-p deed)
                  (funcall test deed))
         (tell-of-clash interface deed except)
+        (tell-of-hurry interface deed except)
         (tell-interrupted deed)
         (count-takeover interface resource (deed-task deed) (task-at-work interface))))))
 
@@ -179,7 +181,8 @@ the plan at work ends; an error says no more than that."
 the trace knows of it."
   (let* ((task (task-at-work interface))
          (cleanup-p (and task (cleaning-up-p task) t))
-         (deed (make-deed command resource outcome task cleanup-p issue))
+         (deed (make-deed command resource outcome task cleanup-p issue
+                          (simulation-tick (interface-simulation interface))))
          (issued-p nil))
     (when (and task (not cleanup-p)) (count-command task command outcome resource))
     (add-deed deed interface)

@@ -41,8 +41,10 @@ does not fit its lambda list, or NIL.")
   "Return in words the first of ARGUMENTS that stands where a keyword of PARAMETERS, of a macro's
 lambda list, should and is none of them; or NIL."
   (let* ((keys (member '&key parameters))
-         (before (remove-if (lambda (part) (member part lambda-list-keywords))
-                            (ldiff parameters keys)))
+         (before (remove '&optional
+                         (ldiff parameters
+                                (member-if (lambda (part) (member part '(&rest &body &key)))
+                                           parameters))))
          (known (loop for key in (rest keys) collect (make-keyword (first (ensure-list key))))))
     (loop for (key . value) on (and keys (nthcdr (length before) arguments)) by #'cddr
           unless (member key known)

@@ -32,19 +32,66 @@
                (format nil "~(~A~): ~A ticks are none, so nothing is done. To drive back, turn by ~
                             pi first." operator ticks))))
 
+(defun told-at-end (command)
+  "Return the names of what continuations of COMMAND are called with, a list."
+  (list* 'err (spec-name (command-resource command))
+         (mapcar #'spec-name (command-results command))))
+
 (defun doubt-continuation (command world continuation)
   "Say once if CONTINUATION cannot be called with what COMMAND tells at its end."
-  (let ((results (command-results command)) (*print-pretty* nil))
+  (let ((*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
-               (not (callable-with-p continuation (+ 2 (length results)))))
+               (not (callable-with-p continuation (length (told-at-end command)))))
       (warn-once (list :continuation (command-name command)) world
                  (format nil "~(~A~): the continuation takes ~(~:A~), and is called with ~(~A~). ~
                               Write (continuation ~:*~(~A~) ...)."
                          (command-name command)
                          (lambda-list-of continuation)
-                         (list* 'err (spec-name (command-resource command))
-                                (mapcar #'spec-name results)))))))
+                         (told-at-end command))))))
+
+;;; One command after the other, and no tick between them.
+
+(defun lasting-p (command)
+  "True if COMMAND takes time, and does not just stop the robot: a newer one cuts it short."
+  (not (or (command-instant-p command) (eq 'robot-stop (command-name command)))))
+
+(defun by-program-p ()
+  "True where a program asks, one that is not of plans, the prompt or a journal: whoever has called
+WITH-SIMULATION, somebody at a REPL or a continuation."
+  (or (null *asker*)
+      (and (stringp *asker*) (starts-with-subseq "the continuation of " *asker*))))
+
+(defun not-yet-begun (resource timeline)
+  "Return what was asked for last of what takes time on RESOURCE and has not begun, or NIL."
+  (find-if (lambda (request)
+             (and (operation-p request)
+                  (eq resource (operation-resource request))
+                  (lasting-p (operation-command request))))
+           (timeline-inbox timeline)))
+
+(defun doubt-hurry (command resource timeline)
+  "Say once for a pair if COMMAND is asked of RESOURCE by who has asked for another one in the same
+tick, and is not told of the end of that."
+  (when (and (by-program-p) (lasting-p command))
+    (let ((before (not-yet-begun resource timeline)))
+      (when (and before
+                 (not (eq command (operation-command before)))
+                 (null (operation-continuation before))
+                 (equal (note-of-asker) (request-asker before)))
+        (warn-of-hurry (operation-command before) command resource)))))
+
+(defun warn-of-hurry (before command resource)
+  "Say once that COMMAND replaces the command BEFORE of RESOURCE, which has done nothing yet."
+  (let ((*print-pretty* nil))
+    (warn-once (list :hurry (command-name before) (command-name command))
+               (robot-world (resource-robot resource))
+               (format nil "~(~A~) does nothing: ~(~A~) was asked for before a tick has passed, ~
+                            and ~A carries out one command at a time. Ask for that in the ~
+                            continuation, (~(~A~) ... (continuation ~(~A~) (~(~A~) ...))), or ~
+                            let ticks pass before it: (run-ticks N)."
+                       (command-name before) (command-name command) resource
+                       (command-name before) (told-at-end before) (command-name command)))))
 
 (defun doubt-arguments (command world arguments)
   "Say once if one of ARGUMENTS, of COMMAND in WORLD, is allowed, but most likely not meant."
@@ -92,6 +139,7 @@ takes another number of arguments."
                         (given (command-name command) "arguments" arguments)
                         arguments)))
     (note-asked (occupied command resource))
+    (doubt-hurry command (occupied command resource) timeline)
     (post (make-operation command (occupied command resource) arguments continuation timeline)
           timeline)
     (doubt-arguments command world arguments)
