@@ -162,96 +162,6 @@ muffled."
       (is-false (says-p (plan-of (rpl:wait-time 50))))
       (is-false (says-p (plan-of (loop (rpl:wait-time 1) (when (car (list nil)) (return)))))))))
 
-;;; What may never end.
-
-(test runaways.are-told-of-while-they-run
-  (let* ((driver:*plan-limit* 1)
-         (told nil)
-         (text (error-output
-                 (let ((output *error-output*) (rpl:*runaway-limit* 1000))
-                   (run:with-simulation (rover)
-                     (driver:run-plan (plan-of (loop (identity :unheard-of))))
-                     (setf told (get-output-stream-string output)))))))
-    (is-true (has-words-p told "*WARNING* -> A plan took 1000 steps without waiting, at"
-                          "unheard-of"))
-    (is (not (search "without waiting" text)) "told once: ~A" text)))
-
-(test warnings.at-once-are-for-a-listener-if-there-is-one
-  (with-messages
-    (setf (base:message-queue-listener base:*message-queue*) (constantly nil))
-    (is (string= "" (error-output (base:warn-at-once "still at it")))))
-  (with-messages
-    (is (string= (format nil "*WARNING* -> still at it~%")
-                 (error-output (base:warn-at-once "still at it"))))
-    (is-true (has-words-p (displayed) "still at it") "it can be read, too")))
-
-;;; Waits for what does not wait.
-
-(test wait-for.tells-once-of-numbers-tasks-and-functions
-  (flet ((told (value)
-           (rover-writes ()
-             (driver:run-plan (rpl:interp-lambda (given) (dotimes (i 3) (rpl:wait-for given)))
-                              value))))
-    (is (= 1 (length (lines-of (told 7)))))
-    (is-true (has-words-p (told 7) "(wait-for given) does not wait: it was given a number, 7"
-                          "(wait-time 7)"))
-    (is-true (has-words-p (told #'car) "a function" "wait-until"))
-    (dolist (value '(t ball :done "open" (1 2))) (is (string= "" (told value)))))
-  (is-true (has-words-p (rover-writes ()
-                          (driver:run-plan (plan-of (rpl:wait-for (driver:begin-plan 'turn-once)))))
-                        "a task" "(join-task task)")))
-
-;;; Commands without a tick between them.
-
-(test commands.that-replace-each-other-before-a-tick-are-told-of-once
-  (flet ((hurry (rover) (command:robot-turn rover 1 nil) (command:robot-go-forward rover 1 nil)))
-    (let ((text (rover-writes () (hurry rover) (run:run-ticks 3) (hurry rover) (run:run-ticks 1))))
-      (is (= 1 (length (lines-of text))) "~A" text)
-      (is-true (has-words-p text "robot-turn does nothing: robot-go-forward was asked for before"
-                            "(robot-turn ... (continuation (err robot angle) (robot-go-forward"
-                            "(run-ticks N)")))
-    (is-true (has-words-p (rover-writes ()
-                            (command:robot-turn rover 1 (lambda (&rest told)
-                                                          (declare (ignore told))
-                                                          (hurry rover)))
-                            (run:run-ticks 30))
-                          "robot-turn does nothing"))))
-
-(test commands.that-may-replace-each-other-are-quiet
-  (is (string= "" (rover-writes ()
-                    (command:robot-turn rover 1 (constantly nil))
-                    (command:robot-go-forward rover 1 nil)
-                    (command:robot-stop rover nil)
-                    (run:run-ticks 1)
-                    (command:robot-set-speed rover 1 nil)
-                    (command:robot-turn rover 1 nil)
-                    (command:robot-turn rover 1/2 nil)
-                    (command:camera-turn (robot:robot-camera rover 0) 1 nil)
-                    (run:run-ticks 1)
-                    (command:robot-go-forward rover 1 nil)
-                    (run:run-ticks 1)))))
-
-(test plans.that-give-commands-without-a-wait-are-told-so-once
-  (flet ((told (plan) (rover-writes () (driver:run-plan plan) (driver:run-plan plan))))
-    (let ((text (told (plan-of (driver:rpl-robot-turn 1)
-                               (driver:rpl-robot-go-forward 1)
-                               (rpl:wait-for driver:robot-stopped*)))))
-      (is (= 1 (length (lines-of text))) "~A" text)
-      (is-true (has-words-p text "rpl-robot-turn of the plan"
-                            "rpl-robot-go-forward was given before" "(wait-for robot-stopped*)")))
-    (dolist (plan (list (plan-of (driver:rpl-robot-go-forward 1)
-                                 (driver:rpl-robot-set-speed 1)
-                                 (driver:rpl-robot-stop)
-                                 (rpl:wait-for driver:robot-stopped*))
-                        (plan-of (driver:rpl-robot-go-forward 1)
-                                 (rpl:wait-time 1)
-                                 (driver:rpl-robot-turn 1)
-                                 (rpl:wait-for driver:robot-stopped*))
-                        (plan-of (rpl:evap-protect (driver:rpl-robot-go-forward 1)
-                                   (driver:rpl-robot-turn 1))
-                                 (rpl:wait-for driver:robot-stopped*))))
-      (is (string= "" (told plan))))))
-
 ;;; Definitions.
 
 (test maps.say-where-kickers-of-a-thing-stand
@@ -285,6 +195,15 @@ muffled."
     (is-true (has-words-p error "which has not been run" "(run-plan 'turn-once ...)")))
   (is (string= "success" (outcomes-of-trial '(driver:run-plan plan))))
   (is (string= "success" (outcomes-of-trial ':done))))
+
+(test experiments.say-that-no-ticks-have-passed
+  (eval '(experiment:defexperiment idle (:robots rover) (:run (command:robot-turn rover 1 nil))))
+  (let* ((experiment (experiment:find-experiment 'idle))
+         (result (experiment:run-trial experiment
+                                       (first (experiment:experiment-conditions experiment)) 0)))
+    (is (string= "no-ticks" (experiment:result-reason result)))
+    (is-true (has-words-p (experiment:result-error result)
+                          "No ticks have passed in the trial, so robot-turn did nothing"))))
 
 ;;; At a REPL.
 

@@ -66,7 +66,9 @@ at the handler's end the failure goes on. Return all values of BODY."
     (next inside)
     (enter body environment frame))
    (inside (values (frame-up frame) value))
-   (handling (unwind task (frame-up frame) memory)))
+   (handling
+    (setf (failure-passed-on-by memory) (nth (handler-index memory types) types))
+    (unwind task (frame-up frame) memory)))
   (:unwind
    (cond ((and (escape-p signal) (eq body (escape-target signal)))
           (next begin)

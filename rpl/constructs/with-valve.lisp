@@ -23,8 +23,20 @@
            (report-circle task)
            nil)))
 
+(defun doubt-valve (valve scope)
+  "Warn if VALVE, a form in SCOPE for a valve, is the name of a function and of no variable."
+  (when (and valve
+             (symbolp valve)
+             (fboundp valve)
+             (not (member valve (scope-variables scope)))
+             (not (known-variable-p valve (scope-environment scope))))
+    (doubt-definition "~A: ~(~A~) is a function and no variable. Call it: (with-valve ~
+                       ((~:*~(~A~))) ...)"
+                      (author) valve)))
+
 (defun claim-form (priority valves scope)
   "Return the lambda expression that returns the values of PRIORITY and, as a list, of VALVES."
+  (dolist (valve valves) (doubt-valve valve scope))
   (value-lambda `(cons ,priority (list ,@valves)) scope))
 
 (define-construct with-valve ((valve &key priority) &body body)

@@ -194,7 +194,11 @@ ARGUMENTS, call FUNCTION at once."
 (defun write-network (fluent stream)
   "Write FLUENT as the expression that it was made by; of a large one, its beginning."
   (let ((left +most-fluents+))
-    (labels ((name (fluent) (write-string (safe-text (fluent-name fluent) :escape nil) stream))
+    (labels ((name (fluent)
+               (write-string (if (or (fluent-name fluent) (derived-p fluent))
+                                 (safe-text (fluent-name fluent) :escape nil)
+                                 "a fluent without a name")
+                             stream))
              (visit (object)
                (cond ((not (fluent-p object)) (write-string (safe-text object) stream))
                      ((minusp (decf left)) (write-string "..." stream))

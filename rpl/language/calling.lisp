@@ -77,5 +77,8 @@ so (ours).")
       (reject-use "There is no plan procedure or function ~S. Calls go by the very symbol: if the ~
                    plan ~:*~A of another package is meant, write ~S."
                   name (procedure-name namesake)))
+    (when (nisps-own name)
+      (reject-use "There is no plan procedure or function ~S; NISP has one. Write (in-package ~
+                   :ars-user), or use the package NISP in yours." name))
     (reject-name "plan procedure or function" name (mapcar #'procedure-name (all-procedures))
                  (known-operators (or (symbol-package name) *package*)))))

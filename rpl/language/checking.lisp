@@ -36,17 +36,45 @@ letter is like no other."
       (warn-of-call #'warn-of-definition form "~(~A~) takes ~A, not ~A."
                     (first form) (shape-text lambda-list) trouble))))
 
+(defun nisps-own (name)
+  "Return the symbol that is called like NAME, is another, and is a construct or function of NISP,
+where users' packages have them from; or NIL."
+  (multiple-value-bind (symbol status)
+      ;; To packages with local nicknames NISP may mean another.
+      (let ((*package* (find-package "KEYWORD"))) (find-symbol (symbol-name name) "NISP"))
+    (and (eq :external status) (not (eq symbol name)) (fboundp symbol) symbol)))
+
+(defun doubt-namesake (form)
+  "Warn if FORM, of the author's text, uses a macro of the Lisp system's that is called like a
+construct of NISP, as WAIT-FOR is in packages that do not use NISP."
+  (let ((name (first form)))
+    (when (and *definition*
+               (lisps-own-p name)
+               (not (eq (find-package "COMMON-LISP") (symbol-package name)))
+               (nisps-own name))
+      (call-at-place form
+                     (lambda ()
+                       (warn-of-call #'doubt-definition form
+                                     "~(~A~) is not that of plans; NISP has one. Write (in-package ~
+                                      :ars-user), or nisp:~:*~(~A~)."
+                                     (symbol-name name)))))))
+
 (defun warn-of-unknown (form)
   (let* ((name (first form))
          (namesake (find-procedure name nil)))
-    (if namesake
-        (warn-of-call #'doubt-definition form
-                      "there is no plan procedure or function ~S. If the plan of another package ~
-                       is meant, write ~S."
-                      name (procedure-name namesake))
-        (warn-of-call #'doubt-definition form
-                      "there is no plan procedure or function ~(~A~).~@[ Did you mean ~A?~]"
-                      name (nearest-operator name)))))
+    (cond (namesake
+           (warn-of-call #'doubt-definition form
+                         "there is no plan procedure or function ~S. If the plan of another ~
+                          package is meant, write ~S."
+                         name (procedure-name namesake)))
+          ((nisps-own name)
+           (warn-of-call #'doubt-definition form
+                         "there is no plan procedure or function ~S; NISP has one. Write ~
+                          (in-package :ars-user), or use the package NISP in yours." name))
+          (t
+           (warn-of-call #'doubt-definition form
+                         "there is no plan procedure or function ~(~A~).~@[ Did you mean ~A?~]"
+                         name (nearest-operator name))))))
 
 (defun look-at-call (form)
   "Warn if the call FORM is not right, as far as anybody knows now."

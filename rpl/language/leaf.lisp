@@ -102,7 +102,8 @@
         ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
         ((plan-in-leaf-p form) (values form t))
         ((look-at-operands form environment))
-        (t (let ((meaning (if (local-function-p (first form) environment)
+        (t (doubt-namesake form)
+           (let ((meaning (if (local-function-p (first form) environment)
                               form
                               (plan-meaning form environment))))
              (if (and (eq meaning form)

@@ -48,6 +48,20 @@ simulation inside of a live one has only inherited is left alone."
       (not (interface-valid-p interface))
       (and (live-p simulation) (live-p (interface-simulation interface)))))
 
+(defun tell-of-ended (interface robot)
+  "Say once if plans of INTERFACE end, as plans are to drive ROBOT, another one of the same run."
+  (let ((tasks (remove-if #'task-over-p (tasks-of interface))) (before (interface-robot interface)))
+    (when (and tasks
+               (interface-valid-p interface)
+               (not (eq robot before))
+               (eq (interface-simulation interface) (robot-simulation robot)))
+      (warn-once (list :ended-by (robot-name before) (robot-name robot))
+                 (robot-world robot)
+                 (format nil "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A, as plans drive ~
+                              one robot at a time. Let them end first, as (run-plan ...) does, ~
+                              or drive one of the robots by commands and continuations."
+                         robot (length tasks) (mapcar #'task-label tasks) before)))))
+
 ;; What is bound to *TRACE-PLANS* around a doing is gone when that is done again.
 (defun do-traced (traced-p function &rest arguments)
   "Call FUNCTION with ARGUMENTS, as was done where plans were to be traced if TRACED-P."
@@ -82,7 +96,9 @@ as far as it takes no time. Return the robot. To be called before anything else 
 the robot that this commands. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than
 the current one."
   (let* ((named (fluent-value robot))
-         (robot (if (robot-p named) named (find-robot named))))
+         (robot (if (robot-p named) named (find-robot named)))
+         (before *interface*))
+    (when before (tell-of-ended before robot))
     (init-robot robot)
     robot))
 

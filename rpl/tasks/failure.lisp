@@ -15,6 +15,8 @@
    (tick :initform nil :accessor failure-tick)
    (cause :initarg :cause :initform nil :accessor failure-cause)
    (suppressed :initform '() :accessor failure-suppressed)
+   ;; What the last clause was for that has handled it, and let it go on.
+   (passed-on-by :initform nil :accessor failure-passed-on-by)
    (expressions :initform '() :accessor failure-plan-backtrace))
   (:report (lambda (failure stream) (write-string (report-of failure) stream)))
   (:documentation "A plan could not do what it is for. Conditions of a user's own may inherit from
@@ -41,6 +43,8 @@ this; (fail :class name ...) makes one of them, or a plain one of class NAME."))
         (failure-task-path "Return the names of the tasks from the plan's top to the failed one.")
         (failure-tick "Return the tick at which the failure happened.")
         (failure-cause "Return the failure that was being handled when this one happened, or NIL.")
+        (failure-passed-on-by "Return what the clause is for that handled the failure last, and let
+it go on; or NIL.")
         (failure-suppressed "Return failures that happened while cleaning up after this one.")
         (failure-plan-backtrace "Return the expressions under way when the failure happened,
 innermost first.")

@@ -9,7 +9,8 @@ plans nor a simulator.")
   (:export #:cancel-timer #:set-timer #:timer #:timer-client)
   ;; failure
   (:export #:composite-failure #:composite-failures #:fail #:failure-cause #:failure-class
-           #:failure-data #:failure-form #:failure-matches-p #:failure-plan-backtrace
+           #:failure-data #:failure-form #:failure-matches-p #:failure-passed-on-by
+           #:failure-plan-backtrace
            #:failure-subject #:failure-suppressed #:failure-task-path #:failure-text
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
            #:make-failure #:plan-failure #:write-failure)

@@ -55,6 +55,13 @@ waits for its own parts."
   (when (< most (length items))
     (format stream "    ... and ~D more~%" (- (length items) most))))
 
+(defun passed-on-text (failure)
+  "Return in words that FAILURE was handled and went on, or NIL."
+  (and (failure-passed-on-by failure)
+       (format nil "the handler for ~A ended without (return ...) or (retry), so the failure went ~
+                    on"
+               (form-text (failure-passed-on-by failure)))))
+
 (defun write-failure-report (failure stream)
   (format stream "~A~%  at tick ~A in ~A~%  task: ~A~%"
           (brief-failure-text failure) (failure-tick failure) (form-text (failure-form failure))
@@ -63,6 +70,7 @@ waits for its own parts."
   (write-some "    ~A~%" (mapcar #'form-text (failure-plan-backtrace failure)) stream)
   (when (failure-cause failure)
     (format stream "  while handling: ~A~%" (brief-failure-text (failure-cause failure))))
+  (format stream "~@[  ~A~%~]" (passed-on-text failure))
   (write-some "  and in a cleanup: ~A~%"
               (mapcar #'brief-failure-text (failure-suppressed failure)) stream)
   (when (and (typep failure 'lisp-failure) (string/= "" (lisp-failure-backtrace failure)))
@@ -70,11 +78,13 @@ waits for its own parts."
 
 (defun failure-story (failure)
   "Return in a line what FAILURE is, when and where it happened, and after what."
-  (format nil "~A~@[ at tick ~A~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]"
+  (format nil "~A~@[ at tick ~A~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]~
+               ~@[; ~A~]"
           (one-line (brief-failure-text failure))
           (failure-tick failure)
           (mapcar (lambda (form) (form-text form 40)) (failure-plan-backtrace failure))
-          (and (failure-cause failure) (one-line (brief-failure-text (failure-cause failure))))))
+          (and (failure-cause failure) (one-line (brief-failure-text (failure-cause failure))))
+          (passed-on-text failure)))
 
 ;; What a REPL shows of the value of a plan that failed.
 (defmethod print-object ((failure plan-failure) stream)

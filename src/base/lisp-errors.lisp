@@ -105,12 +105,30 @@ none; and true. Return false as a third value for other types."
   (loop for (type text) in *arithmetic-texts*
         when (typep condition type) return text))
 
+(defun variables-known-to (package)
+  "Return the special variables that PACKAGE sees and that are not Lisp's, in order of their names."
+  (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
+    (do-symbols (symbol package)
+      (when (and (special-variable-p symbol nil)
+                 (not (constantp symbol))
+                 (not (eq lisp (symbol-package symbol))))
+        (pushnew symbol symbols)))
+    (sort symbols #'string<)))
+
+(defun variable-slip (name)
+  "Return in words the variable that NAME, which has no value, may be a slip for; or NIL."
+  (let ((meant (and (symbol-package name)
+                    (find-if (lambda (symbol) (resembles-p name symbol))
+                             (variables-known-to (symbol-package name))))))
+    (and meant (string-downcase (unqualified-text meant)))))
+
 (defun named-text (condition)
   "Return our text for CONDITION, that a name means nothing, or NIL."
   (let ((name (unqualified-text (cell-error-name condition))))
     (typecase condition
       (undefined-function (format nil "The function ~A is undefined." name))
-      (unbound-variable (format nil "The variable ~A has no value." name)))))
+      (unbound-variable (format nil "The variable ~A has no value.~@[ Did you mean ~A?~]"
+                                name (variable-slip (cell-error-name condition)))))))
 
 (defun case-failure-p (condition)
   "True if CONDITION is that no clause of ECASE or the like was for a value."

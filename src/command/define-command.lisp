@@ -59,6 +59,15 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
         (doubt-definition "~(~A~): ~S is no call of a function. If it is data, quote it: '~:*~S"
                           name (abridged form))))))
 
+(defun doubt-units (name forms)
+  "Warn of those of FORMS, the arguments in a call of the command NAME, that have units, such as
+(90 deg)."
+  (dolist (form forms)
+    (when (typep form '(cons number))
+      (doubt-definition "~(~A~): ~S is no call of a function. Units are for the prompt, in lines ~
+                         without parentheses; in Lisp 90 degrees are (* 90 (/ pi 180))."
+                        name (abridged form)))))
+
 (defparameter *command-families* '(:moving :looking :handling :manipulating :thinking)
   "Where commands belong.")
 
@@ -161,5 +170,6 @@ later (reading 149)."
          (issue (command-of ',name) ,(first resource) (list ,@variables) continuation))
        (define-compiler-macro ,name (&whole form &rest arguments)
          (doubt-unquoted ',name arguments)
+         (doubt-units ',name arguments)
          form)
        ',name)))

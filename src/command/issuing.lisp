@@ -4,13 +4,17 @@
 
 ;;; What is of another run.
 
+(defun owner-of-argument (argument)
+  "Return the robot that ARGUMENT, of a command, belongs to, or NIL."
+  (typecase argument
+    (designator (designator-robot argument))
+    (part (part-robot argument))))
+
 (defun world-of-argument (argument)
   "Return the world that ARGUMENT, of a command, is in, or NIL if it is in none."
-  (typecase argument
-    (designator (and (designator-robot argument) (robot-world (designator-robot argument))))
-    (part (robot-world (part-robot argument)))
-    (robot (robot-world argument))
-    (thing (thing-world argument))))
+  (let ((robot (if (robot-p argument) argument (owner-of-argument argument))))
+    (cond (robot (robot-world robot))
+          ((thing-p argument) (thing-world argument)))))
 
 (defun check-of-this-run (command resource arguments)
   "Signal MISUSE if one of ARGUMENTS, of COMMAND on RESOURCE, is in another world than that."
@@ -93,6 +97,17 @@ tick, and is not told of the end of that."
                        (command-name before) (command-name command) resource
                        (command-name before) (told-at-end before) (command-name command)))))
 
+;; Manipulations, and commands that users define, may be for two robots.
+(defun doubt-owners (command robot arguments)
+  "Say once for each owner if one of ARGUMENTS, of COMMAND, is another robot's than ROBOT's."
+  (unless (or (command-guarded-p command) (eq :manipulating (command-family command)))
+    (dolist (argument arguments)
+      (let ((owner (owner-of-argument argument)))
+        (unless (member owner (list nil robot))
+          (warn-once (list :owner (command-name command) (robot-name owner)) (robot-world robot)
+                     (format nil "~(~A~): ~A belongs to ~A, not to ~A."
+                             (command-name command) argument owner robot)))))))
+
 (defun doubt-arguments (command world arguments)
   "Say once if one of ARGUMENTS, of COMMAND in WORLD, is allowed, but most likely not meant."
   (loop for spec in (command-parameters command)
@@ -143,6 +158,7 @@ takes another number of arguments."
     (post (make-operation command (occupied command resource) arguments continuation timeline)
           timeline)
     (doubt-arguments command world arguments)
+    (doubt-owners command robot arguments)
     (doubt-continuation command world continuation)
     (tell-if-kept command robot)
     (values)))

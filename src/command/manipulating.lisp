@@ -82,6 +82,16 @@ NIL (reading 175)."
     (multiple-value-list
      (apply (method-body method) (append things (nthcdr (length things) arguments))))))
 
+(defun doubt-code (operation code)
+  "Say once for a manipulation if CODE, with which the body of that of OPERATION ends, is no error
+code."
+  (unless (typep code '(or null keyword))
+    (let ((name (command-prefix (operation-command operation))) (text (unqualified-text code)))
+      (warn-once (list :code name) (operation-world operation)
+                 (format nil "manipulation ~A: its body returned ~(~A~) as its first value, which ~
+                              is the error code, a keyword, or NIL for success. To return a ~
+                              result write (values nil result)." name (cut text 60))))))
+
 (defun run-body (operation method)
   "Run the body of METHOD, and end OPERATION with the error code and the value that it returns, or
 with :FAILED if it fails or is left."
@@ -90,7 +100,8 @@ with :FAILED if it fails or is left."
       (call-user-code (lambda ()
                         (setf results (call-body method (operation-arguments operation))))
                       (list "manipulation " (command-prefix (operation-command operation))))
-      (finish operation (first results) (second results)))))
+      (progn (doubt-code operation (first results))
+             (finish operation (first results) (second results))))))
 
 (defun carry-out (operation)
   "Do what the method that is the subject of OPERATION does, if that is still possible and succeeds,

@@ -133,6 +133,15 @@ robot."
                    (format nil "a name whose variable is free; ~A has the value ~S"
                            name (symbol-value name)))))
 
+(defun list-words (key)
+  "Return in words what list is to follow KEY, an option of DEFROBOT."
+  (ecase key
+    (:hands "a list of strengths after :hands: (10) is one hand of strength 10")
+    (:bins "a list of capacities after :bins: (20) is one bin of capacity 20")
+    (:cameras (format nil "a list of lists after :cameras: ((3 500)) is one camera that sees 3 ~
+                           radians wide, in 500 pixels"))
+    (:parts "a list of lists after :parts, (kind initarg value ...)")))
+
 (defun check-robot-form (definition name start options)
   (flet ((reject (clause expected) (reject-clause definition clause expected)))
     (check-robot-name definition name)
@@ -144,7 +153,7 @@ robot."
       (reject (getf options :documentation) "a string as the documentation"))
     (loop for (key value) on options by #'cddr
           do (unless (or (eq key :documentation) (proper-list-p value))
-               (reject (list key value) "a list after the keyword")))))
+               (reject (list key value) (list-words key))))))
 
 (defun value-form (definition form clause expected)
   "Return a form for the value of FORM, which stands in CLAUSE; that it has none is DEFINITION's."

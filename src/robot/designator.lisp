@@ -42,7 +42,9 @@ robot's heading, in radians, not normalised (manual 3.4.1)")
   make-designator "Return a new designator, which no robot knows by number yet."
   designator-p "True of a designator.")
 
-(define-argument-type 'designator #'designator-p "a designator")
+(define-argument-type 'designator #'designator-p "a designator"
+  (constantly (format nil "searches of cameras give them to their continuations, such as ~
+                           (camera-get-object-designator CAMERA '((:color red)) CONTINUATION)")))
 
 (defmethod print-object ((designator designator) stream)
   (print-named designator stream (format nil "Designator ~D" (designator-number designator))))

@@ -16,7 +16,8 @@
   (when (and (owner-p simulation)
              (or (simulation-ticking-p simulation)
                  (timeline-passing-p (simulation-timeline simulation))))
-    (reject-use "run-ticks: a tick is under way; time cannot pass inside it.")))
+    (reject-use "run-ticks: a tick is under way; time cannot pass inside it, as in a continuation. ~
+                 A plan can be begun there, by (begin-plan ...) instead of (run-plan ...).")))
 
 (defun await-free (simulation)
   "Wait a moment for another thread that has SIMULATION in custody only to look at it. Signals

@@ -39,7 +39,7 @@
   "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
 or unspecified. Of lists, strings and vectors THING gets copies. Signals WRONG-ARGUMENT for a value
 that the attribute cannot have. Warns as GET-ATTRIBUTE does."
-  (check-argument set-attribute thing (thing-p thing) "a thing")
+  (check-argument set-attribute thing (thing-p thing) (thing-words thing))
   (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
   (let ((descriptor (if (typep new-value '(or symbol number))
                         (list (checked-entry 'set-attribute attribute new-value))

@@ -93,6 +93,11 @@ true of; or about CLAUSE if there is none at all."
     (reject-clause definition part (usage-of :vary)))
   (when (and (eq :in (second part)) (/= 3 (length part)))
     (reject-clause definition part "(what :in form)"))
+  (let ((list (find-if (lambda (form) (typep form '(cons number))) (rest part))))
+    (when list
+      (reject-clause definition part
+                     (format nil "values one by one, as in (~(~A~)~{ ~S~}): ~S is no form that has ~
+                                  a value" (first part) list list))))
   (check-factor-name definition part))
 
 (defun check-case (definition case)

@@ -176,7 +176,9 @@ say how a plan went is no success if a plan that was begun waits for what can ne
              (not (member (second values) *plan-states*))
              (stranded-plan-text))
         (values "failure" "deadlock")
-        (values outcome reason))))
+        (values outcome (if (and (string= "failure" outcome) (string= "" reason) (no-ticks-text))
+                            "no-ticks"
+                            reason)))))
 
 (defun unfinished-text (values)
   "Return in a sentence that the plan whose task is the first of VALUES was not over, or NIL."
@@ -185,11 +187,16 @@ say how a plan went is no success if a plan that was begun waits for what can ne
       (format nil "The plan ~A was not over when :run returned. RUN-PLAN waits for its end; :until ~
                    and RUN-UNTIL let ticks pass." (task-label task)))))
 
+(defun no-ticks-text ()
+  "Return in a sentence that no tick has passed in this trial, and what was asked for, or NIL."
+  (let ((undone (and (zerop (simulation-tick)) (undone-text (current-simulation)))))
+    (and undone (format nil "No ticks have passed in the trial, so ~A" undone))))
+
 (defun note-unfinished (result values)
   "Enter into RESULT, unless it is a success, which plan that was begun waits in vain, or did not
-end; VALUES are those of :run."
+end, or that no tick has passed; VALUES are those of :run."
   (let ((text (and (not (success-p (result-outcome result)))
-                   (or (stranded-plan-text) (unfinished-text values)))))
+                   (or (stranded-plan-text) (unfinished-text values) (no-ticks-text)))))
     (when text (add-error result text))))
 
 (defun conduct (experiment result)
