@@ -62,6 +62,9 @@ waited for that; see rushing.lisp."
   "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if
 that was too often."
   (let ((count (takeover-count interface resource)))
+    (unless (and older newer (eq (task-top older) (task-top newer)))
+      ;; Plans that take a part from one another make way in the end: that is no rush of one.
+      (setf (runner-note (interface-runner interface) 'commands) nil))
     (when (< *most-takeovers* (incf (cdr count)))
       (warn-of-takeovers interface (takeover-text resource older newer))
       (cut-short (interface-runner interface) older newer))))
