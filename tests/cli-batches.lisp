@@ -205,8 +205,8 @@ output."
 (test sessions.lines-pasted-together-wait-for-each-other
   "As piped ones do."
   (in-talk (talk)
-    (type-keys talk (list :paste (format nil "turn 1~%turn 0.5~%(+ 20 22)")) :return)
-    (is-true (await-turns talk 6))
+    (type-keys talk (list :paste (format nil "rate 50~%turn 1~%turn 0.5~%(+ 20 22)")) :return)
+    (is-true (await-turns talk 8))
     (let ((told (told-to talk)))
       (is (not (search "interrupted" told)) "~A" told)
       (is-true (search "Robot turned 1.00" told))
