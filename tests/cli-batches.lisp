@@ -202,12 +202,19 @@ output."
                           "(robot-go-forward gofer 3 nil)")
                  :test #'string=)))
 
+(defun told-of-pasted (&rest keys)
+  "Return what is told at a prompt of the live DOT when KEYS are pasted there."
+  (multiple-value-bind (console out) (terminal-console)
+    (let ((input (typed-text-for (keyboard-for `(:paste ,@keys :pasted :enter)) console)))
+      (unwind-protect
+           (progn (run:simulator 'ars-worlds:dot :rate 50 :display nil)
+                  (cli:run-session (cli:make-session :input input :output console)))
+        (run:stop-simulator)))
+    (get-output-stream-string out)))
+
 (test sessions.lines-pasted-together-wait-for-each-other
   "As piped ones do."
-  (in-talk (talk)
-    (type-keys talk (list :paste (format nil "rate 50~%turn 1~%turn 0.5~%(+ 20 22)")) :return)
-    (is-true (await-turns talk 8))
-    (let ((told (told-to talk)))
-      (is (not (search "interrupted" told)) "~A" told)
-      (is-true (search "Robot turned 1.00" told))
-      (is-true (search "Robot turned 0.50" told)))))
+  (let ((told (told-of-pasted "turn 1" :enter "turn 0.5" :enter "(+ 20 22)")))
+    (is (not (search "interrupted" told)) "~A" told)
+    (is-true (search "Robot turned 1.00" told))
+    (is-true (search "Robot turned 0.50" told))))
