@@ -43,8 +43,8 @@ if none crosses it."
 
 ;; Where a robot can drive straight ahead it can see, too, however few the rays are.
 (defun seen-by-p (camera designator)
-  "True if a search by CAMERA, pointing at what DESIGNATOR denotes, would find it, or would miss it
-though nothing obstructs it."
+  "True if CAMERA, pointing at what DESIGNATOR denotes, sees it: a search would find it, or would
+miss it though nothing obstructs it. During an approach a line to a corner of its cell will do."
   (let* ((robot (camera-robot camera)) (world (robot-world robot))
          (own-x (robot-x robot)) (own-y (robot-y robot))
          (x (designator-x designator)) (y (designator-y designator)))

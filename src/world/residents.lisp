@@ -78,10 +78,11 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
         (return-from thing-like (thing-name thing))))))
 
 (defun note-unknown-thing (name world)
-  "Warn, once, if NAME, of no thing in WORLD, may be a slip for that of one."
-  (let ((like (and (not (said-p (list :thing name) world)) (thing-like name world))))
+  "Warn if NAME, of no thing in WORLD, may be a slip for that of one. To look takes as long as there
+are things, so it is done when the name is first asked for in a run."
+  (let ((like (and (first-time-p (list :thing name) world) (thing-like name world))))
     (when like
-      (warn-once (list :thing name) world
+      (warn-once (list :thing-like name) world
                  (format nil "No thing here is called ~(~A~). Did you mean ~(~A~)?" name like)))))
 
 (addition find-thing)
