@@ -177,6 +177,46 @@
        (push :held log)))
     (is (equal '(:held :interrupt :line :held) (reverse log)))))
 
+(defun interrupts-in-order (function)
+  "Return in order the keywords that FUNCTION gives to a function, and :INTERRUPT where one comes
+that this thread sends itself when FUNCTION calls a second function."
+  (let ((log '()))
+    (funcall function
+             (lambda (word) (push word log))
+             (lambda ()
+               (bordeaux-threads:interrupt-thread (bordeaux-threads:current-thread)
+                                                  (lambda () (push :interrupt log)))))
+    (reverse log)))
+
+(test interrupts.held-off-come-where-they-are-let-in
+  (is (equal '(:held :interrupt :open :held)
+             (interrupts-in-order
+              (lambda (note interrupt)
+                (base:deferring-interrupts
+                  (funcall interrupt)
+                  ;; One around another holds off nothing more.
+                  (base:deferring-interrupts
+                    (funcall note :held)
+                    (base:allowing-interrupts (funcall note :open)))
+                  (funcall note :held)))))))
+
+(test interrupts.held-off-come-where-we-wait-and-not-where-sbcl-does
+  "SBCL's runtime dies if interrupts that it lets in where it waits come during a collection."
+  (is (equal '(:held :held :interrupt :waited :held :interrupt)
+             (interrupts-in-order
+              (lambda (note interrupt)
+                (let ((semaphore (sb-thread:make-semaphore)))
+                  (base:deferring-interrupts
+                    (funcall interrupt)
+                    (funcall note :held)
+                    (sb-thread:wait-on-semaphore semaphore :timeout 0.001)
+                    (funcall note :held)
+                    (base:wait-on-semaphore semaphore 0.001)
+                    (funcall note :waited)
+                    (funcall interrupt)
+                    (base:call-holding-interrupts
+                     (lambda () (base:allowing-interrupts (funcall note :held)))))))))))
+
 (test interrupts.end-a-line
   (let ((lines '("(progn (ars-magna.host:signal-user-interrupt) 7)" "(+ 1 2)")))
     (is (equal '("Robot> Interrupted. QUIT leaves." "Robot> 3" "Robot> ")

@@ -31,10 +31,11 @@ holds that."
 
 (defun wait-on-semaphore (semaphore &optional seconds)
   "Take one from SEMAPHORE; true if that succeeded within SECONDS (NIL: however long)."
-  (if seconds
-      ;; SBCL takes no 0 for a time.
-      (bordeaux-threads:wait-on-semaphore semaphore :timeout (max seconds 1d-6))
-      (bordeaux-threads:wait-on-semaphore semaphore)))
+  (waiting
+    (if seconds
+        ;; SBCL takes no 0 for a time.
+        (bordeaux-threads:wait-on-semaphore semaphore :timeout (max seconds 1d-6))
+        (bordeaux-threads:wait-on-semaphore semaphore))))
 
 (defvar *while-waiting* (constantly nil)
   "A function called now and then by a thread that waits for what another is to do.")
@@ -54,11 +55,11 @@ succeeded. What others need this thread for meanwhile does not count."
 
 (defun call-when-free (lock function)
   "Call FUNCTION while holding LOCK, when no other thread holds that, and return its values. What
-others need this thread for meanwhile is done."
+others need this thread for meanwhile is done, and what interrupts this thread is let in."
   (loop
     (sb-thread:with-mutex (lock :timeout 0.2)
       (return-from call-when-free (funcall function)))
-    (funcall *while-waiting*)))
+    (allowing-interrupts (funcall *while-waiting*))))
 
 (defvar *own-thread-p* nil "True in threads that START-THREAD has started.")
 

@@ -5,18 +5,64 @@
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 ;;; What interrupts a thread is a time limit, Ctrl-C, another thread, or that it is to end. It may
-;;; leave what it interrupts. Where that would lock others out for ever, it waits for a moment. Not
-;;; for longer, though: SBCL's runtime dies if a timer strikes while memory is collected in a thread
-;;; that holds interrupts off.
+;;; leave what it interrupts. Where that would lock others out for ever, it waits for a moment.
+
+;;; SBCL's own way to hold interrupts off and still let them in where something waits is of no use:
+;;; its runtime dies if one comes while memory is collected in a thread that does so
+;;; (WITHOUT-INTERRUPTS with ALLOW-WITH-INTERRUPTS in it). So they are held off strictly, and where
+;;; they are let in, a function is called that was made outside.
+
+(defvar *holding* nil
+  "What holds off the interrupts of this thread: NIL if nothing does, :STRICTLY, or a function of
+another that calls that, open to interrupts, or if its second argument is true open to them where
+SBCL waits.")
+
+(defun call-deferring-interrupts (function)
+  "Do what DEFERRING-INTERRUPTS does."
+  (if *holding*
+      (funcall function)
+      (internal (:sb-sys #:without-interrupts)
+        (flet ((let-in (function waiting-p)
+                 (if waiting-p
+                     (internal (:sb-sys #:allow-with-interrupts) (funcall function))
+                     (internal (:sb-sys #:with-local-interrupts) (funcall function)))))
+          (declare (dynamic-extent #'let-in))
+          (let ((*holding* #'let-in))
+            (funcall function))))))
+
+(defun call-allowing-interrupts (function)
+  "Do what ALLOWING-INTERRUPTS does."
+  (let ((holding *holding*))
+    (etypecase holding
+      (null (internal (:sb-sys #:with-interrupts) (funcall function)))
+      (function (let ((*holding* nil)) (funcall holding function nil)))
+      ((eql :strictly) (funcall function)))))
+
+(defun call-waiting (function)
+  "Do what WAITING does."
+  (let ((holding *holding*))
+    (if (functionp holding)
+        (funcall holding function t)
+        (funcall function))))
 
 (defmacro deferring-interrupts (&body body)
-  "Run BODY. What interrupts this thread waits, but for the extent of ALLOWING-INTERRUPTS."
-  `(internal (:sb-sys #:without-interrupts)
-     (internal (:sb-sys #:allow-with-interrupts) ,@body)))
+  "Run BODY. What interrupts this thread waits, but for the extents of ALLOWING-INTERRUPTS and
+WAITING."
+  `(flet ((deferring () ,@body))
+     (declare (dynamic-extent #'deferring))
+     (call-deferring-interrupts #'deferring)))
 
 (defmacro allowing-interrupts (&body body)
   "Run BODY, in which this thread can be interrupted."
-  `(internal (:sb-sys #:with-interrupts) ,@body))
+  `(flet ((allowing () ,@body))
+     (declare (dynamic-extent #'allowing))
+     (call-allowing-interrupts #'allowing)))
+
+(defmacro waiting (&body body)
+  "Run BODY, which waits for a semaphore, and can be interrupted while it does."
+  `(flet ((wait () ,@body))
+     (declare (dynamic-extent #'wait))
+     (call-waiting #'wait)))
 
 ;;; A deadline, unlike a time limit, interrupts only where a thread waits.
 
@@ -36,9 +82,12 @@
 (defun call-holding-interrupts (function)
   "Call FUNCTION. Until it returns, interrupts wait, but in what CALL-OPEN-TO-INTERRUPTS calls."
   (internal (:sb-sys #:without-interrupts)
-    (let ((*open-to-interrupts* (lambda (function)
-                                  (internal (:sb-sys #:with-local-interrupts)
-                                    (funcall function)))))
+    (let* ((holding *holding*)
+           (*open-to-interrupts* (lambda (function)
+                                   (let ((*holding* holding))
+                                     (internal (:sb-sys #:with-local-interrupts)
+                                       (funcall function)))))
+           (*holding* :strictly))
       (funcall function))))
 
 (defun call-open-to-interrupts (function)

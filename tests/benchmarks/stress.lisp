@@ -38,10 +38,6 @@
     (let ((sb-ext:*evaluator-mode* :interpret))
       (eval definition))))
 
-;; SBCL's runtime may die when a thread is interrupted while memory is collected, see
-;; src/host/interrupts.lisp: so that is done seldom here.
-(setf (sb-ext:bytes-consed-between-gcs) (floor (sb-ext:dynamic-space-size) 5/2))
-
 (mapc #'define-anew *definitions*)
 
 (defparameter *wait*
