@@ -201,14 +201,15 @@ that this thread sends itself when FUNCTION calls a second function."
                   (funcall note :held)))))))
 
 (test interrupts.held-off-come-where-we-wait-and-not-where-sbcl-does
-  "SBCL's runtime dies if interrupts that it lets in where it waits come during a collection."
+  "SBCL's runtime dies if interrupts that it lets in where it waits come during a collection; and
+locks would let them in, too."
   (is (equal '(:held :held :interrupt :waited :held :interrupt)
              (interrupts-in-order
               (lambda (note interrupt)
-                (let ((semaphore (sb-thread:make-semaphore)))
+                (let ((semaphore (sb-thread:make-semaphore)) (lock (base:make-lock "any")))
                   (base:deferring-interrupts
                     (funcall interrupt)
-                    (funcall note :held)
+                    (base:with-lock (lock) (funcall note :held))
                     (sb-thread:wait-on-semaphore semaphore :timeout 0.001)
                     (funcall note :held)
                     (base:wait-on-semaphore semaphore 0.001)

@@ -191,6 +191,39 @@ function and its arguments."
                       (interrupted (world:define-map 'coach-yard 7 7)))))
       (is-true (ends-p thread)))))
 
+(test defmap.that-is-interrupted-at-its-entry-ends-what-is-live-in-the-old-map
+  "Locks, such as that of what is defined, let no interrupts in while they are held off."
+  (with-yard ()
+    (let ((dray (start-dray)))
+      (is (eq :left (interrupted
+                     (coming-between (base:register (register &rest arguments)
+                                       (interrupt-here)
+                                       (apply register arguments))
+                       (world:define-map 'coach-yard 7 7)))))
+      (is-true (await (lambda () (robot:robot-retired dray)))))))
+
+(test plans.that-are-interrupted-at-the-end-of-their-run-end
+  "What interrupts the end of a run leaves one piece of users' code, not the rest of the end."
+  (with-yard ()
+    (robot:define-robot 'cart 'coach-yard '(5 5) 0)
+    (run:with-simulation (dray)
+      (driver:rpl-init-robot dray)
+      (let ((plan (driver:begin-plan (rpl:make-plan '(rpl:wait-time 100))))
+            (heard '()))
+        (flet ((hear (code part &rest results)
+                 (declare (ignore part results))
+                 (push code heard)))
+          (dolist (robot (world:world-robots (robot:robot-world dray)))
+            (ars:robot-turn robot 1 #'hear)))
+        (run:run-ticks 1)
+        (is (eq :left (interrupted
+                       (coming-between (run::tell-of-end (tell simulation)
+                                         (interrupt-here)
+                                         (funcall tell simulation))
+                         (run::end-simulation time:*simulation* "it is enough")))))
+        (is (eq :evaporated (rpl:task-state plan)))
+        (is (equal '(:interrupt) heard))))))
+
 (test rewind.of-a-run-whose-map-is-defined-anew-leaves-none-live
   "The map is defined anew when the run is about to be replaced."
   (with-yard ()

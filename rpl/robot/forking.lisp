@@ -48,9 +48,10 @@ them."
            (call-holding-at-rest interface function))))
 
 (defmethod call-as-participant-makes-way ((interface interface) function)
-  (atomic-incf (interface-wanted interface))
-  (unwind-protect (funcall function)
-    (atomic-decf (interface-wanted interface))))
+  (call-wanting-plans (lambda (have)
+                        (declare (ignore have))
+                        (allowing-interrupts (funcall function)))
+                      interface))
 
 (defmethod participant-place ((interface interface) value)
   (multiple-value-bind (task name) (task-with value (interface-runner interface))

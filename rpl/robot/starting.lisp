@@ -2,6 +2,15 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(defun end-plans-here (interface)
+  "Let the plans of INTERFACE, which is to end, end in this thread. What interrupts that leaves one
+thing that they do to clean up, at most."
+  (flet ((end ()
+           (with-plans (interface) (react-fully interface))))
+    (in-any-case (end)
+                 ;; It may have been left before it began.
+                 (unless (interface-closed-p interface) (end)))))
+
 (defun close-interface (interface)
   "Let INTERFACE hear no more of its simulation, and its plans end: now, or, if they react in
 another thread or around this call, when they get to it."
@@ -13,7 +22,7 @@ another thread or around this call, when they get to it."
         (removef (robot-enders (interface-robot interface)) (interface-ender interface))
         (cond ((holding-p interface) (stop-plan (interface-runner interface)))
               ((thread-of interface) (wake interface))
-              (t (with-plans (interface) (react-fully interface))))))))
+              (t (end-plans-here interface)))))))
 
 (defun attach (interface)
   (let ((simulation (interface-simulation interface)))

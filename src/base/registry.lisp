@@ -285,9 +285,10 @@ no user's to define, and WRONG-ARGUMENT unless KIND and NAME are symbols or stri
     (find-definition name registry t)
     (let ((entry (lookup-entry name registry)))
       (check-undefinable registry entry)
-      (with-lock (*registries-lock*)
-        (set-entries registry (remove entry (registry-entries registry))))
-      (forget-entry entry)
+      (deferring-interrupts
+        (with-lock (*registries-lock*)
+          (set-entries registry (remove entry (registry-entries registry))))
+        (forget-entry entry))
       name)))
 
 ;;; Making registries.

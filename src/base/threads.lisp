@@ -16,10 +16,9 @@
 (defun call-if-free (lock function)
   "Call FUNCTION while holding LOCK, and return its value and true; NIL and false if another thread
 holds that."
-  (if (bordeaux-threads:acquire-lock lock nil)
-      (unwind-protect (values (funcall function) t)
-        (bordeaux-threads:release-lock lock))
-      (values nil nil)))
+  (sb-thread:with-mutex (lock :wait-p nil)
+    (return-from call-if-free (values (funcall function) t)))
+  (values nil nil))
 
 (defun make-semaphore (name)
   "Return a new semaphore called NAME with a count of 0."

@@ -15,7 +15,8 @@ file. No other folder names such parts of SBCL.")
   ;; stacks
   (:export #:restore-stack)
   ;; interrupts
-  (:export #:deferring-interrupts #:allowing-interrupts #:waiting #:call-holding-interrupts
+  (:export #:deferring-interrupts #:allowing-interrupts #:waiting #:*holding*
+           #:call-allowing-interrupts #:call-holding-interrupts
            #:call-open-to-interrupts #:with-deadline #:deadline-passed)
   ;; instances
   (:export #:reference-slots #:layout-of #:layout-number #:instance-slot #:copy-condition)

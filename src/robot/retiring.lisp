@@ -45,7 +45,7 @@
       (in-any-case
         (retire-robot robot reason)
         (close-robot robot)
-        (allowing-interrupts (interrupt-robot robot))
+        (interrupt-robot robot)
         (setf (world-robots world) (remove robot (world-robots world)))))))
 
 (defun ask-owner (world function)

@@ -65,10 +65,10 @@ still."
          ;; Also where there was none: somebody may be asking for it at this moment.
          (simulation (and world (world-simulation world)))
          (reason (if new "its map has been defined anew" "its map has been taken back")))
-    (when world
-      (say-stopped old simulation new)
-      (end-in-any-case old reason))
-    (when new (move-robots new))))
+    (in-any-case
+      (when world (say-stopped old simulation new))
+      (when world (end-in-any-case old reason))
+      (when new (move-robots new)))))
 
 (defmethod map-replaced ((old null) (new map))
   ;; Robots may have been left over by a map that was undefined.

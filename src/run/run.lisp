@@ -202,12 +202,11 @@ SEED. See reading 218."
 
 ;; A time limit may come at any moment: that must not keep plans from hearing of the end.
 (defun tell-of-end (simulation)
-  "Let the robots and participants of SIMULATION, which is over, know that. Interrupts wait, but
-while users' code and participants are at work."
+  "Let the robots and participants of SIMULATION, which is over, know that. Interrupts wait."
   (in-any-case
     (call-each #'close-robot (simulation-robots simulation))
     (call-each (lambda (participant)
-                 (allowing-interrupts (participant-end participant simulation)))
+                 (participant-end participant simulation))
                (simulation-participants simulation))))
 
 (defun end-simulation (simulation reason)
@@ -226,4 +225,4 @@ it any more."
              (in-any-case
                (stop-pacing timeline)
                (tell-of-end simulation)
-               (allowing-interrupts (interrupt-all timeline robots))))))))))
+               (interrupt-all timeline robots)))))))))
