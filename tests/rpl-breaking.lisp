@@ -50,6 +50,17 @@ list."
     (is-true (has-words-p text "in task slipping > " "at tick 1" "fail :class class") "~A" text)
     (is-true (has-words-p text "speed = 3" "class = :slip" "handle-failure ((:slip") "~A" text)))
 
+(test frames.show-the-variables-of-the-plan
+  "A debugger shows the calls under way, and frames are arguments of those."
+  (with-runner (runner)
+    (let ((task (tasks:start-plan runner (rpl:interp-lambda (depth)
+                                           (let ((twice (* 2 depth)))
+                                             (rpl:seq (rpl:wait-time 9) (list twice))))
+                                  5)))
+      (rpl:react runner)
+      (is-true (has-words-p (princ-to-string (tasks::task-frame task))
+                            "twice = 10, depth = 5, (")))))
+
 (test break.of-lisp-errors-too
   (let ((rpl:*break-on-plan-failures* 'parse-error))
     (multiple-value-bind (texts values)

@@ -56,6 +56,14 @@ LET*, the last is in force."
   "Return the variables that FRAME sees, innermost first: a list of lists (name value)."
   (mapcan #'rest (visible-levels frame)))
 
+;; A debugger shows the calls under way with their arguments; a frame is one.
+(defmethod print-object ((frame frame) stream)
+  (print-unreadable-object (frame stream :type t)
+    (format stream "~:{~A = ~A, ~}~A"
+            (loop for (name value) in (frame-variables frame)
+                  collect (list (form-text name) (form-text value 30)))
+            (form-text (node-form (frame-node frame)) 40))))
+
 (defun known-environments (task)
   "Return the environments that TASK has from the task that it is part of."
   (let* ((parent (task-parent task))

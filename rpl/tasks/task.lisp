@@ -219,10 +219,6 @@ elements of each list in it, to the depth LEVEL, and symbols without their packa
   (print-unreadable-object (node stream :type t)
     (write-string (form-text (node-form node) 40) stream)))
 
-(defmethod print-object ((frame frame) stream)
-  (print-unreadable-object (frame stream :type t)
-    (write-string (form-text (node-form (frame-node frame)) 40) stream)))
-
 (defun whole-form-text (form)
   "Return FORM on one line as it is, unless it is longer than a page."
   (form-text form 3000 200 20))
