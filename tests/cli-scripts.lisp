@@ -65,6 +65,15 @@ n
                    when (or (search "NIL" line) (every #'digit-char-p line))
                      collect (subseq line (or (search "(T" line) 0))))))
 
+(test scripts.the-rest-of-an-answer-is-no-line
+  (multiple-value-bind (lines status) (run-script "(list (y-or-n-p))
+yes
+(list (read-char))
+y (+ 1 1)
+(+ 2 3)")
+    (is (= 0 status) "~A" lines)
+    (is (equal '("2" "5") (remove-if-not (lambda (line) (every #'digit-char-p line)) lines)))))
+
 (test scripts.have-comments-over-lines
   (multiple-value-bind (lines status)
       (run-script "#| One, #| and another in it,

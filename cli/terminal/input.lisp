@@ -110,11 +110,13 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
 (defmethod stream-listen ((stream typed-text))
   (or (typed-ahead-p stream) (listen (typed-octets stream))))
 
-;; Somebody may have typed too much; what a script or another program says is meant.
+;; Somebody may have typed too much; what a script or another program says is meant. The rest of a
+;; line that a program has begun to read, as Y-OR-N-P of "yes", is no line for the prompt, though.
 (defmethod stream-clear-input ((stream typed-text))
-  (when (typed-by-hand-p stream)
-    (setf (typed-position stream) (length (typed-line stream)))
-    (clear-input (typed-octets stream)))
+  (when (or (typed-by-hand-p stream)
+            (plusp (typed-position stream)))
+    (setf (typed-position stream) (length (typed-line stream))))
+  (when (typed-by-hand-p stream) (clear-input (typed-octets stream)))
   nil)
 
 ;;; Whether something has been typed can be found out, without waiting for it, of this process's own

@@ -38,6 +38,11 @@
     (let ((sb-ext:*evaluator-mode* :interpret))
       (eval definition))))
 
+;; SBCL's own WAIT-ON-SEMAPHORE, in which interrupts are let in, conses: if memory is collected for
+;; that, and a time limit comes meanwhile, its runtime dies, also without this project (2.2.9: four
+;; threads with a time limit each millisecond, in seconds). So memory is collected seldom here.
+(setf (sb-ext:bytes-consed-between-gcs) (floor (sb-ext:dynamic-space-size) 5/2))
+
 (mapc #'define-anew *definitions*)
 
 (defparameter *wait*
