@@ -9,9 +9,9 @@
 
 ;;; SBCL's own way to hold interrupts off and still let them in where something waits is of no use:
 ;;; its runtime dies if one comes while memory is collected in a thread that does so
-;;; (WITHOUT-INTERRUPTS with ALLOW-WITH-INTERRUPTS in it); and each lock that is taken meanwhile lets
-;;; them in. So they are held off strictly, and where they are let in, a function is called that was
-;;; made outside.
+;;; (WITHOUT-INTERRUPTS with ALLOW-WITH-INTERRUPTS in it); and each lock that is taken lets them in.
+;;; So they are held off strictly, and where they are let in, a function is called that was made
+;;; outside.
 
 (defvar *holding* nil
   "What holds off the interrupts of this thread: NIL if nothing does, :STRICTLY, or a function of

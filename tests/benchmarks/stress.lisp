@@ -227,12 +227,21 @@
       (nisp:end-plan :all)
       (ars:stop-simulator robot))))
 
+(defun places ()
+  "Return where this thread is, and those of the simulators and of plans: backtraces."
+  (format nil "here, at~%~A~:{~%~A, at~%~A~}"
+          (with-output-to-string (stream) (uiop:print-backtrace :stream stream :count 40))
+          (loop for thread in (threads-called "simulator of" "plans of")
+                collect (list thread (place-of thread)))))
+
 (defun note-silent (name)
   "Count the robot called NAME if it does not answer."
-  (handler-case (sb-ext:with-timeout (* 3 *patience*)
-                  (unless (answers-p name) (note "robots that do not answer" name)))
-    (serious-condition (trouble)
-      (note "robots that do not answer" (format nil "~A: ~A" name trouble)))))
+  (flet ((note-silence (trouble)
+           (note "robots that do not answer" (format nil "~A: ~A~%~A" name trouble (places)))
+           (return-from note-silent)))
+    (handler-bind ((serious-condition #'note-silence))
+      (sb-ext:with-timeout (* 3 *patience*)
+        (unless (answers-p name) (note-silence "no"))))))
 
 ;;; All of it.
 
@@ -275,7 +284,7 @@
   (dolist (what *wrong*) (say (format nil "  ~A" what) (counted what) ""))
   (loop for (what words) in (reverse *examples*)
         when (member what *wrong* :test #'string=)
-          do (format t "~A: ~A~%" what (subseq words 0 (min 4000 (length words)))))
+          do (format t "~A: ~A~%" what (subseq words 0 (min 9000 (length words)))))
   (finish-output)
   (loop for what in *wrong* sum (counted what)))
 
