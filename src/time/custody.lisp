@@ -44,13 +44,13 @@
 
 (defun give-up-custody (custody)
   "Let others have CUSTODY. Whatever has been asked is answered before."
-  (loop (in-any-case
-          (when (mine-p custody) (answer-questions custody))
-          (swap-if (custody-thread custody) (current-thread) nil))
-        (memory-barrier)
-        ;; Somebody may have asked just now.
-        (unless (and (custody-questions custody) (take-custody custody))
-          (return))))
+  (in-any-case
+    (when (mine-p custody) (answer-questions custody))
+    (swap-if (custody-thread custody) (current-thread) nil)
+    (progn (memory-barrier)
+           ;; Somebody may have asked just now.
+           (when (and (custody-questions custody) (take-custody custody))
+             (give-up-custody custody)))))
 
 (defun call-with-custody (custody function otherwise)
   "Call FUNCTION with CUSTODY, OTHERWISE if another thread has it. Return the values."
