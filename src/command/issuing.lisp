@@ -155,7 +155,9 @@ takes another number of arguments."
                         arguments)))
     (note-asked (occupied command resource))
     (doubt-hurry command (occupied command resource) timeline)
-    (post (make-operation command (occupied command resource) arguments continuation timeline)
+    (post (make-operation command (occupied command resource) arguments
+                          (if (untold-p timeline) nil continuation)
+                          timeline)
           timeline)
     (doubt-arguments command world arguments)
     (doubt-owners command robot arguments)

@@ -23,14 +23,25 @@
            (incf (journal-length journal))
            (setf (journal-end journal) tick))))
 
+(defun lasting-arguments (arguments)
+  "Return ARGUMENTS, which are externalized, to be kept: functions in them with the variables that
+they see as these are now. See ARGUMENTS-AGAIN."
+  (if (some #'functionp arguments) (memorized arguments) arguments))
+
+(defun arguments-again (arguments simulation)
+  "Return what LASTING-ARGUMENTS has returned for SIMULATION, a repetition of that run."
+  (if (some #'functionp arguments) (recalled arguments simulation) arguments))
+
+;; What the tick itself has asked for, as kickers and events do, it asks for again when repeated.
 (defun note (simulation operator arguments &optional request)
   "Enter that OPERATOR, a symbol, was asked for with the list ARGUMENTS, by REQUEST if that is
 given, into the journal of SIMULATION, as of now, if it keeps one, and into what it remembers of its
 past."
   (when (noting-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
-      (when journal
-        (add-entry journal (simulation-tick simulation) (cons operator arguments)))
+      (when (and journal (not (and request (asked-inside-p request))))
+        (add-entry journal (simulation-tick simulation)
+                   (cons operator (lasting-arguments arguments))))
       (remember simulation operator arguments request))))
 
 (defun follow-settings (simulation)

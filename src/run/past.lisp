@@ -56,7 +56,7 @@ could not be made, as somebody was at work in the run; or NIL."
 
 (defun of-itself-p (request)
   "True if a fork comes to REQUEST by itself, as what goes on there too has asked for it."
-  (or (request-forked-p request) (changing-phase-p (request-phase request))))
+  (or (request-forked-p request) (asked-inside-p request)))
 
 (defun request-act (request simulation operator arguments)
   "Return the act that SIMULATION begins a tick with REQUEST: for OPERATOR, with ARGUMENTS, which

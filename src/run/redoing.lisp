@@ -129,6 +129,7 @@ acted as often as it has by now."
 again, the oldest first. Return the tick at which plans strayed from what they did then, or NIL.
 What they print has been printed."
   (let ((redoing (make-redoing simulation acts))
+        (*repeated* (simulation-timeline simulation))
         (*standard-output* (make-broadcast-stream)))
     (go-on-to goal redoing)
     (dolist (request (redoing-held redoing))

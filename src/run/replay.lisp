@@ -87,7 +87,7 @@ does with ARGUMENTS, which are externalized."
   (destructuring-bind (tick name . arguments) entry
     (run-ticks (- tick (simulation-tick simulation)) simulation)
     (handler-case
-        (perform-operator name arguments simulation "the journal")
+        (perform-operator name (arguments-again arguments simulation) simulation "the journal")
       (error (trouble)
         (reject-use "The journal cannot be replayed: its ~A: ~A."
                     (entry-text entry number) (one-line-text trouble))))))
@@ -101,7 +101,8 @@ does with ARGUMENTS, which are externalized."
 (defun perform-journal (journal simulation beginning)
   "Repeat JOURNAL in SIMULATION. Call BEGINNING with that before its first tick passes."
   (let* ((entries (journal-entries journal))
-         (before (count 0 entries :key #'first)))
+         (before (count 0 entries :key #'first))
+         (*repeated* (simulation-timeline simulation)))
     (perform-entries (subseq entries 0 before) 1 simulation)
     (funcall beginning simulation)
     (perform-entries (nthcdr before entries) (1+ before) simulation)

@@ -39,8 +39,10 @@ and after, says have been begun."
     (follow-settings simulation)))
 
 (defun set-parameter (name value)
-  "Give the parameter NAME the VALUE, as somebody did in a run that is repeated."
-  (setf (parameter-value name) value))
+  "Give the parameter NAME the VALUE, as somebody did in the current run, which is repeated. Its
+journal has that in the same place."
+  (setf (parameter-value name) value)
+  (follow-settings *simulation*))
 
 (define-operator 'parameter '(name datum) #'set-parameter)
 

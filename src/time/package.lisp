@@ -29,7 +29,8 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:timeline-inbox #:timeline-pacing #:timeline-fork-p #:check-not-over
            #:check-own-run #:check-not-secluded #:secluded
            #:*simulation* #:current-simulation
-           #:wake-owner #:post #:post-again #:take-requests #:owner-p
+           #:wake-owner #:post #:post-again #:take-requests #:asked-inside-p #:owner-p
+           #:*repeated* #:untold-p
            #:notify-later #:deliver-notifications)
   ;; thinking
   (:export #:check-thinking #:thinking-modes-text #:thinking-mode-p

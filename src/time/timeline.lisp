@@ -115,6 +115,18 @@ TIMELINE after its world has changed."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
 
+;;; Where a run is repeated, what was asked of it is asked again, also what continuations asked. So
+;;; those of commands that events and kickers give, inside of ticks, must not be called besides.
+
+(defvar *repeated* nil "The timeline of the run that is being repeated here, or NIL.")
+
+(defun untold-p (timeline)
+  "True if who asks for something here, of TIMELINE, is not to be told of its end, as that is told
+of again anyway."
+  (and (eq timeline *repeated*)
+       (changing-phase-p (phase-here timeline))
+       (not (goes-on-in-forks-p))))
+
 ;;; Forks look very much like the runs that they are of.
 
 (defun check-not-secluded (object)
@@ -168,11 +180,22 @@ owner."
         when (swap-if (timeline-inbox timeline) inbox (remove request inbox))
           return t))
 
+(defun asked-inside-p (request)
+  "True if REQUEST was asked for while a tick changed the world: the tick asks again if repeated."
+  (changing-phase-p (request-phase request)))
+
+;; Another thread may ask for something in the midst of a tick. Its place among what the tick asks
+;; for must not matter, as that is not in the journal.
 (defun take-requests (timeline)
-  "Empty the inbox of TIMELINE; return its requests, oldest first."
+  "Empty the inbox of TIMELINE; return its requests, oldest first, but those of the tick before all
+others."
   (loop for inbox = (timeline-inbox timeline)
         when (swap-if (timeline-inbox timeline) inbox '())
-          return (reverse inbox)))
+          return (let ((requests (reverse inbox)))
+                   (if (some #'asked-inside-p requests)
+                       (append (remove-if-not #'asked-inside-p requests)
+                               (remove-if #'asked-inside-p requests))
+                       requests))))
 
 ;;; Notifications.
 
