@@ -134,6 +134,18 @@ their fluents as they are there."
     (is (null (rpl:fluent-value *gong*)))
     (is (null (rpl:fluent-value (aref *row* 0))))))
 
+(test fluents.orders-of-plans-wait-for-those-of-the-fork
+  (with-gong (own)
+    (rpl:set-value own nil)
+    (run:with-fork ()
+      (let ((task (driver:begin-plan (rpl:interp-lambda ()
+                                       (rpl:partial-order
+                                         ((rpl:seq (rpl:wait-time 2) (rpl:pulse *gong*))
+                                          (:tag later (rpl:wait-time 1)))
+                                         (:order *gong* later))))))
+        (run:run-ticks 6)
+        (is (eq :succeeded (rpl:task-state task)))))))
+
 ;;; Valves.
 
 (test valves.of-a-fork-are-its-own

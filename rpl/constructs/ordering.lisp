@@ -61,7 +61,7 @@ MISUSE."
                            "a task, such as the name of a :tag")
            (when (task-p earlier) (check-together task earlier))
            (check-together task later)
-        collect (make-order earlier later)))
+        collect (make-order (if (fluent-p earlier) (here earlier) earlier) later)))
 
 ;;; Reading the constraints.
 
