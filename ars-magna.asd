@@ -429,6 +429,7 @@
                  (:file "forking-values") (:file "forking-unforkable") (:file "forking-uses")
                  (:file "forking-plans") (:file "forking-live") (:file "forking-borders")
                  (:file "repeating")
+                 (:file "agreement-scripts") (:file "agreement-making") (:file "agreement")
                  (:file "outliving") (:file "outliving-live") (:file "users-parts")
                  (:file "user-package") (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps") (:file "homes")

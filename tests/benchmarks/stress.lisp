@@ -9,7 +9,7 @@
 (ars:define-user-package :stress
   (:documentation "The maps and robots that this program defines."))
 
-(defparameter *seconds* (parse-integer (or (uiop:getenv "BENCHMARK_SECONDS") "120"))
+(defparameter *seconds* (parse-integer (or (uiop:getenv "BENCHMARK_NUMBER") "120"))
   "How long the threads work.")
 
 (defparameter *seed* (parse-integer (or (uiop:getenv "STRESS_SEED") "1")))

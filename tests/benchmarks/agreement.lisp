@@ -1,0 +1,44 @@
+;;;; agreement.lisp -- random runs, forked, rewound, saved and replayed: do all go the same way.
+
+;;; ./tests/benchmarks/run agreement [COUNT]: so many runs, 500 by default, the same ones each time.
+;;; Prints what disagrees, and for each the shortest script that does so; the exit status is then 1.
+;;; What a run is asked, and what cannot agree as no copy has it, stands in
+;;; tests/agreement-scripts.lisp. The tests make some of them.
+
+(in-package :ars-magna.benchmarks)
+
+(handler-bind ((warning #'muffle-warning))
+  (asdf:load-system "ars-magna/tests"))
+
+(defparameter *runs* (parse-integer (or (uiop:getenv "BENCHMARK_NUMBER") "500")))
+
+(defun counted (items)
+  "Return a list (item . count) for each of ITEMS that there is."
+  (loop for item in (remove-duplicates items :test #'equal)
+        collect (cons item (count item items :test #'equal))))
+
+(defun say-shortest (script differences)
+  "Print DIFFERENCES of SCRIPT, and the shortest script with such."
+  (format t "~&  ~S~%" differences)
+  (pprint (uiop:symbol-call :ars-magna.tests :shortest-script script)))
+
+(defun say-agreement (disagreements refusals seconds)
+  "Print how many runs there were in so many SECONDS, and their DISAGREEMENTS."
+  (say "random runs, each on five ways" (/ *runs* seconds) "runs/s")
+  (say "  runs" *runs* "")
+  (say "  that agree on all ways" (- *runs* (length disagreements)) "")
+  (loop for ((way what) . count) in (counted (loop for (nil . differences) in disagreements
+                                                   append (loop for (way what) in differences
+                                                                collect (list way what))))
+        do (say (format nil "  ~(~A: another ~A~)" way what) count ""))
+  (loop for (reason . count) in (counted refusals)
+        do (say (format nil "  not saved, as ... ~A" reason) count ""))
+  (loop for (script . differences) in disagreements do (say-shortest script differences)))
+
+(let (disagreements refusals)
+  (let ((seconds (seconds-for
+                  (lambda ()
+                    (multiple-value-setq (disagreements refusals)
+                      (uiop:symbol-call :ars-magna.tests :disagreements-of-runs *runs* 1))))))
+    (say-agreement disagreements refusals seconds)
+    (when disagreements (uiop:quit 1))))
