@@ -201,3 +201,51 @@
 (test macros.with-rest-and-keys-name-the-nearest-keyword
   (is (string= "there is no keyword :robot; did you mean :robots?"
                (base::misfit-text '(form &rest options &key robots seed) '(x :robot rover)))))
+
+;;; Robots of the top level, named in threads of a WITH-SIMULATION.
+
+(defun told-in-thread (function)
+  "Call FUNCTION in another thread, \"helper\". Return what it said there, or the error."
+  (let ((text ""))
+    (base:join-thread
+     (base:start-thread (lambda ()
+                          (with-messages
+                            (let ((trouble (trouble-of function)))
+                              (setf text (concatenate 'string (displayed) trouble)))))
+                        "helper"))
+    text))
+
+(test threads.that-name-a-robot-are-told-whose-it-is
+  (flet ((turn () (command:robot-turn rover 1)))
+    (with-rover ()
+      (let ((told (told-in-thread #'turn)) (again (told-in-thread #'turn)))
+        (is-true (has-words-p told "robot-turn is kept" "In this thread, helper, rover is the robot"
+                              "(with-simulation (rover) ...)"
+                              (base:thread-name (base:current-thread))
+                              "(let ((robot rover)) (make-thread (lambda () ... robot)))")
+                 "~A" told)
+        (is (string= "no error" again) "told once"))
+      (is-true (has-words-p (told-in-thread (lambda () (run:run-ticks 1)))
+                            "no simulation here" "(with-simulation (rover) ...)"
+                            "(current-simulation)")))
+    (with-rover ()
+      (is-true (has-words-p (told-in-thread #'turn) "In this thread") "again in each run"))))
+
+(test threads.that-know-their-robot-are-not-told
+  (let ((quiet "no error"))
+    (with-rover ()
+      (let ((robot rover))
+        (is (string= quiet (told-in-thread (lambda () (command:robot-turn robot 1))))
+            "handed over"))
+      (is (string= quiet (told-in-thread (lambda ()
+                                           (with-rover ()
+                                             (command:robot-turn rover 1)
+                                             (run:run-ticks 1)))))
+          "in a run of its own"))
+    (is-false (has-words-p (told-in-thread (lambda () (command:robot-turn rover 1)))
+                           "In this thread")
+              "when the run is over")
+    (live-rover (:rate :free)
+      (with-rover ()
+        (is (string= quiet (told-in-thread (lambda () (command:robot-turn rover 1))))
+            "to one that is under way")))))

@@ -81,6 +81,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:*while-waiting* #:wait-a-while #:wait-patiently #:call-when-free
            #:start-thread #:own-thread-p #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
+  ;; elsewhere
+  (:export #:call-telling-names #:bound-elsewhere-text #:run-elsewhere-text)
   ;; limits, debuggers
   (:export #:time-limit #:call-with-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts

@@ -125,13 +125,16 @@ begin, or to go on."
          (not (timeline-passing-p timeline)))))
 
 (defun tell-if-kept (command robot)
-  "Say once for ROBOT that COMMAND is kept for a later run, if so; but not of what a plan asks for,
-as running a plan lets ticks pass."
+  "Say once for ROBOT that COMMAND is kept for a later run, if so, and once for each WITH-SIMULATION
+in another thread that has bound the name of ROBOT; but not of what a plan asks for, as running a
+plan lets ticks pass."
   (when (and (kept-p (robot-world robot)) (not (asker-forked-p *asker*)))
-    (warn-once (list :kept (robot-name robot)) (robot-world robot)
-               (format nil "~(~A~) is kept for a later run, as none of ~A is under way. (simulator ~
-                            '~(~A~)) begins one, and does then what was asked before."
-                       (command-name command) robot (robot-name robot)))))
+    (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
+      (warn-once (list :kept (robot-name robot) number) (robot-world robot)
+                 (format nil "~(~A~) is kept for a later run, as none of ~A is under way. ~
+                              ~:[(simulator '~(~A~)) begins one, and does then what was asked ~
+                              before.~;~:*~A~]"
+                         (command-name command) robot elsewhere (robot-name robot))))))
 
 ;;; Issuing.
 

@@ -193,11 +193,14 @@ KEEP says, see KEEP-FORKS. Then the run is over."
                 (list (or (simulation-dice simulation)
                           (seeded-lisps-dice (simulation-seed simulation)))))
       (note-environment simulation)
-      (call-telling-errors
+      (call-telling-names
+       (remove-duplicates (append variables (mapcar #'robot-name robots)))
        (lambda ()
-         (when keep (keep-forks keep simulation))
-         (funcall function))
-       simulation))))
+         (call-telling-errors
+          (lambda ()
+            (when keep (keep-forks keep simulation))
+            (funcall function))
+          simulation))))))
 
 (defun call-telling-errors (function simulation)
   "Call FUNCTION in the headless SIMULATION, whose run is then over. What has gone wrong that nobody
@@ -288,7 +291,7 @@ Signals WRONG-ARGUMENT. See WITH-SIMULATION."
 that returns such, as (list 'a 'b) or a variable that is no robot's, bound to fresh robots in a
 fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. Only the thread of
 BODY sees these bindings: to another one that it starts, a name means the robot that it means at
-top level, so hand the robot to that. The
+top level, so hand the robot to that; a command to the other one says so if it has no run. The
 integer SEED decides all chance. Parameters are bound to what they are here, or as the list
 PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
 journal, with KEEP forks, so that it can be rewound, see KEEP-FORKS. THINKING says how much time

@@ -82,8 +82,9 @@ given to SIMULATOR.")
 (defun current-simulation ()
   "Return *SIMULATION*. Signals MISUSE when there is none."
   (or *simulation*
-      (reject-use "There is no simulation here. Use (simulator ROBOT) or ~
-                   (with-simulation (ROBOT) ...).")))
+      (reject-use "There is no simulation here. ~A"
+                  (or (run-elsewhere-text)
+                      "Use (simulator ROBOT) or (with-simulation (ROBOT) ...)."))))
 
 (defun check-not-over (object &optional operator)
   "Signal MISUSE, by OPERATOR if that is one that users call, if the run of OBJECT is over."
