@@ -16,10 +16,21 @@
           do (apply #'robot:define-robot name 'accord-room position angle parts)
           collect name)))
 
-;;; A moment is (tick digest digest-with-plans).
+;;; A moment is (tick digest digest-with-plans messages). How much of it must agree depends on the
+;;; way: who loads a run has no plans of it, and is warned anew; who acts in the place of a
+;;; continuation is warned otherwise.
 
 (defun accord-moment ()
-  (list (tick-of-run) (run:state-digest) (run:state-digest time:*simulation* t)))
+  (list (tick-of-run) (run:state-digest) (run:state-digest time:*simulation* t)
+        (mapcar #'base:message-text (base:take-messages))))
+
+(defun moments-agree-p (one other way)
+  "True if as much of the moments ONE and OTHER agrees as must on WAY."
+  (let ((end (ecase way
+               ((:plain :fork) 4)
+               ((:fork-alone :rewind) 3)
+               ((:load :replay) 2))))
+    (equal (subseq one 1 end) (subseq other 1 end))))
 
 (defun next-stop (goal)
   "Return the tick up to which the run is to go now: not beyond GOAL, nor beyond a step."
@@ -59,15 +70,14 @@ Return the moment before that."
 (defun journals-alike-p (one other)
   (and (= (length one) (length other)) (every #'run::alike-p one other)))
 
-(defun accord-differences (way moments entries other-moments other-entries &key plans-p)
+(defun accord-differences (way moments entries other-moments other-entries)
   "Return what is different, on the WAY with OTHER-MOMENTS and OTHER-ENTRIES, from a run with
-MOMENTS and ENTRIES: a list of lists (way what where). Plans count if PLANS-P."
+MOMENTS and ENTRIES: a list of lists (way what where)."
   (append
-   (loop for (tick digest whole) in moments
-         for (nil other other-whole) = (assoc tick other-moments)
-         unless (or (null other)
-                    (and (= digest other) (or (not plans-p) (= whole other-whole))))
-           return (list (list way :digest tick)))
+   (loop for moment in moments
+         for other = (assoc (first moment) other-moments)
+         unless (or (null other) (moments-agree-p moment other way))
+           return (list (list way :state (first moment))))
    (unless (journals-alike-p entries other-entries)
      (list (list way :journal
                  (loop for index from 0
@@ -91,9 +101,10 @@ that any did since, as things must come in order; NIL if there was no such conti
     (and (some (lambda (answer) (<= (second answer) at)) since)
          (reverse since))))
 
-(defun compared (way record moments &rest options)
-  (apply #'accord-differences way (record-moments record) (record-entries record)
-         moments (accord-entries) options))
+(defun compared (way record moments)
+  "Return how the run here, with MOMENTS, differs from RECORD on WAY."
+  (accord-differences way (record-moments record) (record-entries record)
+                      moments (accord-entries)))
 
 (defmacro telling ((record) &body body)
   "Run BODY where an observer does what lost continuations of the run of RECORD did."
@@ -110,7 +121,7 @@ RECORD."
       (run:call-in-fork fork
                         (lambda ()
                           (run:add-observer #'look-on-script)
-                          (compared way record (finish-by-script) :plans-p t))))))
+                          (compared way record (finish-by-script)))))))
 
 (defun rewind-differences (record)
   "Go back to where the run here was forked, and on again. Return how that differs from RECORD."
@@ -121,10 +132,10 @@ RECORD."
     (telling (record)
       (let* ((before (accord-moment))
              (moments (cons before (go-on-by-script (script-ticks *script*)))))
-        (append (compared :rewind record moments :plans-p t)
-                (loop for message in (base:take-messages)
-                      when (search "Not all is as it was" (base:message-text message))
-                        collect (list :rewind :strayed (base:message-text message))))))))
+        (append (compared :rewind record moments)
+                (loop for (tick nil nil texts) in moments
+                      when (find-if (lambda (text) (search "Not all is as it was" text)) texts)
+                        collect (list :rewind :strayed tick)))))))
 
 (defun load-differences (record file)
   "Let the run that is saved in FILE go on. Return how it differs from RECORD."
@@ -184,8 +195,7 @@ unless that is NIL. Return how it, or what was saved, differs from RECORD."
         (when file
           (setf refusals (saved-or-refused file)
                 *save-refusals* (append refusals *save-refusals*)))
-        (append (accord-differences :plain (record-moments record) '() (finish-by-script) '()
-                                    :plans-p t)
+        (append (accord-differences :plain (record-moments record) '() (finish-by-script) '())
                 (and file (null refusals) (load-differences record file)))))))
 
 (defun recorded (beginning)
