@@ -31,13 +31,18 @@ for each part, or T if a fluent.")
        (plusp (length object))
        (every #'fluent-p object)))
 
-(defun reject-vector (vector)
-  "Signal MISUSE: VECTOR, of fluents, stands where a fluent should."
+(defun reject-vector (vector &optional (user "a condition"))
+  "Signal MISUSE: VECTOR, of fluents, stands where USER needs a fluent."
   (let* ((name (safe-text (fluent-name (svref vector 0)) :escape nil))
          (variable (subseq name 0 (position #\Space name :from-end t))))
-    (reject-use "~A is a vector of fluents: a condition needs one of them. Write (vref ~:*~A ~A)."
-                variable
+    (reject-use "~A is a vector of fluents: ~A needs one of them. Write (vref ~2:*~A~* ~A)."
+                variable user
                 (or (known-vector-variable-p (find-known variable)) "index"))))
+
+(defun check-no-vector (object user)
+  "Return OBJECT, a vector. Signals MISUSE if it is one of fluents, of which USER needs one."
+  (when (fluents-vector-p object) (reject-vector object user))
+  object)
 
 (defun find-known (name)
   "Return the known variable called NAME, or NIL."

@@ -126,9 +126,11 @@ have set the fluent just before; so who waits for it to be true looks at it afte
 (settable fluent-value)
 (defun fluent-value (object)
   "Return the value that OBJECT, a fluent, has now. Any other OBJECT is its own value. Can be set:
-see SET-VALUE (manual D.2). Signals MISUSE if OBJECT is the name of a variable that holds a fluent."
+see SET-VALUE (manual D.2). Signals MISUSE if OBJECT is the name of a variable that holds a fluent,
+or a vector of fluents."
   (cond ((fluent-p object) (current-value (here object)))
         ((and object (symbolp object)) (reject-name-of-fluent object))
+        ((simple-vector-p object) (check-no-vector object "fluent-value"))
         (t object)))
 
 ;;; Building.

@@ -155,6 +155,49 @@ not in what is called later."
   (let ((command (and *definition* (command-among (list form)))))
     (when command (call-at-place command (lambda () (doubt-command command))))))
 
+;;; Handlers of Lisp's. A failure is no error.
+
+(defun errors-only-p (clauses)
+  "True if each of CLAUSES, of a handler, is for errors."
+  (every (lambda (clause)
+           (and (consp clause)
+                (or (eq :no-error (first clause))
+                    (nth-value 0 (ignore-errors (subtypep (first clause) 'error))))))
+         clauses))
+
+(defun forms-with-errors-handled (form)
+  "Return the forms in FORM, of Lisp's, in which errors are handled and failures are not."
+  (cond ((operator-in-p form '("IGNORE-ERRORS")) (rest form))
+        ((operator-in-p form '("HANDLER-CASE"))
+         (and (cddr form) (errors-only-p (cddr form)) (list (second form))))
+        ((operator-in-p form '("HANDLER-BIND"))
+         (and (consp (second form)) (errors-only-p (second form)) (cddr form)))))
+
+(defun find-call (test forms)
+  "Return the first call in FORMS for which TEST is true, or NIL; not in what is called later."
+  (loop for tail = forms then (rest tail)
+        while (consp tail)
+        thereis (let ((form (first tail)))
+                  (cond ((atom form) nil)
+                        ((funcall test form) form)
+                        ((not (member (first form) '(quote function lambda)))
+                         (find-call test form))))))
+
+(defun vain-handler-p (form)
+  "True if FORM is a handler of errors around a FAIL."
+  (find-call (lambda (form) (operator-in-p form '("FAIL"))) (forms-with-errors-handled form)))
+
+(defun check-handlers (form)
+  "Warn of the first handler of errors in FORM, of a plan's text, around a FAIL."
+  (let ((handler (and *definition* (find-call #'vain-handler-p (list form)))))
+    (when handler
+      (call-at-place handler
+                     (lambda ()
+                       (warn-of-call #'doubt-definition handler
+                                     "~(~A~) does not handle failures of plans, as FAIL makes ~
+                                      them. Write (handle-failure ((class (e) ...)) body...)."
+                                     (first handler)))))))
+
 ;;; Variables.
 
 (defun check-use (variables where form)

@@ -116,6 +116,7 @@
   "Return FORM, a leaf's, as Lisp is to compile it."
   (cond ((and (atom form) (not (symbol-macro-p form (scope-environment scope)))) form)
         (t (check-commands form)
+           (check-handlers form)
            (let ((*fluents-here* (scope-fluents scope)))
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 

@@ -122,13 +122,24 @@ none; and true. Return false as a third value for other types."
                              (variables-known-to (symbol-package name))))))
     (and meant (string-downcase (unqualified-text meant)))))
 
+(defun note-error-code (code)
+  "Remember that CODE, a keyword, is an error code of commands."
+  (setf (get code 'error-code-p) t))
+
+(defun code-slip (name)
+  "Return in words the error code that is called like NAME, which has no value; or NIL."
+  (let ((code (find-symbol (symbol-name name) "KEYWORD")))
+    (and (get code 'error-code-p) (format nil "~(~S~)" code))))
+
 (defun named-text (condition)
   "Return our text for CONDITION, that a name means nothing, or NIL."
   (let ((name (unqualified-text (cell-error-name condition))))
     (typecase condition
       (undefined-function (format nil "The function ~A is undefined." name))
       (unbound-variable (format nil "The variable ~A has no value.~@[ Did you mean ~A?~]"
-                                name (variable-slip (cell-error-name condition)))))))
+                                name
+                                (or (code-slip (cell-error-name condition))
+                                    (variable-slip (cell-error-name condition))))))))
 
 (defun case-failure-p (condition)
   "True if CONDITION is that no clause of ECASE or the like was for a value."

@@ -93,6 +93,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; inquiries
   (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*heir*
            #:*debugger-refused-p*)
+  ;; lisp-errors
+  (:export #:note-error-code)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
            #:reading-trouble #:text-of-condition #:one-line-text #:point-in-text #:hundredths
@@ -178,6 +180,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:define-parameter
            #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
            #:check-parameters #:call-with-parameter-values #:parameter-values #:follow-parameters
+           #:changed-parameters
            #:clean-simulation #:dirty-simulation #:*noise-before-cleaning*)
   ;; physics: the parameters of chapter 4, and chance
   (:export #:max-speed* #:max-turn-angle* #:min-turn-angle* #:braking* #:motion-noise*

@@ -47,6 +47,15 @@ leave in it what they are afterwards. Return the values of FUNCTION."
   (map 'vector (lambda (parameter) (symbol-value (parameter-symbol parameter)))
        (registry-objects *parameters*)))
 
+(defun changed-parameters (known)
+  "Return a list (symbol . value) of the parameters whose value here is not that in KNOWN, a vector
+made by PARAMETER-VALUES."
+  (declare (type simple-vector known))
+  (loop for parameter in (registry-objects *parameters*)
+        for old across known
+        for symbol = (parameter-symbol parameter)
+        unless (eql old (symbol-value symbol)) collect (cons symbol (symbol-value symbol))))
+
 (defun usable-value-p (parameter value)
   "True if PARAMETER can have VALUE; if not, queue an error message."
   (handler-case (progn (check-parameter-value parameter value) t)

@@ -42,10 +42,14 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
     `(make-spec ',name ',type ,text)))
 
 (defun continuation-p (value)
-  (or (functionp value) (symbolp value)))
+  (or (functionp value)
+      (and (symbolp value)
+           (not (eq t value))
+           (or (not (keywordp value)) (fboundp value)))))
 
 (define-argument-type 'continuation #'continuation-p
-  "a continuation: a function of an error code and the command's results, or NIL for none")
+  (one-line "a continuation: a function of an error code and the command's results, as
+(continuation (err &rest results) ...) makes, or NIL for none"))
 
 (defun check-form (name variable type)
   "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
@@ -66,6 +70,26 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
     (when (typep form '(cons number))
       (doubt-definition "~(~A~): ~S is no call of a function. Units are for the prompt, in lines ~
                          without parentheses; in Lisp 90 degrees are (* 90 (/ pi 180))."
+                        name (abridged form)))))
+
+(defparameter *returning-nothing*
+  '(out terpri fresh-line format error-set warning-set message-set error-display)
+  "Functions that return NIL or nothing, and are called for what they write.")
+
+(defun returns-nothing-p (form)
+  "True if FORM is known to return nothing that can be called, and to do something."
+  (typecase form
+    ((cons (member setf setq)) (constantp (first (last form))))
+    ((cons symbol) (or (member (first form) *returning-nothing*)
+                       (get (first form) 'command-shape)))))
+
+(defun doubt-result (name form)
+  "Warn if FORM, the continuation in a call of the command NAME, does at once what is to be done in
+the end."
+  (when (returns-nothing-p form)
+    (let ((*print-pretty* nil))
+      (doubt-definition "~(~A~): ~S is done at once, not when the command has ended, and returns ~
+                         no continuation. Write (continuation (err &rest results) ~:*~S)."
                         name (abridged form)))))
 
 (defparameter *command-families* '(:moving :looking :handling :manipulating :thinking)
@@ -171,5 +195,6 @@ later (reading 149)."
        (define-compiler-macro ,name (&whole form &rest arguments)
          (doubt-unquoted ',name arguments)
          (doubt-units ',name arguments)
+         (doubt-result ',name (nth ,(1+ (length parameters)) arguments))
          form)
        ',name)))

@@ -125,6 +125,8 @@ lost from view."
         collect (make-meaning code (one-line text) (one-line remedy)))
   "What the error codes of the simulator's own commands mean.")
 
+(mapc #'note-error-code (mapcar #'meaning-code *meanings*))
+
 (defun find-meaning (code)
   "Return what the error CODE means, or NIL if it is a user's own."
   (find code *meanings* :key #'meaning-code))

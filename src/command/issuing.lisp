@@ -116,7 +116,42 @@ tick, and is not told of the end of that."
              (angle (doubt-angle (command-name command) world argument))
              (ticks (doubt-ticks (command-name command) world argument)))))
 
-(defun kept-p (world)
+(defvar *asked-with* '()
+  "Lists (command world (parameter . value)...): what a program has asked for, headless, since ticks
+passed last, while parameters had other values than then.")
+
+(defgeneric parameters-bound (timeline world)
+  (:documentation "Return a list (symbol . value) of the parameters that have another value here
+than the run of TIMELINE in WORLD knows.")
+  (:method (timeline world) (declare (ignore timeline world)) '()))
+
+(defun doubt-bindings (command world bindings)
+  "Say once for COMMAND, asked for in WORLD while parameters were as BINDINGS say, that it is done
+with others, if so."
+  (loop for (symbol . value) in bindings
+        unless (eql value (symbol-value symbol))
+          do (warn-once (list :bound (command-name command)) world
+                        (format nil "~(~A~) was asked for while ~(~A~) was ~A, and is done while ~
+                                     it is ~A: parameters count when ticks pass. Let them pass ~
+                                     inside of the LET, by (run-ticks N), or write ~
+                                     (with-simulation (ROBOT :parameters '((~3:*~(~A~) ~A))) ~
+                                     ...)."
+                                (command-name command) symbol value (symbol-value symbol)))))
+
+(defun doubt-asked-with (world)
+  "Say once for each command, and forget, what is done with other parameters than it was asked for
+with, now that ticks of WORLD pass."
+  (loop for (command asked . bindings) in (reverse *asked-with*)
+        when (eq asked world) do (doubt-bindings command world bindings))
+  (setf *asked-with* (remove world *asked-with* :key #'second :test #'eq)))
+
+(defun note-bindings (command world)
+  "Remember with which parameters COMMAND is asked for in WORLD, if by a program between ticks."
+  (when (and (by-program-p) (not (timeline-passing-p (world-timeline world))))
+    (let ((bindings (parameters-bound (world-timeline world) world)))
+      (when bindings (push (list* command world bindings) *asked-with*)))))
+
+(defun between-runs-p (world)
   "True if what is asked of a robot in WORLD, one that top-level code works in, waits for a run to
 begin, or to go on."
   (let ((timeline (world-timeline world)))
@@ -128,13 +163,15 @@ begin, or to go on."
   "Say once for ROBOT that COMMAND is kept for a later run, if so, and once for each WITH-SIMULATION
 in another thread that has bound the name of ROBOT; but not of what a plan asks for, as running a
 plan lets ticks pass."
-  (when (and (kept-p (robot-world robot)) (not (asker-forked-p *asker*)))
+  (when (and (between-runs-p (robot-world robot)) (not (asker-forked-p *asker*)))
     (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
       (warn-once (list :kept (robot-name robot) number) (robot-world robot)
-                 (format nil "~(~A~) is kept for a later run, as none of ~A is under way. ~
-                              ~:[(simulator '~(~A~)) begins one, and does then what was asked ~
-                              before.~;~:*~A~]"
-                         (command-name command) robot elsewhere (robot-name robot))))))
+                 (format nil "~(~A~) is kept for a later run, as none of ~A is under way. ~A"
+                         (command-name command) robot
+                         (or elsewhere
+                             (format nil "(simulator '~(~A~)) begins one, and does then what was ~
+                                          asked before."
+                                     (robot-name robot))))))))
 
 ;;; Issuing.
 
@@ -163,6 +200,7 @@ takes another number of arguments."
                           timeline)
           timeline)
     (doubt-arguments command world arguments)
+    (note-bindings command world)
     (doubt-owners command robot arguments)
     (doubt-continuation command world continuation)
     (tell-if-kept command robot)

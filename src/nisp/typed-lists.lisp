@@ -3,7 +3,8 @@
 (in-package :ars-magna.nisp)
 
 ;;; A hyphen and a type after a variable declare its type (manual 3.1). Types are documentation:
-;;; they are checked for being there and then dropped, known or not.
+;;; they are checked for being there and then dropped, known or not. A name that may be a slip for
+;;; that of a known type is warned of.
 
 (defun hyphen-p (form)
   (and (symbolp form) (string= form "-")))
@@ -13,6 +14,20 @@
 
 (defun reject-hyphen (operator list)
   (reject-clause operator list "each hyphen between a variable and its type"))
+
+(defun type-like (type)
+  "Return the name of a known type for which TYPE, which is unknown, may be a slip; or NIL."
+  (and type
+       (symbolp type)
+       (not (find-nisp-type type))
+       (not (find-class type nil))
+       (find-if (lambda (name) (resembles-p type name)) (known-types))))
+
+(defun doubt-type (operator type)
+  "Warn if TYPE, which OPERATOR, a string, declares, may be a slip for a known type."
+  (when (type-like type)
+    (doubt-definition "~A: there is no type ~(~A~). Did you mean ~(~A~)?"
+                      operator type (type-like type))))
 
 (defun without-types (operator list)
   "Return LIST without each hyphen and the type that follows it. OPERATOR, a string, is named in
@@ -24,7 +39,7 @@ the error if a hyphen has no variable before it or no type behind it."
         if (hyphen-p element)
           do (when (or typed (atom tail) (hyphen-p (first tail)))
                (reject-hyphen operator list))
-             (pop tail)
+             (doubt-type operator (pop tail))
              (setf typed t)
         else
           do (setf typed (lambda-keyword-p element))

@@ -54,6 +54,21 @@ SLOTS an alist from slot names to reader functions' names; MAKER a function or N
   (or (find-nisp-type name)
       (setf (gethash (string name) *nisp-types*) (make-nisp-type (string name)))))
 
+(defun names-of-classes (package)
+  "Return the names of the classes that PACKAGE, the name of a package or nothing's, offers."
+  (and (find-package package)
+       (loop for symbol being the external-symbols of package
+             when (find-class symbol nil) collect (symbol-name symbol))))
+
+(defun known-types ()
+  "Return the names of the types that programs use, in order: those registered, and classes that
+the packages of users have."
+  (sort (remove-duplicates (append (loop for name being the hash-keys of *nisp-types* collect name)
+                                   (names-of-classes "NISP")
+                                   (names-of-classes "ARS"))
+                           :test #'string=)
+        #'string<))
+
 (defun makeable-types ()
   (sort (loop for type being the hash-values of *nisp-types*
               when (nisp-type-maker type) collect (nisp-type-name type))

@@ -21,6 +21,23 @@ works in another run."
                         and robots' names lead to those of the run at hand."
                        operator (timeline-name timeline) (timeline-over timeline)))))
 
+(defun doubt-elsewhere (world operator)
+  "Say once for WORLD if OPERATOR changes it, which is not that of the run at hand, and in which no
+time passes."
+  (let ((over (timeline-over (world-timeline world))))
+    (cond (over
+           (warn-once (list :past) world
+                      (format nil "~(~A~) changes what nobody sees any more: the run in ~(~A~) is ~
+                                   over, as ~A. What is there now is had from robots' names and ~
+                                   FIND-THING."
+                              operator (timeline-name (world-timeline world)) over)))
+          ((and *simulation* (between-runs-p world))
+           (warn-once (list :elsewhere) world
+                      (format nil "~(~A~) changes ~(~A~) for a later run of (simulator ...), not ~
+                                   for the run at hand. Inside of WITH-SIMULATION robots' names ~
+                                   and (find-thing 'NAME) lead to what is in that."
+                              operator (timeline-name (world-timeline world))))))))
+
 (defun change-again (world operator arguments)
   "Do to WORLD, which this thread has in custody, what OPERATOR does with ARGUMENTS, if that makes
 sense now."
@@ -31,6 +48,8 @@ sense now."
 (defmethod change-world ((timeline timeline) world function operator arguments)
   (check-own-run timeline)
   (check-not-of-past-run timeline operator)
+  (unless (and *simulation* (eq timeline (timeline-of *simulation*)))
+    (doubt-elsewhere world operator))
   (if (owner-p timeline)
       (deferring-interrupts
         (note-change (world-simulation world) operator arguments)

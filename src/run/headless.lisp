@@ -96,6 +96,7 @@ restart CONTINUE that lets the other ticks pass."
   (check-not-over simulation 'run-ticks)
   (check-not-secluded simulation)
   (check-passable simulation)
+  (when *asked-with* (doubt-asked-with (simulation-world simulation)))
   (loop with last = (+ (simulation-tick simulation) count)
         do (pass-ticks-alone simulation (- last (simulation-tick simulation)))
         while (signal-trouble (simulation-messages simulation))
@@ -184,6 +185,7 @@ KEEP says, see KEEP-FORKS. Then the run is over."
          (*simulation* simulation)
          (*world* (simulation-world simulation))
          (*tick-dice* nil)
+         (*asked-with* '())
          (robots (simulation-robots simulation)))
     (setf (simulation-variables simulation)
           (append variables (mapcar #'robot-name robots) *simulation-variables*

@@ -51,6 +51,12 @@ past."
                      (lambda (symbol value)
                        (note simulation 'parameter (list (string-downcase symbol) value)))))
 
+(defmethod parameters-bound ((timeline timeline) world)
+  (let ((simulation (world-simulation world)))
+    (and (eq simulation *simulation*)
+         (headless-p simulation)
+         (changed-parameters (simulation-known-parameters simulation)))))
+
 ;;; Remarks. Plans and programs are not repeated in a replay; so what became of them is remarked, by
 ;;; whatever thread, for people to read. It changes nothing.
 

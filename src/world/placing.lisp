@@ -99,10 +99,14 @@ The primitive: it checks and tells nothing. Return THING."
 
 ;; Whoever puts something by hand may put it anywhere on the map; but where that is of no use to
 ;; anybody it is said, in the same words whoever does so and how.
-(defun tell-if-in-wall (what map x y)
-  "Queue a warning if WHAT, a string, has been put into a wall of MAP at (X,Y)."
-  (when (wall-at-p map x y)
-    (warning-set (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))))
+(defun tell-if-in-wall (what world x y)
+  "Queue a warning if WHAT, a string, has been put into a wall of WORLD at (X,Y). The first one of
+WHAT in a run is shown if nobody reads it."
+  (when (wall-at-p (world-map world) x y)
+    (queue-message (make-message :warning
+                                 (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
+                                 :notable-p (first-time-p (list :in-wall what) world))
+                   *message-queue*)))
 
 (defun check-inside (operator map x y)
   (unless (and (within-reason-p x) (within-reason-p y) (map-index map x y))
@@ -171,7 +175,7 @@ the map, MISUSE for prototypes, things destroyed, and a container put into itsel
 
 (defun put-by-hand (thing x y)
   (relocate thing :floor x y)
-  (tell-if-in-wall (princ-to-string thing) (world-map (thing-world thing)) x y)
+  (tell-if-in-wall (princ-to-string thing) (thing-world thing) x y)
   thing)
 
 (defun %destroy-thing (thing)

@@ -1,0 +1,97 @@
+;;;; beginners-slips.lisp -- what beginners take for something else: results, worlds, walls, types.
+
+(in-package :ars-magna.tests)
+
+(in-suite beginners)
+
+;;; Continuations.
+
+(test commands.warn-of-what-is-done-where-a-continuation-is-wanted
+  (flet ((told (form) (warning-about `(lambda (robot) (command:robot-turn robot 1 ,form)))))
+    (dolist (form '((base:out "done") (setq done nil) (command:robot-go-forward robot 1 nil)))
+      (is-true (has-words-p (told form) "is done at once, not when the command has ended"
+                            "(continuation (err &rest results) (")))
+    (dolist (form '(nil 'later (nisp:continuation (err &rest results) (base:out "done"))
+                    #'list (car (list 'list))))
+      (is (string= "" (told form))))))
+
+(test commands.refuse-t-and-keywords-as-continuations
+  (dolist (continuation '(t :done))
+    (is-true (complains-p `(run:with-simulation (rover) (command:robot-turn rover 1 ,continuation))
+                          "give a continuation" "(continuation (err &rest results) ...)"))))
+
+(test variables.called-like-an-error-code-are-told-of-the-colon
+  (flet ((text (name) (base::lisp-error-text (make-condition 'unbound-variable :name name))))
+    (is-true (has-words-p (text (intern "ROBOT-BLOCKED" :ars-user)) "Did you mean :robot-blocked?"))
+    (is (not (search "Did you" (text (intern "NOT-A-CODE-OF-OURS" :ars-user)))))))
+
+;;; Other worlds.
+
+(test changes.of-what-is-over-are-told-of-once
+  (let ((old (run:with-simulation (rover) rover)))
+    (with-messages
+      (loop repeat 2 do (robot:place-robot old 3 3 0))
+      (let ((text (displayed)))
+        (is (= 1 (length (lines-of text))) "~A" text)
+        (is-true (has-words-p text "place-robot changes what nobody sees any more" "is over"))))))
+
+(test changes.for-a-later-run-are-told-of-inside-of-another
+  (eval '(world:defmap bay (9 9)))
+  (eval '(robot:defrobot barge (bay (3 3) 0)))
+  (let ((later (robot:find-robot 'barge)))
+    (is-true (has-words-p (rover-writes () (robot:place-robot later 4 4 0))
+                          "place-robot changes bay for a later run" "WITH-SIMULATION"))))
+
+(test changes.of-forks-are-quiet
+  (is (string= "" (rover-writes ()
+                    (robot:place-robot (run:counterpart rover (run:fork-simulation)) 3 3 0)))))
+
+(test walls.are-told-of-once-by-what-is-put-into-them
+  (let ((text (rover-writes () (loop repeat 2 do (robot:place-robot rover 0 0 0)))))
+    (is (= 1 (length (lines-of text))) "~A" text)
+    (is-true (has-words-p text "ROVER is inside a wall now, at 0.00, 0.00")))
+  (is (string= "" (rover-writes () (robot:place-robot rover 3 3 0)))))
+
+;;; Parameters.
+
+(test parameters.bound-around-a-command-alone-are-told-of-once
+  (flet ((go-forward (rover) (command:robot-go-forward rover 1 nil)))
+    (let ((text (rover-writes ()
+                  (loop repeat 2
+                        do (let ((base:max-speed* 1/10)) (go-forward rover))
+                           (run:run-ticks 2)))))
+      (is (= 1 (length (lines-of text))) "~A" text)
+      (is-true (has-words-p text "robot-go-forward was asked for while max-speed* was 1/10"
+                            ":parameters '((max-speed* 1/10))")))
+    (is (string= "" (rover-writes ()
+                      (let ((base:max-speed* 1/10)) (go-forward rover) (run:run-ticks 2))
+                      (setf base:max-speed* 1/5)
+                      (go-forward rover)
+                      (run:run-ticks 2))))))
+
+;;; Plans.
+
+(test fluent-value.refuses-vectors-of-fluents
+  (is-true (complains-p '(rpl:fluent-value (rpl:create-fluent-vector 'driver:camera-views* 1))
+                        "camera-views* is a vector of fluents: fluent-value needs one of them"
+                        "(vref camera-views* camera)"))
+  (is (equalp #(1 2) (rpl:fluent-value (vector 1 2)))))
+
+(test plans.warn-of-handlers-of-errors-around-failures
+  (dolist (form '((handler-case (rpl:fail :lost) (error () :ok))
+                  (list (ignore-errors (rpl:fail :lost)))
+                  (handler-bind ((error #'print)) (rpl:fail :lost))))
+    (is-true (has-words-p (warnings-of-procedure '(list robot) form)
+                          "does not handle failures of plans" "(handle-failure (")))
+  (dolist (form '((handler-case (rpl:fail :lost) (rpl:plan-failure () :ok))
+                  (handler-case (car robot) (error () (rpl:fail :lost)))
+                  (ignore-errors (car robot))))
+    (is (string= "" (warnings-of-procedure '(list robot) form)))))
+
+(test types.that-are-slips-for-known-ones-are-warned-of
+  (flet ((told (type)
+           (warning-about `(rpl:def-interp-proc ,(gensym "PLAN") (part - ,type) (list part)))))
+    (is-true (has-words-p (told (intern "HND" :ars-user)) "there is no type hnd"
+                          "Did you mean hand?"))
+    (dolist (type '(hand integer vase (lst vase)))
+      (is (string= "" (told type))))))
