@@ -275,6 +275,7 @@
                    (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
                    (:file "comments") (:file "robot-lines") (:file "finding")
+                   (:file "slips")
                    (:file "file-trouble") (:file "forms") (:file "evaluation")
                    (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")

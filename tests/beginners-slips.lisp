@@ -95,3 +95,55 @@
                           "Did you mean hand?"))
     (dolist (type '(hand integer vase (lst vase)))
       (is (string= "" (told type))))))
+
+(test packages.with-a-conflict-say-how-to-settle-it
+  (let ((package (make-package (gensym "MINE") :use '(:cl))))
+    (unwind-protect
+         (handler-case (use-package :ars package)
+           (package-error (condition)
+             (is-true (has-words-p (base:text-of-condition condition)
+                                   "MAP would mean ARS-MAGNA.WORLD:MAP and COMMON-LISP:MAP"
+                                   "(:shadowing-import-from :ars #:map)"
+                                   "(ars:define-user-package :mine)"))))
+      (delete-package package))))
+
+(test commands.name-their-parameters-where-one-is-missing
+  (flet ((told (form) (warning-about `(lambda (robot) ,form))))
+    (is-true (has-words-p (told '(command:robot-turn robot))
+                          "robot-turn takes (robot angle &optional continuation), not 1 argument."))
+    (is-true (has-words-p (told '(command:robot-turn robot 1 nil 2)) "not 4 arguments"))
+    (dolist (form '((command:robot-turn robot 1) (command:robot-turn robot 1 nil)
+                    (command:robot-stop robot)))
+      (is (string= "" (told form))))))
+
+;;; The prompt.
+
+(defun typed (&rest lines)
+  "Return what a session writes in which LINES are typed."
+  (joined (apply #'type-batch lines)))
+
+(test prompt.says-what-is-a-plan-and-what-is-a-line
+  (is-true (has-words-p (typed "fetch-thing") "FETCH-THING is a plan: PLAN FETCH-THING"))
+  (is-true (has-words-p (typed "(fetch-thing 1)") "FETCH-THING is a plan: PLAN FETCH-THING"))
+  (is-true (has-words-p (typed "(turn 1)") "TURN is a command of this prompt"
+                        "without parentheses: TURN angle"))
+  (is-true (has-words-p (typed "go 3 4") "GO-TO x y drives to a place"))
+  (is-true (has-words-p (typed "(robot-turn robbie)")
+                        "robot-turn takes (robot angle &optional continuation), not 1 argument")))
+
+(test prompt.tells-of-commands-in-comments
+  (is-true (has-words-p (typed "turn 1; go 3 m") "is a comment: go 3 m was left out"))
+  (dolist (line '("turn 1 ; go home" "turn 1 ;; stop" "turn 1; the other way"))
+    (is (not (search "left out" (typed line))))))
+
+(test prompt.tells-of-new-variables-that-may-be-slips
+  (dolist (name '("MAX-SPED*" "NEVER-SEEN*" "XX"))
+    (makunbound (intern name :ars-user)))
+  (is-true (has-words-p (typed "(setf max-sped* 1)") "max-sped* is a new variable"
+                        "Did you mean max-speed*?"))
+  (let ((text (typed "(setf never-seen* 0)" "(setf never-seen* 1)")))
+    (is-true (has-words-p text "never-seen* is a new variable"))
+    (is (= 1 (count-of "new variable" text))))
+  (dolist (line '("(setf xx 4)" "(defvar *known-by-now* 1)" "(setf max-speed* 1)"
+                  "(let ((zz* 3)) (setf zz* 4))"))
+    (is (not (search "new variable" (typed line))))))

@@ -185,6 +185,10 @@ another datum, and where that ends."
              (line-parameters line))
        (session-robot)))
 
+(defparameter *hints-on-more*
+  '(("GO" "GO-TO x y drives to a place."))
+  "Lists (line hint): what may be meant by a line with more arguments than it takes.")
+
 (defun reject-rest (line text)
   "Signal BAD-LINE since TEXT stands behind the arguments of LINE. Where a unit could stand, say
 which there are."
@@ -193,7 +197,8 @@ which there are."
     (if (and dimension (alpha-char-p (char text 0)))
         (reject-line "~A is too much: it is no unit of ~A. Known: ~{~A~^, ~}. ~A" text
                      (words-for dimension) (unit-names dimension) (takes line))
-        (reject-line "~A is too much. ~A" text (takes line)))))
+        (reject-line "~A is too much. ~A~@[ ~A~]" text (takes line)
+                     (second (assoc (line-name line) *hints-on-more* :test #'string=))))))
 
 (defun read-arguments (line text)
   "Return the arguments that TEXT, what follows the name of LINE, holds for it."

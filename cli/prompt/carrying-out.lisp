@@ -47,4 +47,5 @@ for, or 79."
                (if (lisp-p text)
                    (evaluate-line session text)
                    (multiple-value-bind (name rest) (split-line text)
+                     (tell-of-comment text)
                      (run-line session (find-line name) rest))))))))

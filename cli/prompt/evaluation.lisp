@@ -11,22 +11,25 @@
   (= (skip-blanks text start) (length text)))
 
 (defvar *undefined* '()
-  "Lists (name kind) of what the compiler has found undefined in the forms at hand, newest first.")
+  "Lists (name kind new-p) of what the compiler has found undefined in the forms at hand, newest
+first. NEW-P is true if it had no value then.")
 
 (defun note-undefined (condition)
   "Note the name that CONDITION says is not defined, and tell nothing yet. NIL if it says something
 else."
   (multiple-value-bind (name kind) (undefined-name condition)
     (when name
-      (pushnew (list name kind) *undefined* :test #'equal)
+      (pushnew (list name kind (still-undefined-p name kind)) *undefined* :test #'equal)
       (muffle-warning condition))))
 
 (defun tell-undefined (file)
   "Tell what of *UNDEFINED* is not defined yet, in the forms of FILE, or typed if that is NIL."
-  (loop for (name kind) in (reverse *undefined*)
-        when (still-undefined-p name kind)
-          do (warning-set (format nil "~@[~A: ~]The ~(~A~) ~(~A~) is not defined."
-                                  file kind (safe-text name)))))
+  (loop for (name kind new-p) in (reverse *undefined*)
+        do (cond ((still-undefined-p name kind)
+                  (warning-set (format nil "~@[~A: ~]The ~(~A~) ~(~A~) is not defined."
+                                       file kind (safe-text name))))
+                 ((and new-p (null file) (eq :variable kind))
+                  (tell-of-new-variable name)))))
 
 (defun quiet-warning (condition)
   "Keep the compiler from telling users at length what they will be told in a moment. Doubts about
@@ -108,6 +111,7 @@ what Lisp says of a full stack, of which users are told."
         until (blank-from-p text position)
         do (check-parenthesis text position)
            (setf (values form position text) (read-form session text position))
+           (check-typed-call form)
            (evaluate session form)))
 
 (defun evaluate-text (session text)

@@ -61,7 +61,7 @@
   (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *hints*)))
 
 (defun reject-unknown (name)
-  (let ((hint (hint-for name)))
+  (let ((hint (or (hint-for name) (plan-advice name))))
     (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
                  name hint
                  (and (null hint)

@@ -11,16 +11,6 @@
              (not (typep condition '(or ars-magna-error storage-condition))))
     (invoke-debugger condition)))
 
-(defun shipped-name (condition)
-  "Return what the function is called that the worlds have under the name that CONDITION says is
-that of no function, or NIL."
-  (let ((name (and (typep condition 'undefined-function) (cell-error-name condition))))
-    (when (and name (symbolp name))
-      (multiple-value-bind (symbol status) (find-symbol (symbol-name name) :ars-worlds)
-        (and (eq :external status)
-             (fboundp symbol)
-             (format nil "ARS-WORLDS:~A" symbol))))))
-
 (defun complain-of-printing (session trouble)
   "Say in SESSION that what went wrong cannot be printed, because of TROUBLE. At a terminal no line
 could be typed either: so signal that."
@@ -31,8 +21,8 @@ could be typed either: so signal that."
 
 (defun complain-of (session condition)
   "Show CONDITION as an error in SESSION."
-  (handler-case (complain session (format nil "~A~@[ There is ~A.~]" (condition-text condition)
-                                          (shipped-name condition)))
+  (handler-case (complain session (format nil "~A~@[ ~A~]" (condition-text condition)
+                                          (advice-on-function condition)))
     (error (trouble) (complain-of-printing session trouble))))
 
 (defun call-complaining (session function)

@@ -141,6 +141,27 @@ none; and true. Return false as a third value for other types."
                                 (or (code-slip (cell-error-name condition))
                                     (variable-slip (cell-error-name condition))))))))
 
+(defun our-own-p (symbol)
+  "True if SYMBOL is of a package of this system."
+  (let ((package (symbol-package symbol)))
+    (and package (starts-with-subseq "ARS-MAGNA" (package-name package)))))
+
+(defun conflict-text (condition)
+  "Return our text for CONDITION, that a package would have several symbols of one name, if one of
+them is ours; or NIL."
+  (let* ((symbols (sb-ext:name-conflict-symbols condition))
+         (ours (find-if #'our-own-p symbols)))
+    (when ours
+      (format nil "~A would mean ~{~A:~A~^ and ~} here. Say before which is meant, as by ~
+                   (shadowing-import 'ars:~(~A~)) or in a defpackage ~
+                   (:shadowing-import-from :ars #:~(~:*~A~)); or write (ars:define-user-package ~
+                   :mine) for a package without such conflicts."
+              (symbol-name ours)
+              (loop for symbol in symbols
+                    collect (package-name (symbol-package symbol))
+                    collect (symbol-name symbol))
+              (symbol-name ours)))))
+
 (defun case-failure-p (condition)
   "True if CONDITION is that no clause of ECASE or the like was for a value."
   (string= "CASE-FAILURE" (type-of condition)))
@@ -151,5 +172,6 @@ none; and true. Return false as a third value for other types."
    (when (signalled-by-lisp-p condition)
      (typecase condition
        (arithmetic-error (arithmetic-text condition))
+       (sb-ext:name-conflict (conflict-text condition))
        ((or undefined-function unbound-variable) (named-text condition))
        (type-error (unless (case-failure-p condition) (type-error-text condition)))))))

@@ -94,7 +94,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*heir*
            #:*debugger-refused-p*)
   ;; lisp-errors
-  (:export #:note-error-code)
+  (:export #:note-error-code #:variable-slip)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
            #:reading-trouble #:text-of-condition #:one-line-text #:point-in-text #:hundredths

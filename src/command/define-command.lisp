@@ -72,6 +72,13 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
                          without parentheses; in Lisp 90 degrees are (* 90 (/ pi 180))."
                         name (abridged form)))))
 
+(defun doubt-count (name parameters forms)
+  "Warn if FORMS, the arguments in a call of the command NAME, are not as many as PARAMETERS, a
+lambda list that ends in an optional one."
+  (unless (<= (- (length parameters) 2) (length forms) (1- (length parameters)))
+    (doubt-definition "~(~A~) takes ~(~:A~), not ~D argument~:P."
+                      name parameters (length forms))))
+
 (defparameter *returning-nothing*
   '(out terpri fresh-line format error-set warning-set message-set error-display)
   "Functions that return NIL or nothing, and are called for what they write.")
@@ -193,6 +200,7 @@ later (reading 149)."
          ,(check-form name 'continuation 'continuation)
          (issue (command-of ',name) ,(first resource) (list ,@variables) continuation))
        (define-compiler-macro ,name (&whole form &rest arguments)
+         (doubt-count ',name '(,(first resource) ,@variables &optional continuation) arguments)
          (doubt-unquoted ',name arguments)
          (doubt-units ',name arguments)
          (doubt-result ',name (nth ,(1+ (length parameters)) arguments))

@@ -1,0 +1,92 @@
+;;;; slips.lisp -- what is typed as Lisp and is a line, or the other way round, and the like.
+
+(in-package :ars-magna.cli)
+
+;;; Names of plans, lines and functions.
+
+(defun plan-advice (name)
+  "Return in a sentence how the plan called NAME, a symbol or string, is run, or NIL if there is no
+such plan."
+  (let ((plan (find-procedure name nil)))
+    (and plan (format nil "~A is a plan: PLAN ~A." (procedure-name plan) (plan-usage plan)))))
+
+(defun line-called (name)
+  "Return the line command called NAME, a string, or NIL."
+  (find name (all-lines) :key #'line-name :test #'string-equal))
+
+(defun line-advice (name)
+  "Return in a sentence how the line command called NAME, a string, is typed; NIL if there is none."
+  (let ((line (line-called name)))
+    (and line (format nil "~A is a command of this prompt, typed without parentheses: ~A."
+                      (line-name line) (usage line)))))
+
+(defun shipped-advice (name)
+  "Return in a sentence the function that the worlds have under NAME, a symbol's; NIL if none."
+  (multiple-value-bind (symbol status) (find-symbol name :ars-worlds)
+    (and (eq :external status)
+         (fboundp symbol)
+         (format nil "There is ARS-WORLDS:~A." symbol))))
+
+(defun advice-on-function (condition)
+  "Return in a sentence what may be meant by the name that CONDITION says is of no function; NIL of
+other conditions."
+  (let ((name (and (typep condition 'undefined-function) (cell-error-name condition))))
+    (when (and name (symbolp name))
+      (or (plan-advice name)
+          (line-advice (symbol-name name))
+          (shipped-advice (symbol-name name))))))
+
+;;; Calls.
+
+(defun check-typed-call (form)
+  "Signal BAD-LINE if FORM, as typed, calls a function with another number of arguments than it
+takes."
+  (when (and (typep form '(cons symbol))
+             (proper-list-p form)
+             (fboundp (first form))
+             (not (macro-function (first form)))
+             (not (special-operator-p (first form))))
+    (multiple-value-bind (parameters known-p) (function-arguments (first form))
+      (let ((trouble (and known-p (misfit (shape-of parameters) (rest form)))))
+        (when trouble
+          (reject-line "~(~A~) takes ~A, not ~A." (first form)
+                       (shape-text (lambda-list-of (first form))) trouble))))))
+
+;;; New variables.
+
+(defun starred-p (name)
+  "True if the symbol NAME ends in a star, as special variables' do."
+  (let ((place (position #\* (symbol-name name) :from-end t)))
+    (and place (plusp place) (= place (1- (length (symbol-name name)))))))
+
+(defun tell-of-new-variable (name)
+  "Tell of the variable NAME, which something typed has set and nobody has defined, if it may be a
+slip or is called as defined ones are."
+  (let ((meant (variable-slip name)))
+    (when (or meant (starred-p name))
+      (warning-set (format nil "~(~A~) is a new variable, as nobody has defined it before.~@[ Did ~
+                                you mean ~A?~] (defvar ~:*~:*~(~A~) ...) defines one."
+                           name meant)))))
+
+;;; A second command in a line.
+
+(defun command-in-comment (text)
+  "Return the comment in TEXT, a line of no Lisp, that begins right behind a word, as in
+turn 1; go 3, with the name of a line command; or NIL."
+  (let ((start (position #\; text)))
+    (when (and start
+               (plusp start)
+               (not (find #\" text :end start))
+               (not (blank-p (char text (1- start)))))
+      (let ((comment (string-trim " ;" (subseq text start))))
+        (and (string/= "" comment)
+             (line-called (split-line comment))
+             comment)))))
+
+(defun tell-of-comment (text)
+  "Tell of the command in TEXT, a line of no Lisp, that stands in a comment there, if any."
+  (let ((comment (command-in-comment text)))
+    (when comment
+      (warning-set (format nil "What follows ; is a comment: ~A was left out. Type one command a ~
+                                line."
+                           comment)))))
