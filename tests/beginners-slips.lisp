@@ -42,6 +42,13 @@
     (is-true (has-words-p (rover-writes () (robot:place-robot later 4 4 0))
                           "place-robot changes bay for a later run" "WITH-SIMULATION"))))
 
+(test commands.for-a-robot-that-is-not-in-the-run-say-how-it-gets-there
+  (eval '(robot:defrobot latecomer (arena (3 3) 0)))
+  (let ((latecomer (robot:find-robot 'latecomer)))
+    (is-true (has-words-p (rover-writes () (command:robot-turn latecomer 1) (run:run-ticks 1))
+                          "none of LATECOMER is under way"
+                          "(with-simulation ((ROBOT latecomer)) ...)"))))
+
 (test changes.of-forks-are-quiet
   (is (string= "" (rover-writes ()
                     (robot:place-robot (run:counterpart rover (run:fork-simulation)) 3 3 0)))))

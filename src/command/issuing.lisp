@@ -159,6 +159,16 @@ begin, or to go on."
          (not (live-p timeline))
          (not (timeline-passing-p timeline)))))
 
+(defun way-to-run (robot)
+  "Return in a sentence how ROBOT, which is in no run, gets into one."
+  (let ((map (world-map (robot-world robot))))
+    (if (and *world* (eq map (world-map *world*)))
+        (format nil "A robot is in the run of WITH-SIMULATION if it is named there, as ~(~A~) is ~
+                     in (with-simulation ((ROBOT ~:*~(~A~))) ...)."
+                (robot-name robot))
+        (format nil "(simulator '~(~A~)) begins one, and does then what was asked before."
+                (robot-name robot)))))
+
 (defun tell-if-kept (command robot)
   "Say once for ROBOT that COMMAND is kept for a later run, if so, and once for each WITH-SIMULATION
 in another thread that has bound the name of ROBOT; but not of what a plan asks for, as running a
@@ -167,11 +177,7 @@ plan lets ticks pass."
     (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
       (warn-once (list :kept (robot-name robot) number) (robot-world robot)
                  (format nil "~(~A~) is kept for a later run, as none of ~A is under way. ~A"
-                         (command-name command) robot
-                         (or elsewhere
-                             (format nil "(simulator '~(~A~)) begins one, and does then what was ~
-                                          asked before."
-                                     (robot-name robot))))))))
+                         (command-name command) robot (or elsewhere (way-to-run robot)))))))
 
 ;;; Issuing.
 
