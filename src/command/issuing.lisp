@@ -162,7 +162,9 @@ begin, or to go on."
 (defun way-to-run (robot)
   "Return in a sentence how ROBOT, which is in no run, gets into one."
   (let ((map (world-map (robot-world robot))))
-    (if (and *world* (eq map (world-map *world*)))
+    (if (and *world*
+             (not (eq *world* (robot-world robot)))
+             (eq map (world-map *world*)))
         (format nil "A robot is in the run of WITH-SIMULATION if it is named there, as ~(~A~) is ~
                      in (with-simulation ((ROBOT ~:*~(~A~))) ...)."
                 (robot-name robot))
