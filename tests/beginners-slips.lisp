@@ -154,3 +154,13 @@
   (dolist (line '("(setf xx 4)" "(defvar *known-by-now* 1)" "(setf max-speed* 1)"
                   "(let ((zz* 3)) (setf zz* 4))"))
     (is (not (search "new variable" (typed line))))))
+
+(test shipped-plans.want-places-in-a-list
+  (flet ((told (&rest plan)
+           (error-output (run:with-simulation (ars-worlds:robbie)
+                           (apply #'driver:run-plan plan)))))
+    (dolist (plan '((ars-worlds:fetch-thing ((:color blue)) (3 4))
+                    (ars-worlds:tidy-room (((:color blue))) 4)
+                    (ars-worlds:search-nearest ((:color blue)) (3 4))))
+      (is-true (has-words-p (apply #'told plan) "places is" "such as ((3 4) (5 6))")))
+    (is-true (has-words-p (told 'ars-worlds:patrol-places '(3 4)) "points is (3 4)"))))

@@ -44,6 +44,7 @@ BIN, come back to START and put it on the floor. START is where the robot is, a 
 by default it finds that out. Such a thing that it has in its hand or BIN already, as when an
 errand was ended and is started again, it brings at once. Return the point where it believes to be
 then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
+  (check-points 'fetch-thing 'places places)
   (with-valve ((rpl-robot-valve))
     (let* ((start (or start (here (rpl-robot))))
            (me (begin-reckoning start))
@@ -68,6 +69,7 @@ of DESCRIPTIONS into its first storage bin, and so on. START is where the robot 
 heading); by default it finds that out. What it has in its hand it drops. It goes on, up to LIMIT
 things, until it has seen none for a whole round; what is kicked about meanwhile is looked for anew.
 Return how many things it has stowed."
+  (check-points 'tidy-room 'places places)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))
           (count 0)

@@ -169,12 +169,21 @@ map. True if so."
              (drive-by (+ 1 (mod trouble 3)))))
     (reckon me)))
 
+(defun coordinates-p (point)
+  "True if POINT is a list (x y) of numbers."
+  (and (listp point) (eql 2 (list-length point)) (every #'realp point)))
+
+(defun check-points (plan name points)
+  "Signal WRONG-ARGUMENT unless POINTS, what PLAN takes as NAME, is a list of points."
+  (unless (and (listp points) (list-length points) (every #'coordinates-p points))
+    (ars-magna.base:reject-argument plan name points
+                                    "a list of points (x y), such as ((3 4) (5 6))")))
+
 (defun check-travel (me point tolerance patience)
   "Signal WRONG-ARGUMENT about the first of these that TRAVEL-TO cannot use."
   (loop for (fine-p name value expected)
           in (list (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
-                   (list (and (listp point) (eql 2 (list-length point)) (every #'realp point))
-                         "point" point "a list (x y) of numbers of metres")
+                   (list (coordinates-p point) "point" point "a list (x y) of numbers of metres")
                    (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
                          "a number of metres, from 0")
                    (list (and (integerp patience) (plusp patience)) ":patience" patience
@@ -207,6 +216,7 @@ troubles, or at once if there is no way, with a WRONG-ARGUMENT if an argument is
   "Let the robot visit POINTS of its map in turn, ROUNDS times. START is where it is, a list (x y
 heading); by default it finds that out. What cannot be reached is left out. Return how many visits
 it made."
+  (check-points 'patrol-places 'points points)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))
           (visits 0))

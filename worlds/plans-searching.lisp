@@ -118,6 +118,7 @@ not get to what it sees. True if it found the thing."
   "Let the robot do VISIT, the name of a plan, to one of PLACES after the other, as the function
 CHOOSE says, until that finds what fits DESCRIPTION: ROUNDS times as often as there are PLACES.
 Return how far it drove, in metres, as it believes. Fails with :NOT-FOUND."
+  (check-points 'search-places 'places places)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))
           (dice (dice-for 'searching))
