@@ -76,6 +76,19 @@
                       (go-forward rover)
                       (run:run-ticks 2))))))
 
+(test parameters.bound-around-a-command-of-a-live-run-are-told-of
+  (let ((robot (robot:find-robot 'rover)))
+    (with-messages
+      (run:simulator 'rover :rate :free :display nil)
+      (unwind-protect
+           (progn (let ((base:max-speed* 1/10)) (command:robot-stop robot nil))
+                  (is-true (has-words-p (displayed) "robot-stop is done by the simulator"
+                                        "not 1/10, as LET has it here"
+                                        "(setf max-speed* 1/10)"))
+                  (command:robot-turn robot 1 nil)
+                  (is (not (search "LET" (displayed) :test #'char=))))
+        (run:stop-simulator)))))
+
 ;;; Plans.
 
 (test fluent-value.refuses-vectors-of-fluents

@@ -145,11 +145,23 @@ with, now that ticks of WORLD pass."
         when (eq asked world) do (doubt-bindings command world bindings))
   (setf *asked-with* (remove world *asked-with* :key #'second :test #'eq)))
 
+(defun doubt-bindings-here (command world bindings)
+  "Say once for COMMAND, asked for in WORLD, which runs live, that BINDINGS are this thread's."
+  (loop for (symbol . value) in bindings
+        do (warn-once (list :bound (command-name command)) world
+                      (format nil "~(~A~) is done by the simulator, in whose thread ~(~A~) is ~A, ~
+                                   not ~A, as LET has it here. Write (setf ~1@*~(~A~) ~3@*~A)."
+                              (command-name command) symbol (global-value symbol) value))))
+
 (defun note-bindings (command world)
-  "Remember with which parameters COMMAND is asked for in WORLD, if by a program between ticks."
-  (when (and (by-program-p) (not (timeline-passing-p (world-timeline world))))
-    (let ((bindings (parameters-bound (world-timeline world) world)))
-      (when bindings (push (list* command world bindings) *asked-with*)))))
+  "If COMMAND is asked for in WORLD between ticks, and not by a plan, remember with which parameters
+that is; or, live, say so if they are this thread's."
+  (let ((timeline (world-timeline world)))
+    (unless (or (asker-forked-p *asker*) (timeline-passing-p timeline))
+      (let ((bindings (parameters-bound timeline world)))
+        (cond ((null bindings))
+              ((live-p timeline) (doubt-bindings-here command world bindings))
+              (t (push (list* command world bindings) *asked-with*)))))))
 
 (defun between-runs-p (world)
   "True if what is asked of a robot in WORLD, one that top-level code works in, waits for a run to
