@@ -27,6 +27,10 @@
 
 ;;; Other worlds.
 
+(world:defmap bay (9 9))
+(robot:defrobot barge (bay (3 3) 0))
+(robot:defrobot tug (bay (6 6) 0))
+
 (test changes.of-what-is-over-are-told-of-once
   (let ((old (run:with-simulation (rover) rover)))
     (with-messages
@@ -36,18 +40,17 @@
         (is-true (has-words-p text "place-robot changes what nobody sees any more" "is over"))))))
 
 (test changes.for-a-later-run-are-told-of-inside-of-another
-  (eval '(world:defmap bay (9 9)))
-  (eval '(robot:defrobot barge (bay (3 3) 0)))
   (let ((later (robot:find-robot 'barge)))
     (is-true (has-words-p (rover-writes () (robot:place-robot later 4 4 0))
                           "place-robot changes bay for a later run" "WITH-SIMULATION"))))
 
 (test commands.for-a-robot-that-is-not-in-the-run-say-how-it-gets-there
-  (eval '(robot:defrobot latecomer (arena (3 3) 0)))
-  (let ((latecomer (robot:find-robot 'latecomer)))
-    (is-true (has-words-p (rover-writes () (command:robot-turn latecomer 1) (run:run-ticks 1))
-                          "none of LATECOMER is under way"
-                          "(with-simulation ((ROBOT latecomer)) ...)"))))
+  (let ((tug (robot:find-robot 'tug)))
+    (is-true (has-words-p (error-output (run:with-simulation (barge)
+                                          (command:robot-turn tug 1)
+                                          (run:run-ticks 1)))
+                          "none of TUG is under way"
+                          "(with-simulation ((ROBOT tug)) ...)"))))
 
 (test changes.of-forks-are-quiet
   (is (string= "" (rover-writes ()
