@@ -94,13 +94,15 @@ SAVE-PLAN-TIMELINE.")
           (and runner (if (idle-p runner) (next-wake-time runner) :ready)))))
 
 (defun call-holding (function interface)
-  "Call FUNCTION, holding the plans of INTERFACE, which this thread has locked."
-  (unwind-protect (let* ((held (cons interface *held*)) (*held* held))
-                    (declare (dynamic-extent held))
-                    (setf (interface-holder interface) (current-thread))
-                    (unwind-protect (funcall function)
-                      (publish-next-tick interface)))
-    (setf (interface-holder interface) nil)))
+  "Call FUNCTION, holding the plans of INTERFACE, which this thread has locked. It can be
+interrupted."
+  (let* ((held (cons interface *held*)) (*held* held))
+    (declare (dynamic-extent held))
+    (in-any-case
+      (progn (setf (interface-holder interface) (current-thread))
+             (allowing-interrupts (funcall function)))
+      (publish-next-tick interface)
+      (setf (interface-holder interface) nil))))
 
 (defun call-with-plans-if-free (function interface)
   "Call FUNCTION as CALL-WITH-PLANS does, and return its value and true; NIL and false if another
@@ -176,7 +178,7 @@ known to be at Lisp code that does not return. One that waits in a debugger can 
          (call-when-free (interface-lock interface)
                          (lambda ()
                            (funcall have)
-                           (allowing-interrupts (call-holding function interface)))))
+                           (call-holding function interface))))
        interface)))
 
 (defmacro with-plans ((interface) &body body)

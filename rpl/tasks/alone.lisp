@@ -43,5 +43,6 @@ WRONG-ARGUMENT."
     (in-any-case
       (progn (setf state (run-until-over runner task limit))
              (when (eq state :deadlock) (report-deadlock runner)))
-      (unless (task-over-p task) (end-alone runner task limit)))
+      (unless (task-over-p task)
+        (allowing-interrupts (end-alone runner task limit))))
     (values (task-result task) state)))

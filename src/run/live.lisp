@@ -86,7 +86,8 @@ simulator has failed and is paused for that: it would wait in vain."
       (asking (simulation)
         (add-observer #'look simulation)
         (look simulation))
-      (unwind-protect (await-signal idle seconds simulation)
+      (in-any-case
+        (await-signal idle seconds simulation)
         (asking (simulation) (remove-observer #'look simulation))))))
 
 (defun await-signal (idle seconds simulation)
@@ -171,9 +172,10 @@ One whose map or definition has been replaced means the robot that is called so 
 timeline and run of their own. Return the run."
   (let ((custody (timeline-custody (world-timeline world)))
         (variables (simulation-variables (world-simulation world))))
-    (writing (world) (reset-world world :seed seed))
-    (setf (world-timeline world) (make-timeline (map-name (world-map world)) custody)
-          (simulation-variables (world-simulation world)) variables))
+    (deferring-interrupts
+      (writing (world) (reset-world world :seed seed))
+      (setf (world-timeline world) (make-timeline (map-name (world-map world)) custody)
+            (simulation-variables (world-simulation world)) variables)))
   (world-simulation world))
 
 (defun fresh-p (simulation journal)

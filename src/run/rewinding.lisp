@@ -170,11 +170,12 @@ are told that OLD is over; wherever they throw, and whatever interrupts this thr
   (check-not-over old 'rewind)
   (let ((from (simulation-tick old)))
     (share-custody (simulation-timeline new) (simulation-timeline old))
-    (in-any-case
-      (deferring-interrupts (hand-over-looks new old))
-      (end-rewound old new)
-      (deferring-interrupts (succeed-to new old from))
-      (funcall then))))
+    (deferring-interrupts
+      (in-any-case
+        (hand-over-looks new old)
+        (end-rewound old new)
+        (succeed-to new old from)
+        (funcall then)))))
 
 (defun start-in-place (new old rate paused-p)
   "Let NEW, which has taken the place of OLD, be live at RATE as that was; unless somebody has
@@ -190,14 +191,14 @@ and releases NEW."
          (rate (simulation-rate old)) (paused-p (paused-p old))
          (live-p (claim-pacing timeline))
          (done-p nil))
-    (unwind-protect
-         (call-alone timeline
-                     (lambda ()
-                       (take-the-place new old
-                                       (lambda ()
-                                         (setf done-p t)
-                                         (when live-p
-                                           (start-in-place new old rate paused-p))))))
+    (in-any-case
+      (call-alone timeline
+                  (lambda ()
+                    (take-the-place new old
+                                    (lambda ()
+                                      (setf done-p t)
+                                      (when live-p
+                                        (start-in-place new old rate paused-p))))))
       (unless done-p (release-fork new)))
     new))
 

@@ -197,9 +197,9 @@ interrupted."
 (defun run-in-order (agenda event)
   "Run EVENT and those that follow it, the rest also if one is left."
   (declare #.*hot* (type agenda agenda))
-  (in-any-case
-    (loop while event
-          do (run-if-pending agenda (shiftf event (event-next (the event event)))))
+  (unwind-protect
+       (loop while event
+             do (run-if-pending agenda (shiftf event (event-next (the event event)))))
     (when event (run-in-order agenda event))))
 
 (defun run-bucket (agenda last)

@@ -183,10 +183,10 @@ large group, memory is read ahead if the first that runs moves its thing."
 
 (defun run-row (group end dice tick)
   "Run the members of GROUP before END whose trials succeed, those behind one that fails too."
-  (in-any-case
-    (loop while (< (group-skip group) end)
-          do (unless (call-user-code #'run-members (group-origin group) group end dice tick)
-               (setf (group-origin group) (make-origin))))
+  (unwind-protect
+       (loop while (< (group-skip group) end)
+             do (unless (call-user-code #'run-members (group-origin group) group end dice tick)
+                  (setf (group-origin group) (make-origin))))
     (when (< (group-skip group) end)
       ;; One was left, as by THROW.
       (setf (group-origin group) (make-origin))
@@ -198,7 +198,7 @@ large group, memory is read ahead if the first that runs moves its thing."
     (flet ((end-row ()
              (decf (group-skip group) end)
              (when (group-dead group) (bury-dead group))))
-      (in-any-case (run-row group end dice tick) (end-row)))))
+      (unwind-protect (run-row group end dice tick) (end-row)))))
 
 (declaim (inline skip-group))
 (defun skip-group (group)
@@ -234,8 +234,7 @@ Return nothing."
                (run-chance (group)
                  (unless (skip-group group) (run-group group dice (if due tick 0)))))
           (declare (dynamic-extent #'run-due #'run-chance))
-          (in-any-case
-            (call-each #'run-due due)
+          (unwind-protect (call-each #'run-due due)
             (call-each #'run-chance (world-kicker-groups world)))))))
   (values))
 
