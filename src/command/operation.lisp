@@ -162,8 +162,7 @@ the resource and RESULTS. The second end of an operation changes nothing."
       (cancel-event (operation-agenda operation) operation))
     (let ((results (fit-results operation results)))
       ;; A user's command may fail in its report.
-      (in-any-case
-        (report operation code results)
+      (unwind-protect (report operation code results)
         (notify operation code results)))))
 
 (defun succeed (operation &rest results)
@@ -220,9 +219,9 @@ on, are messages and end that with :FAILED."
 time limit, OPERATION is interrupted."
   (unless (operation-finished-p operation)
     (let ((returned nil))
-      (in-any-case
-        (progn (call-step operation (operation-step operation))
-               (setf returned t))
+      (unwind-protect
+           (progn (call-step operation (operation-step operation))
+                  (setf returned t))
         (unless (or returned (event-pending-p operation) (operation-finished-p operation))
           (interrupt-operation operation))))))
 
