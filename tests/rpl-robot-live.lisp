@@ -31,6 +31,21 @@
   "Run BODY while a fresh SIMULATION of FITTER runs live, at RATE."
   `(call-live (lambda (,simulation) (declare (ignorable ,simulation)) ,@body) ,rate))
 
+(test await-idle.waits-for-plans-that-go-on-by-themselves
+  "Neither too short, between two commands of a plan, nor too long, when its last step takes no
+tick."
+  (dolist (thinking '(:real :free))
+    (live (simulation :rate 1000)
+      (run:set-thinking thinking simulation)
+      (loop repeat 5
+            do (let ((task (driver:begin-plan
+                            (rpl:make-plan '(rpl:seq (rpl:n-times 3
+                                                      (driver:rpl-robot-turn .1d0)
+                                                      (rpl:wait-for driver:robot-stopped*))
+                                                     (rpl:wait-time 1))))))
+                 (is-true (run:await-idle simulation))
+                 (is (eq :succeeded (rpl:task-state task))))))))
+
 (test live.a-plan-drives-the-robot
   (live (simulation)
     (is (equal '(:done :succeeded)

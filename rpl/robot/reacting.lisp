@@ -113,6 +113,13 @@ wait, and for something else. True if so. Most ticks are like that."
         ((wish-to-serve interface) t)
         ((live-p simulation) (and (thread-wanted-p interface) (tasks-of interface) t))))
 
+;; Plans that have heard what was posted are held, and who holds them publishes what is left before
+;; they are free.
+(defmethod participant-at-work-p ((interface interface))
+  (or (ready-p interface)
+      (interface-holder interface)
+      (ready-p interface)))
+
 (defmethod participant-reseed ((interface interface) seed)
   (reseed-runner (interface-runner interface) seed))
 

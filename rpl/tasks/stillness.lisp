@@ -155,7 +155,11 @@ and of the simulator can bring about."
   "Queue an error message that says that no task of RUNNER can go on: the plans, what they wait for,
 what could be done, and all tasks."
   (let ((tasks (plan-runner-tasks runner)))
-    (error-set "Deadlock at tick " (runner-tick runner) ": " (text-of-plans tasks)
-               ", which nothing will bring about."
-               (advice-on-stillness (mapcan #'waiting-parts tasks)) t
-               (tree-text runner))))
+    (queue-message
+     (make-message :error
+                   (list "Deadlock at tick " (runner-tick runner) ": " (text-of-plans tasks)
+                         ", which nothing will bring about."
+                         (advice-on-stillness (mapcan #'waiting-parts tasks)) t
+                         (tree-text runner))
+                   :notable-p t)
+     *message-queue*)))

@@ -79,7 +79,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
            #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:*while-waiting* #:wait-a-while #:wait-patiently #:call-when-free
-           #:start-thread #:own-thread-p #:join-thread #:interrupt-thread #:thread-alive-p
+           #:*leaving-p* #:start-thread #:own-thread-p #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; elsewhere
   (:export #:call-telling-names #:bound-elsewhere-text #:run-elsewhere-text)

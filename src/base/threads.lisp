@@ -71,6 +71,14 @@ others need this thread for meanwhile is done, and what interrupts this thread i
   (bordeaux-threads:make-thread (lambda () (let ((*own-thread-p* t)) (funcall function)))
                                 :name name))
 
+;; SBCL ends all threads when it is left.
+(defvar *leaving-p* nil "True when this Lisp is being left.")
+
+(defun note-leaving ()
+  (setf *leaving-p* t))
+
+(pushnew 'note-leaving sb-ext:*exit-hooks*)
+
 (defun join-thread (thread)
   "Wait until THREAD has ended, in whatever way. Return nothing."
   ;; One that was aborted, as from the debugger, makes this an error.

@@ -203,6 +203,7 @@ of the world outside, with restarts; MAKE-NO-FORK returns NIL."
     (check-fork-options options)
     (check-not-over simulation *fork-asker*)
     (mapc #'check-forkable (simulation-participants simulation))
+    (setf (simulation-forked-p simulation) t)
     (let ((fork (fork-deciding simulation (getf options :continuations)))
           (seed (getf options :seed)))
       (when fork (inherit-error-policy simulation fork))

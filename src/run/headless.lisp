@@ -227,7 +227,8 @@ has been told is told, or signalled, as its message queue says."
 nothing."
   (let* ((plans (unfinished-in-participants simulation))
          (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
-                         when (request-name request)
+                         ;; What plans have asked for is said of plans.
+                         when (and (request-name request) (not (request-forked-p request)))
                            collect (string-downcase (request-name request))))
          (undone (remove-duplicates (append (reverse requests) plans)
                                     :test #'string= :from-end t)))
@@ -238,8 +239,11 @@ nothing."
 
 (defun look-at-end (simulation left-p)
   "Say so if something was asked for in SIMULATION, whose run is to end, and no tick has passed;
-but not if the run is LEFT-P, as by an error."
-  (let ((undone (and (not left-p) (zerop (simulation-tick simulation)) (undone-text simulation))))
+but not if the run is LEFT-P, as by an error, or ticks may have passed in a fork."
+  (let ((undone (and (not left-p)
+                     (not (simulation-forked-p simulation))
+                     (zerop (simulation-tick simulation))
+                     (undone-text simulation))))
     (when undone
       (queue-message (make-message :warning
                                    (list "No ticks have passed in with-simulation, so " undone)

@@ -78,25 +78,31 @@ simulator has failed and is paused for that: it would wait in vain."
            (reject-use "await-idle: the simulator would wait for itself. Go on in a continuation."))
           (t (wait-until-idle simulation seconds)))))
 
+;; Plans first: what they have asked for by the time that they rest is seen then.
+(defun all-still-p (simulation)
+  "True if nothing is left to do in SIMULATION, and nobody who takes part in it is at work."
+  (asking (simulation)
+    (and (notany #'participant-at-work-p (simulation-participants simulation))
+         (idle-p simulation))))
+
 (defun wait-until-idle (simulation seconds)
   "Do what AWAIT-IDLE says, for one that is live and passes its ticks in another thread."
   (let ((idle (make-semaphore "idle")))
     (flet ((look (simulation)
              (when (idle-p simulation) (signal-semaphore idle))))
-      (asking (simulation)
-        (add-observer #'look simulation)
-        (look simulation))
       (in-any-case
-        (await-signal idle seconds simulation)
-        (asking (simulation) (remove-observer #'look simulation))))))
+        (progn (add-observer #'look simulation)
+               (await-stillness idle seconds simulation))
+        (remove-observer #'look simulation)))))
 
-(defun await-signal (idle seconds simulation)
-  "Wait on the semaphore IDLE, at most SECONDS; true if that succeeded. Signals MISUSE if SIMULATION
-has failed."
-  (loop for left = seconds then (- left 0.2)
+(defun await-stillness (idle seconds simulation)
+  "Wait until nothing is left to do in SIMULATION, at most SECONDS; true if so. The semaphore IDLE
+says that it may be so; plans come to rest without a word. Signals MISUSE if SIMULATION has failed."
+  (loop with due = (+ (seconds-now) seconds)
         do (check-not-failed simulation)
-        thereis (wait-patiently idle (min left 0.2))
-        while (< 0.2 left)))
+        thereis (all-still-p simulation)
+        while (and (< (seconds-now) due) (live-p simulation))
+        do (wait-patiently idle (min 0.02 (max 0 (- due (seconds-now)))))))
 
 (defun check-not-failed (simulation)
   "Signal MISUSE if the live SIMULATION has failed and is paused for that."

@@ -9,7 +9,7 @@ takes part in it. Manual 2.3 and appendix A.")
   (:shadowing-import-from :ars-magna.world #:map)
   ;; participant
   (:export #:participant-after-tick #:participant-after-ticks #:participant-origin
-           #:participant-busy-p
+           #:participant-busy-p #:participant-at-work-p
            #:participant-reseed #:participant-digest
            #:participant-copy #:participant-end #:participant-unfinished)
   ;; run

@@ -30,6 +30,13 @@
     (declare (ignore participant simulation))
     nil))
 
+(defgeneric participant-at-work-p (participant)
+  (:documentation "True if PARTICIPANT is at something, has something to hear, or waits for time. For
+any thread.")
+  (:method (participant)
+    (declare (ignore participant))
+    nil))
+
 (defgeneric participant-reseed (participant seed)
   (:documentation "Let all chance of PARTICIPANT come from the integer SEED from now on.")
   (:method (participant seed)

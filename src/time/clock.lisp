@@ -91,8 +91,9 @@
   "Give back what the thread of PACING has, which ends, perhaps unasked."
   (unless (pacing-stopping-p pacing)
     (setf (pacing-stopping-p pacing) t)
-    (let ((text "The simulator's thread was ended from outside. (simulator ROBOT) starts another."))
-      (trouble-set :ended text text)))
+    (unless *leaving-p*
+      (let ((text "The simulator's thread was ended from outside. (simulator ROBOT) starts another."))
+        (trouble-set :ended text text))))
   (when (eq pacing (custody-pacing custody))
     (setf (custody-pacing custody) nil))
   (in-any-case
