@@ -262,6 +262,24 @@ function and its arguments."
       (is-true (ends-p thread))
       (is (eq :aborted told)))))
 
+;;; What is to be done in any case is, also if an interrupt comes just then.
+
+(test in-any-case.no-interrupt-comes-between
+  (let ((log '()))
+    (is (eq :left (interrupted
+                   (base:in-any-case (push 1 log)
+                                     (progn (interrupt-here) (push 2 log))
+                                     (push 3 log)))))
+    (is (equal '(1 2 3) (reverse log)))))
+
+(test homes.are-left-by-who-is-interrupted-while-leaving
+  (let ((runner (rpl:make-plan-runner)))
+    (is (eq :left (coming-between (fluents::leave-home (leave home)
+                                    (interrupt-here)
+                                    (funcall leave home))
+                    (interrupted (fluents::call-at-home runner (constantly 1))))))
+    (is (null (fluents::home-holder runner)))))
+
 ;;; Threads that were woken, or started, and interrupted before they could say so.
 
 (test stop-simulator.of-one-that-has-ended-needs-nobody-to-wake-it

@@ -62,14 +62,14 @@ NIL.")
   "Call FUNCTION in HOME, and leave that, if TAKE, called with it, returns true. Return the values,
 or else NIL. An interrupt may come at any point."
   (declare (type function take function))
-  (unwind-protect
-       (when (funcall take home)
-         (let* ((homes (cons home *homes*)) (*runner* home) (*homes* homes))
-           (declare (dynamic-extent homes))
-           (when (home-left-p home) (funcall (home-repairer home) home))
-           (setf (home-left-p home) t)
-           (multiple-value-prog1 (funcall function)
-             (setf (home-left-p home) nil))))
+  (protecting-strictly
+    (when (funcall take home)
+      (let* ((homes (cons home *homes*)) (*runner* home) (*homes* homes))
+        (declare (dynamic-extent homes))
+        (when (home-left-p home) (funcall (home-repairer home) home))
+        (setf (home-left-p home) t)
+        (multiple-value-prog1 (funcall function)
+          (setf (home-left-p home) nil))))
     (leave-home home)))
 
 (defun in-use-p (home)

@@ -20,7 +20,8 @@
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
                 #:remove-participant #:participant-after-tick #:participant-after-ticks
                 #:participant-origin
-                #:participant-busy-p #:participant-at-work-p #:participant-reseed #:participant-digest #:participant-end
+                #:participant-busy-p #:participant-at-work-p #:participant-reseed
+                #:participant-digest #:participant-end
                 #:participant-copy #:participant-at-rest #:check-forkable
                 #:call-as-participant-makes-way #:participant-unfinished
                 #:fork-simulation #:refuse-fork

@@ -79,13 +79,14 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
            #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:*while-waiting* #:wait-a-while #:wait-patiently #:call-when-free
-           #:*leaving-p* #:start-thread #:own-thread-p #:join-thread #:interrupt-thread #:thread-alive-p
+           #:*leaving-p* #:start-thread #:own-thread-p #:join-thread #:interrupt-thread
+           #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; elsewhere
   (:export #:call-telling-names #:bound-elsewhere-text #:run-elsewhere-text)
   ;; limits, debuggers
   (:export #:time-limit #:call-with-limit #:deferring-interrupts #:allowing-interrupts
-           #:call-holding-interrupts #:call-open-to-interrupts
+           #:call-holding-interrupts #:call-open-to-interrupts #:protecting-strictly
            #:regain-room #:debugger-p #:foreign-hook #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-hook-p
            #:*editor-gone-p* #:*hook-instead*

@@ -31,8 +31,8 @@
     nil))
 
 (defgeneric participant-at-work-p (participant)
-  (:documentation "True if PARTICIPANT is at something, has something to hear, or waits for time. For
-any thread.")
+  (:documentation "True if PARTICIPANT is at something, has something to hear, or waits for time.
+For any thread.")
   (:method (participant)
     (declare (ignore participant))
     nil))

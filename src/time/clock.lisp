@@ -87,13 +87,15 @@
                     (unless (standing-still-p pacing)
                       (pass-tick pacing))))))
 
+(defun tell-of-ending ()
+  (let ((text "The simulator's thread was ended from outside. (simulator ROBOT) starts another."))
+    (trouble-set :ended text text)))
+
 (defun let-go (custody pacing)
   "Give back what the thread of PACING has, which ends, perhaps unasked."
   (unless (pacing-stopping-p pacing)
     (setf (pacing-stopping-p pacing) t)
-    (unless *leaving-p*
-      (let ((text "The simulator's thread was ended from outside. (simulator ROBOT) starts another."))
-        (trouble-set :ended text text))))
+    (unless *leaving-p* (tell-of-ending)))
   (when (eq pacing (custody-pacing custody))
     (setf (custody-pacing custody) nil))
   (in-any-case
