@@ -77,6 +77,23 @@ turn 1
 (camera-turn (elt !>dot.cameras 0) 1)
 resume" "--rate" "free")))))
 
+(test json.of-an-error-is-not-well-also-if-the-line-waits
+  (is (find "done\",\"line\":3,\"text\":\"(error \\\"x\\\")\",\"ok\":false"
+            (ends-in (objects-of-script "pause
+turn 1
+(error \"x\")
+resume" "--rate" "free"))
+            :test #'string=)))
+
+(test scripts.say-what-has-not-ended-when-they-end
+  (multiple-value-bind (lines status) (run-script "pause
+turn 1" "--rate" "free")
+    (is (= 1 status))
+    (is-true (has-words-p (first (last lines)) "not all that was asked for has ended" "RESUME")))
+  (is (string= "done\",\"line\":2,\"text\":\"turn 1\",\"ok\":false"
+               (first (last (ends-in (objects-of-script "pause
+turn 1" "--rate" "free")))))))
+
 (test scripts.do-not-wait-while-time-stands-still
   "Nobody is there to let it go on: not for REPEAT, nor when a continuation has paused."
   (let ((lines (run-script "pause

@@ -94,7 +94,16 @@ that it waits, since time stands still."
   (loop until (or (session-over-p session) (session-next-robot session))
         do (call-guarded session (lambda () (next-line session)))
            (call-guarded session (lambda () (show-messages session))))
-  (when (session-account session) (call-guarded session (lambda () (account-for-last session)))))
+  (when (session-account session) (call-guarded session (lambda () (account-for-last session))))
+  (unless (or (terminal-p session) (session-next-robot session))
+    (tell-of-unended session)))
+
+(defun tell-of-unended (session)
+  "Say so if what SESSION, in which nobody sits, has asked for has not ended, as time stands still."
+  (when (and (session-errands session) *simulation* (errands-under-way session))
+    (complain session (format nil "Time stands still, so not all that was asked for has ended. ~
+                                   RESUME lets it go on."))
+    (when (session-account session) (give-up-waiting-lines (session-account session)))))
 
 (defun call-with-streams (session function)
   "Call FUNCTION, which writes to SESSION and asks its user."

@@ -82,11 +82,17 @@ nothing to do in it, is about to be done, and that there were ERRORS so far."
 (defun report-waiting-lines (account)
   "Report the ends of lines that had to wait for time to pass, the oldest first."
   (dolist (waiting (reverse (account-waiting account)))
-    (destructuring-bind (line text end) waiting
+    (destructuring-bind (line text good-p end) waiting
       (let ((how (funcall end)))
         (when how
           (removef (account-waiting account) waiting)
-          (report-line account "done" line text :ok (if (eq :ok how) t :false)))))))
+          (report-line account "done" line text
+                       :ok (if (and good-p (eq :ok how)) t :false)))))))
+
+(defun give-up-waiting-lines (account)
+  "Report that lines that wait for time to pass have not ended, and never will."
+  (dolist (waiting (reverse (shiftf (account-waiting account) '())))
+    (report-line account "done" (first waiting) (second waiting) :ok :false)))
 
 (defun note-line-ended (account errors end)
   "Note, and report, that all that the line under way has asked for is done, and that there were
@@ -95,11 +101,11 @@ then :OK or :FAILED."
   (when account (report-waiting-lines account))
   (when (and account (account-text account))
     (let ((text (string-trim " " (shiftf (account-text account) nil)))
-          (line (line-under-way account)))
-      (cond (end (push (list line text end) (account-waiting account))
+          (line (line-under-way account))
+          (good-p (= errors (account-errors account))))
+      (cond (end (push (list line text good-p end) (account-waiting account))
                  (report-line account "waiting" line text))
-            (t (report-line account "done" line text
-                            :ok (if (= errors (account-errors account)) t :false)))))))
+            (t (report-line account "done" line text :ok (if good-p t :false)))))))
 
 (defun report-asking (account)
   "Report that a program reads the line that is sent next."
