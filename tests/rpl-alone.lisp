@@ -64,6 +64,14 @@ left; and what was said."
     (is-true cleaned)
     (is (null (rpl:plan-runner-tasks runner)))))
 
+(test run-plan-alone.cleans-up-at-its-limit
+  (let ((runner (rpl:make-plan-runner)) (cleaned nil))
+    (rpl:run-plan-alone (rpl:interp-lambda ()
+                          (rpl:evap-protect (rpl:wait-time 1000)
+                            (setf cleaned (tasks::runner-tick runner))))
+                        :runner runner :limit 200)
+    (is (eql 200 cleaned))))
+
 (test run-plan-alone.ends-what-is-left-by-a-throw
   (let ((runner (rpl:make-plan-runner)) (valve (rpl:make-valve 'hand)))
     (catch 'out

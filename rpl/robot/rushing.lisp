@@ -34,7 +34,9 @@ NIL if nothing tells of that."
   "Let the task at work fail, which gives COMMAND too often; WAIT says how it waits for its end."
   (fail :class :too-many-commands :limit *plan-command-limit*
         :remedy (format nil "A loop gives rpl-~(~A~) without waiting, and no time passes. Put a ~
-                             wait into it, such as ~:[~;~:*~A or ~](wait-time 1)"
+                             wait into it, such as ~:[~;~:*~A or ~](wait-time 1); or, if parts of ~
+                             a plan take the robot from one another, let each own it: (with-valve ~
+                             ((rpl-robot-valve)) ...)"
                         (command-name command) wait)))
 
 (defun count-command (task command outcome resource)

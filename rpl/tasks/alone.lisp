@@ -16,7 +16,9 @@ past tick LIMIT."
     (react-to-all runner)
     (cond ((task-over-p task) (return (task-state task)))
           ((not (needs-tick-p runner)) (return :deadlock))
-          ((and limit (> (or (next-wake-time runner) (runner-tick runner)) limit)) (return :limit))
+          ((and limit (> (or (next-wake-time runner) (runner-tick runner)) limit))
+           (note-tick runner (max limit (runner-tick runner)))
+           (return :limit))
           (t (pass-time runner)))))
 
 (defun end-alone (runner task limit)
