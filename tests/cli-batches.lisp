@@ -85,6 +85,11 @@ turn 1
 resume" "--rate" "free"))
             :test #'string=)))
 
+(test scripts.that-have-stopped-the-simulator-let-time-pass
+  (is (equal '("robot-turn: Robot turned 1.00")
+             (values (run-script "(stop-simulator)
+turn 1" "--rate" "free")))))
+
 (test scripts.say-what-has-not-ended-when-they-end
   (multiple-value-bind (lines status) (run-script "pause
 turn 1" "--rate" "free")

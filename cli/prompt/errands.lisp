@@ -45,7 +45,7 @@ and says itself how it has ended. RESOURCE is what carries out a single command,
 
 (defun issue-errand (command resource arguments)
   "Issue COMMAND on RESOURCE with ARGUMENTS. Return an errand that is done when it completes."
-  (let ((errand (make-errand :resource resource)))
+  (let ((errand (make-errand :resource resource)) (*ticks-follow-p* t))
     (apply (command-name command) resource
            (append arguments (list (lambda (&optional error-code &rest results)
                                      (declare (ignore results))

@@ -183,11 +183,16 @@ begin, or to go on."
         (format nil "(simulator '~(~A~)) begins one, and does then what was asked before."
                 (robot-name robot)))))
 
+(defvar *ticks-follow-p* nil
+  "True where whoever gives commands lets ticks pass for them, or says that none do.")
+
 (defun tell-if-kept (command robot)
   "Say once for ROBOT that COMMAND is kept for a later run, if so, and once for each WITH-SIMULATION
 in another thread that has bound the name of ROBOT; but not of what a plan asks for, as running a
 plan lets ticks pass."
-  (when (and (between-runs-p (robot-world robot)) (not (asker-forked-p *asker*)))
+  (when (and (between-runs-p (robot-world robot))
+             (not (asker-forked-p *asker*))
+             (not *ticks-follow-p*))
     (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
       (warn-once (list :kept (robot-name robot) number) (robot-world robot)
                  (format nil "~(~A~) is kept for a later run, as none of ~A is under way. ~A"

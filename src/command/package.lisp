@@ -21,7 +21,8 @@
            #:operation-step #:operation-subject #:operation-count #:finish #:succeed
            #:fail-with #:notify #:report #:once-more #:go-on #:go-on-now)
   ;; issuing
-  (:export #:issue #:between-runs-p #:*asked-with* #:parameters-bound #:doubt-asked-with)
+  (:export #:issue #:*ticks-follow-p* #:between-runs-p #:*asked-with* #:parameters-bound
+           #:doubt-asked-with)
   ;; ownership
   (:export #:under-way #:last-interruption #:under-way-text #:interruption-text)
   ;; error-codes
