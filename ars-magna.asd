@@ -469,7 +469,8 @@
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")
                  (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "unseen")
-                 (:file "beginners") (:file "beginners-more") (:file "beginners-slips") (:file "projecting")
+                 (:file "beginners") (:file "beginners-more") (:file "beginners-slips")
+                 (:file "beginners-words") (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")

@@ -14,8 +14,18 @@
           (wait-time 1)
           (go ,again)))))
 
+(defun doubt-polled (condition form)
+  "Warn if CONDITION, which FORM, a WAIT-UNTIL, tests, is known to be true at once."
+  (let ((advice (if (realp condition)
+                    (format nil "~S is a number, which counts as true. To let time pass, write ~
+                                 (wait-time ~:*~S)." condition)
+                    (test-advice condition))))
+    (when (and advice (own-text-p form))
+      (warn-of-call #'doubt-definition form "wait-until: ~A" advice))))
+
 (define-construct wait-until (condition)
   "Wait in a plan until the form CONDITION is true; return its value. If it gives a fluent or a
 network, as (< level 46) does of a fluent, that is waited for; anything else is tested anew at each
 tick. CONDITION may itself wait. (Ours: what policies and AT-LOCATION watch is watched so.)"
-  (:code (plan-code (note-expansion (wait-until-text condition) form) scope)))
+  (:code (progn (doubt-polled condition form)
+                (plan-code (note-expansion (wait-until-text condition) form) scope))))

@@ -198,6 +198,34 @@ not in what is called later."
                                       them. Write (handle-failure ((class (e) ...)) body...)."
                                      (first handler)))))))
 
+;;; What lets time pass, and not for plans.
+
+(defparameter *vain-waits*
+  '(("SLEEP" . "sleep stops all plans for so many seconds, and no tick need pass meanwhile.")
+    ("RUN-TICKS" . "run-ticks is for programs: it cannot be called inside of a tick or plan.")
+    ("STEP-TICKS" . "step-ticks is for programs: it cannot be called inside of a tick or plan.")
+    ("RUN-UNTIL" . "run-until is for programs: it cannot be called inside of a tick or plan."))
+  "Lists (operator . what is wrong with it in plans).")
+
+(defun vain-wait-p (form)
+  "True if FORM lets time pass for programs, and not for plans."
+  (operator-in-p form (mapcar #'car *vain-waits*)))
+
+(defun doubt-vain-wait (form)
+  "Warn that FORM is not how plans wait."
+  (destructuring-bind (name &optional (time 'ticks) &rest options) form
+    (declare (ignore options))
+    (warn-of-call #'doubt-definition form "~A In a plan write ~A."
+                  (cdr (assoc (symbol-name name) *vain-waits* :test #'string=))
+                  (if (string= "RUN-UNTIL" name)
+                      "(wait-until condition)"
+                      (format nil "(wait-time ~S), for so many ticks" time)))))
+
+(defun check-waits (form)
+  "Warn of the first form in FORM, of a plan's text, that lets time pass for programs only."
+  (let ((wait (and *definition* (find-call #'vain-wait-p (list form)))))
+    (when wait (call-at-place wait (lambda () (doubt-vain-wait wait))))))
+
 ;;; Variables.
 
 (defun check-use (variables where form)

@@ -143,6 +143,10 @@ one."
                (typep form '(cons t (cons t (or null (cons t null)))))
                (known-fluent-p (second form) environment))
       (warn-of-counting form))
+    (when (operator-in-p form '("SETQ" "SETF"))
+      (loop for (place value) on (rest form) by #'cddr
+            do (when (assigned-over-p place value environment)
+                 (warn-of-assignment form place value))))
     (when (and (proper-list-p form)
                (not (operator-in-p form *lifted-operators*))
                (not (local-function-p name environment))
@@ -165,6 +169,21 @@ one."
                      name fluent
                      `(set-value ,fluent (,(if (same-name-p name 'incf) '+ '-)
                                           (fluent-value ,fluent) ,by)))))))
+
+(defun assigned-over-p (place value environment)
+  "True if PLACE, in ENVIRONMENT, is a variable of a fluent, and VALUE a form that gives none."
+  (and (symbolp place)
+       (known-fluent-p place environment)
+       (known-value-p value environment)))
+
+(defun warn-of-assignment (form fluent value)
+  "Warn that FORM puts what VALUE gives in the place of FLUENT."
+  (call-at-place
+   form
+   (lambda ()
+     (warn-of-call #'warn-of-definition form
+                   "~(~A~) puts ~S in the place of the fluent ~S, which is lost. Write ~S."
+                   (first form) value fluent `(set-value ,fluent ,value)))))
 
 (defun warn-of-fluent (form fluent)
   (call-at-place

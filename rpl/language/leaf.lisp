@@ -117,6 +117,7 @@
   (cond ((and (atom form) (not (symbol-macro-p form (scope-environment scope)))) form)
         (t (check-commands form)
            (check-handlers form)
+           (check-waits form)
            (let ((*fluents-here* (scope-fluents scope)))
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 

@@ -9,7 +9,7 @@ DEFINE-CONSTRUCT adds to it.")
                 #:matchvar-p #:matchvar-name)
   ;; source
   (:export #:author #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
-           #:misplaced-suspension #:note-own-text #:note-expansion #:form-as-written)
+           #:misplaced-suspension #:note-own-text #:note-expansion #:form-as-written #:own-text-p #:operator-in-p)
   ;; names, items
   (:export #:check-variables #:plain-parameters #:item-list)
   ;; checking

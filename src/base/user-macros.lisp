@@ -147,3 +147,28 @@ LAMBDA-LIST, or which BODY makes nothing of, signals MALFORMED-DEFINITION."
        ,(user-macro-form name lambda-list (cons name shown) body)
        (show-lambda-list ',name ',shown)
        ',name)))
+
+;;; Forms that are tests. A function is true, whatever it would return.
+
+(defun body-form (forms)
+  "Return a form that does FORMS."
+  (if (= 1 (length forms)) (first forms) (cons 'progn forms)))
+
+(defun test-meant (form)
+  "Return in a list the form whose value is meant where FORM, a test, is quoted or a function; NIL
+if it is neither."
+  (typecase form
+    ((cons (eql quote) (cons (not null) null)) (list (second form)))
+    ((cons (eql function) (cons symbol null)) (list (list (second form))))
+    ((cons (eql function) (cons cons null)) (test-meant (second form)))
+    ((cons symbol (cons list))
+     (and (string= "LAMBDA" (first form)) (list (body-form (cddr form)))))))
+
+(defun test-advice (form)
+  "Return in sentences that FORM, a test, is quoted or a function, and what to write; else NIL."
+  (let ((meant (test-meant form)) (*print-case* :downcase) (*print-pretty* t)
+        (*print-right-margin* 10000))
+    (and meant
+         (format nil "~S is ~:[a function~;data~], which always counts as true. Write the form ~
+                      alone: ~S."
+                 (abridged form) (eq 'quote (first form)) (abridged (first meant))))))

@@ -38,3 +38,4 @@ and how to get one. The option :DISPLAY NIL of SIMULATOR leaves both out."
       (error (condition) (tell-once (one-line (text-of-condition condition)))))))
 
 (pushnew 'announce-display *simulator-hooks*)
+(pushnew 'display *hook-options*)

@@ -44,7 +44,9 @@ robot's heading, in radians, not normalised (manual 3.4.1)")
 
 (define-argument-type 'designator #'designator-p "a designator"
   (constantly (format nil "searches of cameras give them to their continuations, such as ~
-                           (camera-get-object-designator CAMERA '((:color red)) CONTINUATION)")))
+                           (camera-get-object-designator CAMERA :non-local '((:color red)) (continuation (err ~
+                           camera designator) ...)); in plans, (vref camera-designators* 0) has a ~
+                           list of them")))
 
 (defmethod print-object ((designator designator) stream)
   (print-named designator stream (format nil "Designator ~D" (designator-number designator))))

@@ -5,6 +5,9 @@
 (defvar *simulator-hooks* '()
   "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
 
+(defvar *hook-options* '()
+  "The keywords of SIMULATOR that its hooks take, as symbols without the colon.")
+
 (defvar *program-input* #'identity
   "A function of a stream: return the one that users' code in a run's threads reads instead.")
 
@@ -276,6 +279,13 @@ Return the run."
   (when (timeline-fork-p (ensure-timeline (robot-world robot)))
     (reject-use "simulator: ~A is in a fork, which has no clock: use RUN-TICKS there." robot)))
 
+(defun check-options-of-simulator (options)
+  "Signal MISUSE if OPTIONS, a plist, has a keyword that neither SIMULATOR nor its hooks take."
+  (unless (getf options :allow-other-keys)
+    (let ((strange (strange-keyword `(&key rate seed journal keep thinking ,@*hook-options*)
+                                    options)))
+      (when strange (reject-use "simulator: ~A" strange)))))
+
 (public simulator)
 (defun simulator (robot &rest options
                   &key (rate *default-rate*) (seed nil) (journal t) (keep *forks-to-keep*)
@@ -289,6 +299,7 @@ it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, s
 plans have a thread of their own unless it is :FREE or charged, when they react within the ticks.
 Return the robot (manual A). STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
 MISUSE if the robot no longer fits into its map. See reading 238."
+  (check-options-of-simulator options)
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")
   (check-of-type 'simulator 'keep keep 'fork-count)

@@ -50,7 +50,7 @@ takes part in it. Manual 2.3 and appendix A.")
   ;; live
   (:export #:simulator #:stop-simulator #:start-clock #:stop-clock #:await-idle #:call-as-owner
            #:*program-input*
-           #:*simulator-hooks*)
+           #:*simulator-hooks* #:*hook-options*)
   ;; state, replay
   (:export #:state-digest #:replay #:with-replay #:call-with-replay #:replaying #:repeated-words
            #:journal-meant

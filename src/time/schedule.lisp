@@ -112,6 +112,7 @@ TIMEOUT ticks from now; then it evaporates. TIMER and TIMEOUT are integers from 
 and WHEN, like BODY, run inside ticks. Resources that are EQUAL are the same. What is asked of a
 resource, by commands too, is taken in the order of asking, at the start of the next tick; a command
 has the priority 0, and takes over whatever is there. Returns nothing (manual 3.8). See reading 7."
+  (when (test-advice when) (doubt-definition "schedule, :when: ~A" (test-advice when)))
   `(call-scheduled (lambda () ,@body) ,resource
                    :priority ,(or priority 0)
                    :timer ,(or timer 1)

@@ -94,6 +94,8 @@ a thing. Return the kicker."
     (reject-clause definition options
                    "a list of options before the body, such as (:prob 1/10) or (:test form)"))
   (check-options definition options '(:prob :test))
+  (let ((advice (test-advice (getf options :test))))
+    (when advice (doubt-definition "~A, :test: ~A" definition advice)))
   (flet ((thing-function (forms)
            `(lambda (,variable) (declare (ignorable ,variable)) ,@forms)))
     `(:prob ,(getf options :prob 1)
