@@ -104,6 +104,19 @@ what Lisp says of a full stack, of which users are told."
       (reject-line "There is a parenthesis too many: ~A~:[~;  What is before it has been done.~]"
                    (one-line (subseq text start)) (plusp position)))))
 
+(defun wrong-parameter ()
+  "Return the error that a parameter has no value of its type, or NIL."
+  (handler-case (check-parameters)
+    (wrong-argument (condition) condition)))
+
+(defun call-checking-parameters (function)
+  "Call FUNCTION; signal WRONG-ARGUMENT if it has given a parameter a value that it cannot have."
+  (let ((before (wrong-parameter)))
+    (funcall function)
+    (let ((after (wrong-parameter)))
+      (unless (equal (and before (princ-to-string before)) (and after (princ-to-string after)))
+        (when after (error after))))))
+
 (defun evaluate-forms (session text)
   (loop with position = 0
         with form
@@ -111,8 +124,9 @@ what Lisp says of a full stack, of which users are told."
         until (blank-from-p text position)
         do (check-parenthesis text position)
            (setf (values form position text) (read-form session text position))
+           (check-line-in-parentheses form)
            (check-typed-call form)
-           (evaluate session form)))
+           (call-checking-parameters (lambda () (evaluate session form)))))
 
 (defun evaluate-text (session text)
   "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."

@@ -25,8 +25,8 @@
                  lines))
 
 (defun reject-ambiguous (name lines)
-  (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it." name
-               (mapcar #'line-name lines)))
+  (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it.~@[ ~A~]" name
+               (mapcar #'line-name lines) (hint-for name)))
 
 (defparameter *other-names*
   '(("?" "HELP") ("EXIT" "QUIT") ("BYE" "QUIT") ("LOGOUT" "QUIT"))
@@ -44,24 +44,42 @@
      "CAM-VIEW 0 looks, OBJ-DESIG 1 non-local ((:color red)) searches, MAP draws the world.")
     (("GRAB" "TAKE" "PICK" "PICKUP" "GRASP")
      "HAND-GRASP 0 0 grasps what camera 0 tracks: OBJ-DESIG and CAM-TRACK come first.")
-    (("DROP" "RELEASE" "PUT") "HAND-UNGRASP 0 lets go of what hand 0 holds.")
+    (("DROP" "RELEASE" "PUT" "UNGRASP") "HAND-UNGRASP 0 lets go of what hand 0 holds.")
     (("WHERE" "POSITION" "WHEREAMI" "LS" "DIR" "LIST" "INVENTORY")
      "STATUS tells of the robot, THINGS of what there is, MAP draws it all.")
     (("UNDO") "REWIND 10 goes 10 ticks back.")
     (("RESET" "RESTART") "WORLD name starts a world anew, REWIND 10 goes 10 ticks back.")
-    (("WAIT" "SLEEP" "TICK") "STEP 10 lets 10 ticks pass, PAUSE and RESUME stop and start time.")
+    (("WAIT" "SLEEP" "TICK" "RUN-TICKS")
+     "STEP 10 lets 10 ticks pass, PAUSE and RESUME stop and start time.")
     (("HALT" "KILL" "ABORT") "STOP stops the robot, STOP-PLAN ends plans, PAUSE stops time.")
     (("LOAD" "SOURCE" "RUN")
      "(load \"FILE\") loads a Lisp file, PLAN name carries out a plan, WORLD name goes elsewhere.")
-    (("PRINT" "ECHO" "SET" "LET") "A line in parentheses is Lisp: (print (robot-names))."))
+    (("SIMULATOR" "START") "WORLD name starts a robot's world anew, RESUME lets time go on.")
+    (("EXPERIMENT" "EXPERIMENTS") "TRIAL lists the experiments, and runs a trial of one.")
+    (("JOURNAL" "SAVE") "SAVE-JOURNAL name keeps what was done, REPLAY name repeats it.")
+    (("SET" "SETQ" "SETF" "PARAM" "PARAMETER")
+     "PARAMS lists the parameters; (setq motion-noise* 0), a line of Lisp, sets one.")
+    (("PRINT" "ECHO" "LET") "A line in parentheses is Lisp: (print (robot-names))."))
   "Lists (words hint): what newcomers type that is no line, and what they may mean.")
 
 (defun hint-for (name)
   "Return what who types NAME, which is no line, may want, or NIL."
   (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *hints*)))
 
+(defun parameter-advice (name)
+  "Return in a sentence how the parameter called NAME is set, or NIL if there is no such parameter."
+  (let ((parameter (find-parameter name nil)))
+    (and parameter
+         (format nil "~A is a parameter: (setq ~:*~A VALUE) sets it, PARAMS lists all."
+                 (parameter-name parameter)))))
+
+(defun call-advice (name)
+  "Return in a sentence how the line is typed that NAME, such as TURN(90), begins with; else NIL."
+  (let ((place (position #\( name)))
+    (and place (plusp place) (line-advice (subseq name 0 place)))))
+
 (defun reject-unknown (name)
-  (let ((hint (or (hint-for name) (plan-advice name))))
+  (let ((hint (or (hint-for name) (plan-advice name) (parameter-advice name) (call-advice name))))
     (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
                  name hint
                  (and (null hint)

@@ -49,8 +49,15 @@ takes."
     (multiple-value-bind (parameters known-p) (function-arguments (first form))
       (let ((trouble (and known-p (misfit (shape-of parameters) (rest form)))))
         (when trouble
-          (reject-line "~(~A~) takes ~A, not ~A." (first form)
-                       (shape-text (lambda-list-of (first form))) trouble))))))
+          (reject-line "~(~A~) takes ~A, not ~A.~@[ ~A~]" (first form)
+                       (shape-text (lambda-list-of (first form))) trouble
+                       (line-advice (symbol-name (first form)))))))))
+
+;; Of Lisp's own that are called like lines, these do nothing with a number.
+(defun check-line-in-parentheses (form)
+  "Signal BAD-LINE if FORM, as typed, is a line in parentheses, such as (step 5)."
+  (when (typep form '(cons (member step go) (or null (cons real))))
+    (reject-line "~A" (line-advice (symbol-name (first form))))))
 
 ;;; New variables.
 

@@ -19,8 +19,16 @@
                                     :class?"
                                    (second form))))))
 
+(defun check-class (form scope)
+  "Warn if the class that FORM, a FAIL in SCOPE, gives is a name and no variable."
+  (let ((class (and (eq :class (second form)) (third form))))
+    (when (name-without-quote-p class scope)
+      (doubt-own-form form "~(~A~) is no variable. The class of a failure is a keyword: (fail ~
+                            :class :~:*~(~A~))." class))))
+
 (define-plan-form "FAIL" :may (&rest arguments) (form scope)
   (check-fail form)
+  (check-class form scope)
   (if (some (lambda (argument) (suspends-p argument scope)) arguments)
       (hoisted-code form scope)
       `(make-failing :form ',(form-as-written form)

@@ -20,8 +20,7 @@
                     (format nil "~S is a number, which counts as true. To let time pass, write ~
                                  (wait-time ~:*~S)." condition)
                     (test-advice condition))))
-    (when (and advice (own-text-p form))
-      (warn-of-call #'doubt-definition form "wait-until: ~A" advice))))
+    (when advice (doubt-own-form form "wait-until: ~A" advice))))
 
 (define-construct wait-until (condition)
   "Wait in a plan until the form CONDITION is true; return its value. If it gives a fluent or a

@@ -23,11 +23,25 @@ was compiled."
                                 (lisp-function (procedure-name procedure))))))))
    (inside (values (frame-up frame) value))))
 
+(defun name-without-quote-p (name scope)
+  "True if NAME, a form in SCOPE, is a symbol and no variable."
+  (and name
+       (symbolp name)
+       (not (constantp name))
+       (not (member name (scope-variables scope)))
+       (not (known-variable-p name (scope-environment scope)))))
+
+(defun check-quote (plan form scope)
+  "Warn if PLAN, for the plan that FORM in SCOPE is about, is the name of one and no variable."
+  (when (and (name-without-quote-p plan scope) (procedure-name-p plan))
+    (doubt-own-form form "~(~A~) is a plan and no variable. Quote its name: '~:*~(~A~)." plan)))
+
 (define-construct call-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or the name of one, with ARGUMENTS as part of a plan; return its
 values."
   (:arguments plan &rest arguments)
-  (:parts (entry function (value-lambda `(enter-plan ,plan ,@arguments) scope)))
+  (:parts (entry function (progn (check-quote plan form scope)
+                                 (value-lambda `(enter-plan ,plan ,@arguments) scope))))
   (:steps
    (begin
     (next inside)

@@ -12,6 +12,11 @@
            (let ((*print-case* :downcase) (*print-pretty* nil))
              (apply #'format nil control arguments))))
 
+(defun doubt-own-form (form control &rest arguments)
+  "Warn as DOUBT-DEFINITION does, of FORM, if that is of the plan's own text."
+  (when (own-text-p form)
+    (apply #'warn-of-call #'doubt-definition form control arguments)))
+
 (defun known-operators (&optional (package *package*))
   "Return the names that calls in PACKAGE could be meant for. Those of one letter, such as ?, are
 like any other."
@@ -71,6 +76,8 @@ construct of NISP, as WAIT-FOR is in packages that do not use NISP."
            (warn-of-call #'doubt-definition form
                          "there is no plan procedure or function ~S; NISP has one. Write ~
                           (in-package :ars-user), or use the package NISP in yours." name))
+          ((same-name-p name "TAG")
+           (warn-of-call #'doubt-definition form "a tag has a colon: (:tag name form...)."))
           (t
            (warn-of-call #'doubt-definition form
                          "there is no plan procedure or function ~(~A~).~@[ Did you mean ~A?~]"

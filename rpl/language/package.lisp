@@ -9,11 +9,11 @@ DEFINE-CONSTRUCT adds to it.")
                 #:matchvar-p #:matchvar-name)
   ;; source
   (:export #:author #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
-           #:misplaced-suspension #:note-own-text #:note-expansion #:form-as-written #:own-text-p #:operator-in-p)
+           #:misplaced-suspension #:note-own-text #:note-expansion #:form-as-written)
   ;; names, items
   (:export #:check-variables #:plain-parameters #:item-list)
   ;; checking
-  (:export #:warn-of-call)
+  (:export #:warn-of-call #:doubt-own-form)
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope
            #:scope-environment #:scope-variables)
@@ -30,7 +30,7 @@ DEFINE-CONSTRUCT adds to it.")
   ;; tags
   (:export #:start-branch #:tagged-scope #:tags-in #:task-status #:with-tags-code)
   ;; calling
-  (:export #:*plan-depth-limit*)
+  (:export #:*plan-depth-limit* #:name-without-quote-p #:check-quote)
   ;; applying
   (:export #:enter-application)
   ;; callers

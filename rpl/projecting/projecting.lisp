@@ -93,9 +93,11 @@ are failures of these; of those in COST or WORLD one message tells. Fails with a
 run cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
   (:arguments plan arguments trials horizon seed cost world print)
   (:parts (request function
-                   (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
-                                        :seed ,seed :cost ,cost :world ,world :print ,print)
-                                 scope)))
+                   (progn
+                     (check-quote plan form scope)
+                     (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
+                                          :seed ,seed :cost ,cost :world ,world :print ,print)
+                                   scope))))
   (:in-lisp `(project-plan ,plan :arguments ,arguments :trials ,trials :horizon ,horizon
                                  :seed ,seed :cost ,cost :world ,world :print ,print))
   (:steps

@@ -118,7 +118,8 @@ returns true if it brought something new. Return :idle or :budget."
     (when (and task (not (member form (runner-warned runner))))
       (push form (runner-warned runner))
       (warn-at-once "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
-                    " in " (task-label task) "; time passes all the same."))))
+                    " in " (task-label task) "; time passes all the same. If "
+                    "it is to wait, write (wait-time 1) there."))))
 
 (defun react-hearing (runner hear)
   "Let RUNNER react, as RUN-ROUNDS does."

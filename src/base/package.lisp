@@ -133,7 +133,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; csv
   (:export #:csv-line #:csv-texts #:broken-line #:broken-line-text)
   ;; user-macros
-  (:export #:define-user-macro #:advice-on-use #:strange-keyword #:test-advice #:user-macro-form #:call-blaming-form)
+  (:export #:define-user-macro #:advice-on-use #:strange-keyword #:test-advice
+           #:user-macro-form #:call-blaming-form)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register
            #:*definition-listener* #:seal-definitions #:lookup-entry #:from-this-file-p

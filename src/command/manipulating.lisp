@@ -199,7 +199,19 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
 (define-user-macro manipulate (name &rest arguments)
   "Do as RUN-MANIPULATION does with the manipulation NAME, which is not evaluated, such as
 (manipulate lock box-designator key-designator hand continuation) (manual 5.5.2)."
+  (when (typep name '(cons (eql quote)))
+    (reject-clause "manipulate" name
+                   (format nil "the name without the quote: (manipulate ~(~A~) ...)"
+                           (second name))))
   `(run-manipulation ',name ,@arguments))
+
+(define-compiler-macro run-manipulation (&whole form &rest arguments &environment environment)
+  (let ((name (first arguments)))
+    (when (and name (symbolp name) (not (known-variable-p name environment))
+               (find-manipulation name nil))
+      (doubt-definition "run-manipulation: ~A is a manipulation and no variable. Quote its name: ~
+                         '~:*~A" name)))
+  form)
 
 (defun manipulate-again (name &rest arguments)
   "Carry out the manipulation NAME with ARGUMENTS and without a continuation."

@@ -16,12 +16,26 @@
 (manual 3.1). The name is one backslash, typed as two. See reading 4."
   `#'(lambda ,(untyped-lambda-list lambda-list "\\") ,@body))
 
+(defun check-continuation (lambda-list body)
+  "Signal MALFORMED-DEFINITION, or warn, if LAMBDA-LIST of a CONTINUATION with BODY seems to be what
+is to be done."
+  (let ((*print-pretty* nil) (*print-case* :downcase) (shown (abridged lambda-list)))
+    (when (consp lambda-list)
+      (cond ((some #'constantp (ldiff lambda-list (member-if #'lambda-keyword-p lambda-list)))
+             (reject-clause "continuation" shown
+                            (format nil "parameters before what is to be done: (continuation (err ~
+                                         &rest results) ~S)" shown)))
+            ((and (null body) (symbolp (first lambda-list)) (fboundp (first lambda-list)))
+             (doubt-definition "continuation: ~S are its parameters, and nothing is done. Write ~
+                                (continuation (err &rest results) ~:*~S)." shown))))))
+
 (public continuation)
 (defmacro continuation (lambda-list &body body)
   "Return a function for a robot command to call with an error code (NIL: none) and what else it
 reports. Like LAMBDA, but types may follow the parameters and unused ones are no matter
 (manual 3.1.1; reading 39)."
   (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
+    (check-continuation lambda-list body)
     `#'(lambda ,lambda-list
          (declare (ignorable ,@(lambda-list-variables lambda-list)))
          ,@body)))

@@ -44,9 +44,9 @@ robot's heading, in radians, not normalised (manual 3.4.1)")
 
 (define-argument-type 'designator #'designator-p "a designator"
   (constantly (format nil "searches of cameras give them to their continuations, such as ~
-                           (camera-get-object-designator CAMERA :non-local '((:color red)) (continuation (err ~
-                           camera designator) ...)); in plans, (vref camera-designators* 0) has a ~
-                           list of them")))
+                           (camera-get-object-designator CAMERA :non-local '((:color red)) ~
+                           (continuation (err camera designator) ...)); in plans, (vref ~
+                           camera-designators* 0) has a list of them")))
 
 (defmethod print-object ((designator designator) stream)
   (print-named designator stream (format nil "Designator ~D" (designator-number designator))))
@@ -60,7 +60,7 @@ robot's heading, in radians, not normalised (manual 3.4.1)")
 (defun find-designator (robot number)
   "Return the designator of ROBOT with NUMBER, or NIL. Signals WRONG-ARGUMENT unless ROBOT is a
 robot."
-  (check-argument find-designator robot (robot-p robot) "a robot")
+  (check-argument find-designator robot (robot-p robot) (robot-words robot))
   (let ((designators (robot-designators robot)))
     (and (integerp number)
          (< -1 number (length designators))

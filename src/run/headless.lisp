@@ -110,7 +110,7 @@ true, but at most LIMIT. Return what it returned and the tick reached; NIL means
 Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
   (check-argument run-until predicate (or (functionp predicate)
                                         (and (symbolp predicate) (fboundp predicate)))
-                  "a function of no arguments")
+                  "a function of no arguments, such as (lambda () (< 9 (simulation-tick)))")
   (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
   (let ((simulation (going-on simulation)))
     (check-headless simulation 'run-until)

@@ -113,6 +113,10 @@ See readings 12 and 167."
   (unless (listp (cdr (last (ensure-list location))))
     (reject-clause (title "new-thing" name) location
                    "a location: a form, (:with form) or (map x y)"))
+  (when (typep location '(cons real))
+    (reject-clause (title "new-thing" name) location
+                   (format nil "a map before the coordinates: (~(~A~) ~{~A~^ ~})"
+                           (if *world* (map-name (world-map *world*)) "MAP") location)))
   `(make-new-thing ',name
                    ,(cond ((and (consp location) (eq :with (first location)))
                            `(list :with ,@(rest location)))

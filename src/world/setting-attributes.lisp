@@ -62,7 +62,7 @@ that the attribute cannot have. Warns as GET-ATTRIBUTE does."
 (defun change-attribute (thing descriptor)
   "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
 (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
-  (check-argument change-attribute thing (thing-p thing) "a thing")
+  (check-argument change-attribute thing (thing-p thing) (thing-words thing))
   (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
     (loop for (key) in descriptor do (note-slip 'change-attribute thing key))
     (changing ((world-of-living thing) change-attribute thing descriptor)

@@ -172,7 +172,7 @@ from the row in DIRECTORY, if that is given."
 
 (defun check-replay (trial until then step journal directory)
   (check-argument replay-trial trial (and (integerp trial) (<= 0 trial +largest+))
-                  "the number of a trial")
+                  "the number of a trial; they count from 1")
   (check-argument replay-trial until (or (null until) (whole-p until 0))
                   "a tick, 0 or more, or NIL")
   (check-argument replay-trial then (typep then '(or function (and symbol (not null))))
