@@ -132,3 +132,17 @@
                                 ("journal" "SAVE-JOURNAL") ("ungrasp" "HAND-UNGRASP")
                                 ("experiment" "TRIAL"))
         do (is-true (apply #'has-words-p (complaint line) words) "~A" line)))
+
+;;; Manipulations.
+
+(command:defmanipulation hum (:by robot) () nil)
+
+(test manipulations.tell-of-continuations-of-another-number-of-parameters
+  (flet ((told (continuation)
+           (rover-writes ()
+             (command:run-manipulation 'hum rover continuation)
+             (run:run-ticks 3))))
+    (is-true (has-words-p (told (lambda (err robot value) (list err robot value)))
+                          "hum: the continuation takes (err robot value)"
+                          "Write (continuation (err value) ...)"))
+    (is (string= "" (told (lambda (err value) (list err value)))))))

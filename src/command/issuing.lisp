@@ -41,18 +41,18 @@
   (list* 'err (spec-name (command-resource command))
          (mapcar #'spec-name (command-results command))))
 
-(defun doubt-continuation (command world continuation)
-  "Say once if CONTINUATION cannot be called with what COMMAND tells at its end."
+(defun doubt-continuation (command world continuation &optional (told (told-at-end command)))
+  "Say once if CONTINUATION cannot be called with what COMMAND tells at its end, which is TOLD."
   (let ((*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
-               (not (callable-with-p continuation (length (told-at-end command)))))
+               (not (callable-with-p continuation (length told))))
       (warn-once (list :continuation (command-name command)) world
                  (format nil "~(~A~): the continuation takes ~(~:A~), and is called with ~(~A~). ~
                               Write (continuation ~:*~(~A~) ...)."
                          (command-name command)
                          (lambda-list-of continuation)
-                         (told-at-end command))))))
+                         told)))))
 
 ;;; One command after the other, and no tick between them.
 

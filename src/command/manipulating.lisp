@@ -177,7 +177,9 @@ is NIL (manual E)."
 
 (defun issue-manipulation (manipulation resource arguments continuation)
   "Post MANIPULATION on RESOURCE with ARGUMENTS, which fit one of its methods."
-  (issue (command-for manipulation) resource arguments (value-continuation continuation)))
+  (let ((command (command-for manipulation)))
+    (doubt-continuation command (robot-world (resource-robot resource)) continuation '(err value))
+    (issue command resource arguments (value-continuation continuation))))
 
 (public run-manipulation)
 (defun run-manipulation (name &rest arguments)
