@@ -24,6 +24,3 @@
     (is-true (left-p #'geo:mul! 3))
     (is-true (left-p #'geo:grow-interval! 1.5d308))
     (is-true (left-p #'geo:set-pt-interval! 3 4 6 5))))
-
-(test nominal.of-any-interval
-  (is (= 1.25d308 (geo:nominal (geo:make-interval 1d308 1.5d308)))))

@@ -60,9 +60,7 @@ the two axes; 0 just if they intersect (manual, Table 3.2)."
 (declaim (inline centre))
 (defun centre (low high)
   (declare (type double-float low high))
-  (if (< (max (abs low) (abs high)) 1d307)
-      (* 0.5d0 (+ low high))
-      (+ (* 0.5d0 low) (* 0.5d0 high))))
+  (* 0.5d0 (+ low high)))
 
 (public interval-width)
 (defun interval-width (interval)
