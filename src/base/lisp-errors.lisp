@@ -157,7 +157,8 @@ them is ours; or NIL."
                    (:shadowing-import-from :ars #:~(~:*~A~)); or write (ars:define-user-package ~
                    :mine) for a package without such conflicts."
               (symbol-name ours)
-              (loop for symbol in symbols
+              ;; Their order depends on the version of SBCL.
+              (loop for symbol in (cons ours (remove ours symbols))
                     collect (package-name (symbol-package symbol))
                     collect (symbol-name symbol))
               (symbol-name ours)))))

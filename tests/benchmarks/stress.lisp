@@ -126,11 +126,19 @@
         (sb-ext:timeout () (note "time limits that came in between")))
       (act-once)))
 
+(defun backtrace-here (count)
+  (with-output-to-string (stream) (uiop:print-backtrace :stream stream :count count)))
+
+(defun note-unexpected (trouble)
+  "Count TROUBLE, and where it came up, if it is no mistake that the simulator names."
+  (unless (typep trouble 'ars:ars-magna-error)
+    (note "unexpected errors" (format nil "~A~%~A" trouble (backtrace-here 40)))))
+
 (defun act-safely ()
   "Do one thing. Mistakes that the simulator names are expected, all other errors are counted."
-  (handler-case (act-in-time)
+  (handler-case (handler-bind ((error #'note-unexpected)) (act-in-time))
     (ars:ars-magna-error () (note "calls refused"))
-    (error (trouble) (note "unexpected errors" trouble))))
+    (error ())))
 
 (defun work (number due)
   "Do one thing after another until the time DUE, as thread NUMBER."
@@ -230,7 +238,7 @@
 (defun places ()
   "Return where this thread is, and those of the simulators and of plans: backtraces."
   (format nil "here, at~%~A~:{~%~A, at~%~A~}"
-          (with-output-to-string (stream) (uiop:print-backtrace :stream stream :count 40))
+          (backtrace-here 40)
           (loop for thread in (threads-called "simulator of" "plans of")
                 collect (list thread (place-of thread)))))
 
