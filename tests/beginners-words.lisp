@@ -120,7 +120,7 @@
     (is (= 1 (count-if (lambda (line) (search "give a number" line)) (lines-of text))))))
 
 (test prompt.says-that-lines-have-no-parentheses
-  (dolist (line '("(step 5)" "(go 5)" "(turn 90)" "turn(90)"))
+  (dolist (line '("(step 5)" "(go 5)" "(turn 90)" "(turn 90 deg)" "turn(90)"))
     (is-true (has-words-p (complaint line) "typed without parentheses") "~A" line))
   (is (not (search "without parentheses" (joined (type-batch "(step (+ 1 2))"))))))
 

@@ -53,10 +53,14 @@ takes."
                        (shape-text (lambda-list-of (first form))) trouble
                        (line-advice (symbol-name (first form)))))))))
 
-;; Of Lisp's own that are called like lines, these do nothing with a number.
+;; Of Lisp's own that are called like lines, STEP and GO do nothing with a number. What is called
+;; like no function is looked at before its arguments, such as DEG, are evaluated.
 (defun check-line-in-parentheses (form)
-  "Signal BAD-LINE if FORM, as typed, is a line in parentheses, such as (step 5)."
-  (when (typep form '(cons (member step go) (or null (cons real))))
+  "Signal BAD-LINE if FORM, as typed, is a line in parentheses, such as (step 5) or (turn 90 deg)."
+  (when (and (typep form '(cons symbol))
+             (or (typep form '(cons (member step go) (or null (cons real))))
+                 (not (fboundp (first form))))
+             (line-called (symbol-name (first form))))
     (reject-line "~A" (line-advice (symbol-name (first form))))))
 
 ;;; New variables.
