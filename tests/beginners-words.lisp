@@ -146,3 +146,9 @@
                           "hum: the continuation takes (err robot value)"
                           "Write (continuation (err value) ...)"))
     (is (string= "" (told (lambda (err value) (list err value)))))))
+
+(test run-plan-alone.has-no-robot
+  (with-messages
+    (let ((failure (rpl:run-plan-alone (rpl:interp-lambda () (driver:rpl-robot-turn 1)))))
+      (is-true (has-words-p (princ-to-string failure) "No robot to drive" "RUN-PLAN on the robot")
+               "~A" failure))))

@@ -228,13 +228,19 @@ again."
   (let ((interface (interface-here)))
     (and (usable-p interface) interface)))
 
+(defun alone-p ()
+  "True if a plan is at work here that is run without a robot, as by RUN-PLAN-ALONE."
+  (and *runner* (null (runner-client *runner*))))
+
 (defun the-interface ()
   "Return the interface that can be used here. If plans react here whose robot is gone, the plan at
 work ends. Signals MISUSE if there is none."
   (or (usable-interface)
       (and *reacting* (not (interface-valid-p *reacting*)) (leave-plan))
-      (reject-use "No robot to drive. Call (rpl-init-robot ROBOT) first; after a simulator has ~
-                   been started anew, or the robot defined anew, call it again.")))
+      (reject-use "No robot to drive. ~:[Call (rpl-init-robot ROBOT) first; after a simulator has ~
+                   been started anew, or the robot defined anew, call it again.~;RUN-PLAN-ALONE ~
+                   runs plans without one, and RUN-PLAN on the robot of the run.~]"
+                  (alone-p))))
 
 (addition rpl-robot)
 (defun rpl-robot ()
