@@ -60,7 +60,7 @@ robot's heading, in radians, not normalised (manual 3.4.1)")
 (defun find-designator (robot number)
   "Return the designator of ROBOT with NUMBER, or NIL. Signals WRONG-ARGUMENT unless ROBOT is a
 robot."
-  (check-argument find-designator robot (robot-p robot) (robot-words robot))
+  (check-argument find-designator robot (robot-p robot) (argument-type-text 'robot robot))
   (let ((designators (robot-designators robot)))
     (and (integerp number)
          (< -1 number (length designators))

@@ -165,7 +165,7 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
 (public robot-odometers)
 (defun robot-odometers (robot)
   "Return a list of the odometers of ROBOT, oldest first (manual 3.2.2)."
-  (check-argument robot-odometers robot (robot-p robot) (robot-words robot))
+  (check-argument robot-odometers robot (robot-p robot) (argument-type-text 'robot robot))
   (copy-list (robot-odometer-list robot)))
 
 (public robot-odometer)

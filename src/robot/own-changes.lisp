@@ -9,7 +9,7 @@
 (defun make-odometer (robot name)
   "Return a new odometer of ROBOT called NAME, a symbol. Another of that name is destroyed: it
 no longer changes (manual 3.2.2)."
-  (check-argument make-odometer robot (robot-p robot) (robot-words robot))
+  (check-argument make-odometer robot (robot-p robot) (argument-type-text 'robot robot))
   (check-argument make-odometer name (and name (symbolp name)) "a symbol")
   (changing ((robot-world robot) make-odometer robot name)
     (add-odometer robot name)))
@@ -57,7 +57,7 @@ no part of the robot any more."
   "Put ROBOT at (X,Y) heading ANGLE at once, without error and ignoring obstacles: a change from
 outside, as the prompt's POS and ANGLE make. That it is inside a wall then is a warning among the
 messages. Signals WRONG-ARGUMENT (manual E). See reading 114."
-  (check-argument place-robot robot (robot-p robot) (robot-words robot))
+  (check-argument place-robot robot (robot-p robot) (argument-type-text 'robot robot))
   (check-of-type 'place-robot 'x x 'number)
   (check-of-type 'place-robot 'y y 'number)
   (check-of-type 'place-robot 'angle angle 'angle)

@@ -142,10 +142,6 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
               name (or name "ROBOT")))))
 
 (define-argument-type 'robot #'robot-p "a robot" #'not-a-robot-text)
-
-(defun robot-words (value)
-  "Return in words what a robot is, for somebody who gave VALUE instead."
-  (format nil "a robot~@[: ~A~]" (not-a-robot-text value)))
 (define-argument-type 'camera #'camera-p "a camera, as (robot-camera ROBOT 0) returns")
 (define-argument-type 'hand #'hand-p "a hand, as (robot-hand ROBOT 0) returns")
 (define-argument-type 'storage-bin #'storage-bin-p
@@ -209,7 +205,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   "Return the part of ROBOT with INDEX among those that READER returns."
   (unless (robot-p robot)
     (error 'wrong-argument :operator operator :name "robot" :value robot
-                           :expected (robot-words robot)))
+                           :expected (argument-type-text 'robot robot)))
   (let ((parts (funcall reader robot)))
     (unless (and (integerp index) (< -1 index (length parts)))
       (error 'wrong-argument :operator operator :name "index" :value index

@@ -30,7 +30,7 @@ next: a list of PTs or lists (x y), as FIND-WAY returns it; () says that it is o
 It holds until something else is published, or a command of the robot is interrupted. ROBOT-GO-TO
 and TRAVEL-TO do this; programs of one's own may. Nothing else comes of it: ROBOT goes nowhere, and
 digests and journals stay what they are. Return ROBOT. Signals WRONG-ARGUMENT."
-  (check-argument publish-way robot (robot-p robot) (robot-words robot))
+  (check-argument publish-way robot (robot-p robot) (argument-type-text 'robot robot))
   (check-argument publish-way points (and (proper-list-p points) (every #'way-point-p points))
                   "a list of PTs, or of lists (x y)")
   (setf (robot-published-way robot)

@@ -37,7 +37,7 @@
   "Attach to THING the kicker called KICKER-NAME, a symbol, or given as itself (manual 5.3.1).
 Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is when it runs.
 See reading 171."
-  (check-argument set-kicker thing (thing-p thing) (thing-words thing))
+  (check-argument set-kicker thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((kicker (find-kicker kicker-name)))
     (changing ((world-of-living thing) set-kicker thing (kicker-name kicker))
       (attach-kicker thing kicker))))
@@ -46,7 +46,7 @@ See reading 171."
 
 (defun call-put-kicker (thing name &key (prob 1) test body)
   "Do what PUT-KICKER says; without a BODY, remove the kicker NAME."
-  (check-argument put-kicker thing (thing-p thing) (thing-words thing))
+  (check-argument put-kicker thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((kicker (and body (fill-kicker (make-kicker name) (title "put-kicker" name)
                                        prob test body))))
     (changing ((world-of-living thing) call-put-kicker thing name

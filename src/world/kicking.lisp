@@ -84,7 +84,7 @@ it begins. NIL if there is none, as all eight are filled."
 
 (defun kick-by-numbers (thing dx dy kick-if-wall)
   "Do what KICK-THING says."
-  (check-argument kick-thing thing (thing-p thing) (thing-words thing))
+  (check-argument kick-thing thing (thing-p thing) (argument-type-text 'thing thing))
   (check-argument kick-thing dx (within-reason-p dx) (argument-type-text 'number dx))
   (check-argument kick-thing dy (within-reason-p dy) (argument-type-text 'number dy))
   (changing ((thing-world thing) kick-thing thing dx dy kick-if-wall)

@@ -143,7 +143,7 @@ WHAT in a run is shown if nobody reads it."
   (location-world holder))
 
 (defun check-movable (operator thing)
-  (unless (thing-p thing) (reject-value operator "thing" thing (thing-words thing)))
+  (unless (thing-p thing) (reject-value operator "thing" thing (argument-type-text 'thing thing)))
   (unless (thing-world thing)
     (reject-use "~A is a prototype; make things from it with (new-thing ... :prototype)." thing))
   (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing)))

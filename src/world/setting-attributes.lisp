@@ -39,7 +39,7 @@
   "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
 or unspecified. Of lists, strings and vectors THING gets copies. Signals WRONG-ARGUMENT for a value
 that the attribute cannot have. Warns as GET-ATTRIBUTE does."
-  (check-argument set-attribute thing (thing-p thing) (thing-words thing))
+  (check-argument set-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
   (let ((descriptor (if (typep new-value '(or symbol number))
                         (list (checked-entry 'set-attribute attribute new-value))
@@ -62,7 +62,7 @@ that the attribute cannot have. Warns as GET-ATTRIBUTE does."
 (defun change-attribute (thing descriptor)
   "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
 (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
-  (check-argument change-attribute thing (thing-p thing) (thing-words thing))
+  (check-argument change-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
     (loop for (key) in descriptor do (note-slip 'change-attribute thing key))
     (changing ((world-of-living thing) change-attribute thing descriptor)

@@ -119,18 +119,13 @@ false, always can."
           (thing-substance-parameter thing)
           (substance-value-parameter (get-attribute thing :substance)))))
 
-(defun thing-words (value)
-  "Return in words what a thing is, for somebody who gave VALUE instead."
-  (format nil "a thing, as (find-thing '~:[NAME~;~:*~(~A~)~]) returns"
-          (and value (symbolp value) (not (keywordp value)) value)))
-
 (public get-attribute)
 (settable get-attribute)
 (defun get-attribute (thing attribute)
   "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
 which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it, as SORT does. An
 ATTRIBUTE that may be a slip for a declared one gets a warning, once in a run."
-  (check-argument get-attribute thing (thing-p thing) (thing-words thing))
+  (check-argument get-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (let* ((key (attribute-key attribute))
          (entry (assoc key (thing-attributes thing) :test #'eq)))
     (unless entry (note-slip 'get-attribute thing key))
@@ -177,7 +172,12 @@ if it is nowhere."
         do (incf sum (the double-float (thing-total-weight inside)))
         finally (return sum)))
 
-(define-argument-type 'thing #'thing-p "a thing")
+(defun not-a-thing-text (value)
+  "Return in words how to have a thing, for somebody who gave VALUE instead."
+  (format nil "such as (find-thing '~:[NAME~;~:*~(~A~)~]) returns"
+          (and value (symbolp value) (not (keywordp value)) value)))
+
+(define-argument-type 'thing #'thing-p "a thing" #'not-a-thing-text)
 
 (defmethod location-contents ((thing thing)) (thing-contents thing))
 (defmethod (setf location-contents) (things (thing thing)) (setf (thing-contents thing) things))
