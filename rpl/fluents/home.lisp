@@ -43,16 +43,12 @@ NIL.")
 
 ;;; Having it.
 
-;; An interrupt may make a thread leave a home before it has noted that it leaves. But its bindings
-;; are undone in any case.
 (defvar *homes* '()
   "The homes that this thread has.")
 
 (defun take-home (home)
   "Let this thread have HOME. True unless another one has it."
-  (or (swap-if (home-holder home) nil (current-thread))
-      (and (eq (home-holder home) (current-thread))
-           (not (member home *homes* :test #'eq)))))
+  (swap-if (home-holder home) nil (current-thread)))
 
 (defun leave-home (home)
   "Let this thread no longer have HOME, if it does."
