@@ -24,7 +24,7 @@
                  (:file "stacks") (:file "debuggers") (:file "abridging") (:file "conditions")
                  (:file "exits") (:file "lisp-errors")
                  (:file "telling") (:file "breaking-lines") (:file "ordering")
-                 (:file "threads") (:file "elsewhere") (:file "weak")
+                 (:file "threads") (:file "finishing") (:file "elsewhere") (:file "weak")
                  (:file "fixed-point") (:file "double-parts")
                  (:file "trigonometry") (:file "exponentials") (:file "dice") (:file "random") (:file "writing") (:file "names")
                  (:file "keywords")

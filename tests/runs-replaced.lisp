@@ -272,6 +272,16 @@ function and its arguments."
                                      (push 3 log)))))
     (is (equal '(1 2 3) (reverse log)))))
 
+(test with-simulation.that-is-interrupted-at-its-end-ends-its-run
+  (with-yard ()
+    (let ((simulation nil))
+      (is (eq :left (coming-between (run::look-at-end (look &rest arguments)
+                                      (interrupt-here)
+                                      (apply look arguments))
+                      (interrupted (run:with-simulation (dray)
+                                     (setf simulation time:*simulation*))))))
+      (is-true (run:simulation-over simulation)))))
+
 (test homes.are-left-by-who-is-interrupted-while-leaving
   (let ((runner (rpl:make-plan-runner)))
     (is (eq :left (coming-between (fluents::leave-home (leave home)

@@ -117,18 +117,18 @@ but somebody outside can let plans go on, say so, once."
              (declare (ignore simulation))
              (when (task-over-p task) (signal-semaphore over))))
       (asking (simulation) (add-observer #'look simulation))
-      (unwind-protect
-           (loop (cond ((ended-by-itself-p task) (return (task-state task)))
-                       ((not (and (live-p simulation) (interface-valid-p interface)))
-                        (return :stopped))
-                       ((task-over-p task) (return (task-state task)))
-                       ;; Who is at a break holds the plans until it is answered, perhaps here.
-                       ((and (not told)
-                             (null (interface-holder interface))
-                             (deadlocked-p interface))
-                        (setf told t)
-                        (with-plans (interface) (report-stillness (interface-runner interface)))))
-                 (wait-a-while over 0.2))
+      (in-any-case
+        (loop (cond ((ended-by-itself-p task) (return (task-state task)))
+                    ((not (and (live-p simulation) (interface-valid-p interface)))
+                     (return :stopped))
+                    ((task-over-p task) (return (task-state task)))
+                    ;; Who is at a break holds the plans until it is answered, perhaps here.
+                    ((and (not told)
+                          (null (interface-holder interface))
+                          (deadlocked-p interface))
+                     (setf told t)
+                     (with-plans (interface) (report-stillness (interface-runner interface)))))
+              (wait-a-while over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))
 
 (defun check-outside (interface)

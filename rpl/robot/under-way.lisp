@@ -186,12 +186,12 @@ the trace knows of it."
          (issued-p nil))
     (when (and task (not cleanup-p)) (count-command task command outcome resource))
     (add-deed deed interface)
-    (unwind-protect
-         (progn (call-on-robot interface
-                               (lambda ()
-                                 (apply (command-name command) resource
-                                        (append arguments (list (answering interface deed))))))
-                (setf issued-p t))
+    (in-any-case
+      (progn (call-on-robot interface
+                            (lambda ()
+                              (apply (command-name command) resource
+                                     (append arguments (list (answering interface deed))))))
+             (setf issued-p t))
       (unless issued-p (forget-deed deed interface)))
     (take-over interface resource :except deed)))
 

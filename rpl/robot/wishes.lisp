@@ -89,9 +89,9 @@ on."
 
 (defun fork-at-rest (interface)
   "Return a fork of the simulation of INTERFACE, whose plans rest and are held by the caller."
-  (unwind-protect
-       (progn (setf (interface-resting-p interface) t)
-              (fork-simulation (interface-simulation interface)))
+  (in-any-case
+    (progn (setf (interface-resting-p interface) t)
+           (fork-simulation (interface-simulation interface)))
     (setf (interface-resting-p interface) nil)))
 
 (defun unwanted-wish-p (wish)

@@ -15,8 +15,9 @@
   "Call FUNCTION, in whose extent NAMES are bound to robots for this thread only, and let others
 know. Return its values."
   (let ((entry (list* (current-thread) (incf (car *bindings-made*)) names)))
-    (unwind-protect (progn (atomic-push entry (car *bound-names*))
-                           (funcall function))
+    (in-any-case
+      (progn (atomic-push entry (car *bound-names*))
+             (funcall function))
       (loop for entries = (car *bound-names*)
             until (swap-if (car *bound-names*) entries (remove entry entries :test #'eq))))))
 

@@ -51,7 +51,8 @@ of its variable if there is one."
          (values (mapcar #'symbol-value variables))
          (kept (loop for registry in *registries*
                      collect (cons registry (mapcar #'keep-entry (registry-entries registry))))))
-    (unwind-protect (funcall function)
+    (in-any-case
+      (funcall function)
       (loop for (registry . entries) in kept
             do (restore-registry registry entries))
       (mapc #'set variables values)

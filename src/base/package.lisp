@@ -82,6 +82,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:*leaving-p* #:start-thread #:own-thread-p #:join-thread #:interrupt-thread
            #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
+  ;; finishing
+  (:export #:in-any-case #:call-each)
   ;; elsewhere
   (:export #:call-telling-names #:bound-elsewhere-text #:run-elsewhere-text)
   ;; limits, debuggers
@@ -167,8 +169,6 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:note-of-asker #:note-text)
   ;; user code
   (:export #:call-user-code #:*break-on-user-error* #:*user-error-hooks*
-           #:in-any-case
-           #:call-each
            #:note-waiting #:report-break #:continue-inside
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
            #:user-calls-waiting-p

@@ -17,37 +17,6 @@ an editor. Its restarts are: report it and leave that code, try it again, and st
 that runs live; they name whose code it is. When NIL, the default, or without a terminal, the error
 is queued as an error message that names its origin, and the run goes on.")
 
-;;; Finishing what has been begun.
-
-(defun call-in-any-case (first &rest others)
-  "Do what IN-ANY-CASE does with functions for its forms."
-  (declare (dynamic-extent others))
-  (let ((open-p (null *holding*)))
-    (labels ((call-rest (functions)
-               (when functions
-                 (unwind-protect (funcall (the function (first functions)))
-                   (call-rest (rest functions))))))
-      (deferring-interrupts
-        (unwind-protect (if open-p (call-allowing-interrupts first) (funcall first))
-          (call-rest others))))))
-
-;; SBCL lets interrupts in where a protected form has just ended, and what is to follow would be
-;; skipped.
-(defmacro in-any-case (&body forms)
-  "Run FORMS in order, those that follow also if one is left, as by THROW; interrupts of this thread
-wait for the end of these, but at waits and in users' code. Return the values of the first."
-  (let ((names (loop for nil in forms collect (gensym "PART"))))
-    `(flet ,(loop for name in names
-                  for form in forms
-                  collect `(,name () ,form))
-       (declare (dynamic-extent ,@(loop for name in names collect `(function ,name))))
-       (call-in-any-case ,@(loop for name in names collect `(function ,name))))))
-
-(defun call-each (function list)
-  "Call FUNCTION with each element of LIST in order, with the rest also if a call is left."
-  (unwind-protect (loop while list do (funcall function (pop list)))
-    (when list (call-each function list))))
-
 ;;; What users' code a thread is in.
 
 (defstruct (user-calls (:constructor make-user-calls (&optional stop)) (:copier nil))

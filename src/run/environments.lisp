@@ -86,16 +86,17 @@ SIMULATION, in which this thread does not work, has."
 keep what they are then."
   (let* ((environment (environment-of simulation)) (symbols (mapcar #'car environment)))
     (progv symbols (mapcar #'cdr environment)
-      (unwind-protect (funcall function)
+      (in-any-case
+        (funcall function)
         (keep-environment simulation environment)))))
 
 (defun call-elsewhere (simulation function)
   "Call FUNCTION with the parameters and variables of SIMULATION, which is not the current one."
   (let ((around *simulation*))
     (when around (note-environment around))
-    (unwind-protect
-         (call-with-parameter-values (simulation-known-parameters simulation)
-                                     (lambda () (call-in-environment simulation function)))
+    (in-any-case
+      (call-with-parameter-values (simulation-known-parameters simulation)
+                                  (lambda () (call-in-environment simulation function)))
       (when around (take-up-environment around)))))
 
 (defun call-inside (simulation function)

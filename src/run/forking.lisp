@@ -227,8 +227,9 @@ WRONG-ARGUMENT for what is no fork."
   "Call FUNCTION in a fork of the current simulation, made with OPTIONS; see WITH-FORK."
   (let ((fork (let ((*fork-asker* 'with-fork)) (apply #'fork-simulation options))))
     (when fork
-      (unwind-protect (multiple-value-prog1 (call-inside fork function)
-                        (signal-trouble (simulation-messages (latest fork))))
+      (in-any-case
+        (multiple-value-prog1 (call-inside fork function)
+          (signal-trouble (simulation-messages (latest fork))))
         (release-fork fork)))))
 
 (addition with-fork)

@@ -209,9 +209,10 @@ KEEP says, see KEEP-FORKS. Then the run is over."
 has been told is told, or signalled, as its message queue says."
   (let ((queue (simulation-messages simulation)) (left-p t))
     (multiple-value-prog1
-        (unwind-protect (multiple-value-prog1 (funcall function)
-                          (signal-trouble queue)
-                          (setf left-p nil))
+        (in-any-case
+          (multiple-value-prog1 (funcall function)
+            (signal-trouble queue)
+            (setf left-p nil))
           (look-at-end simulation left-p)
           (show-unseen queue)
           (end-headless simulation)

@@ -93,12 +93,12 @@
 
 (defun let-go (custody pacing)
   "Give back what the thread of PACING has, which ends, perhaps unasked."
-  (unless (pacing-stopping-p pacing)
-    (setf (pacing-stopping-p pacing) t)
-    (unless *leaving-p* (tell-of-ending)))
-  (when (eq pacing (custody-pacing custody))
-    (setf (custody-pacing custody) nil))
   (in-any-case
+    (unless (pacing-stopping-p pacing)
+      (setf (pacing-stopping-p pacing) t)
+      (unless *leaving-p* (tell-of-ending)))
+    (when (eq pacing (custody-pacing custody))
+      (setf (custody-pacing custody) nil))
     (give-up-custody custody)
     (setf (pacing-over-p pacing) t)
     (signal-semaphore (pacing-ended pacing))))

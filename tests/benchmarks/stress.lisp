@@ -180,8 +180,7 @@
      (sb-thread:interrupt-thread
       thread
       (lambda ()
-        (setf text (with-output-to-string (stream)
-                     (uiop:print-backtrace :stream stream :count 30)))
+        (setf text (backtrace-here 30))
         (base:signal-semaphore said))))
     (if (base:wait-on-semaphore said 3) text "takes no interrupts")))
 
