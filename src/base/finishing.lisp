@@ -2,16 +2,23 @@
 
 (in-package :ars-magna.base)
 
+(declaim (inline call-opening))
+(defun call-opening (open-p function)
+  "Call FUNCTION, in which this thread can be interrupted if OPEN-P."
+  (if open-p
+      (call-allowing-interrupts function)
+      (funcall (the function function))))
+
 (defun call-in-any-case (first &rest others)
   "Do what IN-ANY-CASE does with functions for its forms."
   (declare (dynamic-extent others))
-  (let ((open-p (null *holding*)))
+  (let ((open-p (not (held-off-p))))
     (labels ((call-rest (functions)
                (when functions
                  (unwind-protect (funcall (the function (first functions)))
                    (call-rest (rest functions))))))
       (deferring-interrupts
-        (unwind-protect (if open-p (call-allowing-interrupts first) (funcall first))
+        (unwind-protect (call-opening open-p first)
           (call-rest others))))))
 
 ;; See PROTECTING-STRICTLY. That is for little work that is done often, and lets nothing in.

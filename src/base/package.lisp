@@ -83,12 +83,12 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; finishing
-  (:export #:in-any-case #:call-each)
+  (:export #:in-any-case #:call-opening #:call-each)
   ;; elsewhere
   (:export #:call-telling-names #:bound-elsewhere-text #:run-elsewhere-text)
   ;; limits, debuggers
   (:export #:time-limit #:call-with-limit #:deferring-interrupts #:allowing-interrupts
-           #:call-holding-interrupts #:call-open-to-interrupts #:protecting-strictly
+           #:call-holding-interrupts #:call-open-to-interrupts #:protecting-strictly #:held-off-p
            #:regain-room #:debugger-p #:foreign-hook #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-hook-p
            #:*editor-gone-p* #:*hook-instead*

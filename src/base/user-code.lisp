@@ -36,13 +36,6 @@ is queued as an error message that names its origin, and the run goes on.")
 (defvar *user-calls* nil
   "The USER-CALLS of this thread, or NIL if nobody watches them.")
 
-(declaim (inline call-open))
-(defun call-open (function)
-  "Call FUNCTION, users' code, in which interrupts that this thread holds off are let in."
-  (if *holding*
-      (call-allowing-interrupts function)
-      (funcall function)))
-
 (defun call-as-users-code (function origin)
   "Call FUNCTION, of which ORIGIN says whose code it is, so that whoever watches sees that. It can
 be interrupted."
@@ -53,9 +46,9 @@ be interrupted."
           (incf (user-calls-count calls))
           (setf (user-calls-origin calls) origin
                 (user-calls-waiting-p calls) nil)
-          (unwind-protect (call-open function)
+          (unwind-protect (call-opening (held-off-p) function)
             (setf (user-calls-origin calls) outer)))
-        (call-open function))))
+        (call-opening (held-off-p) function))))
 
 (defmacro as-users-code ((origin) &body body)
   "Run BODY as CALL-AS-USERS-CODE would a function."

@@ -18,6 +18,11 @@
 another that calls that, open to interrupts, or if its second argument is true open to them where
 SBCL waits.")
 
+(declaim (inline held-off-p))
+(defun held-off-p ()
+  "True if interrupts of this thread are held off here."
+  (and *holding* t))
+
 (defun call-deferring-interrupts (function)
   "Do what DEFERRING-INTERRUPTS does."
   (if *holding*

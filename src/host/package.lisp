@@ -15,7 +15,7 @@ file. No other folder names such parts of SBCL.")
   ;; stacks
   (:export #:restore-stack)
   ;; interrupts
-  (:export #:deferring-interrupts #:allowing-interrupts #:waiting #:*holding* #:protecting-strictly
+  (:export #:deferring-interrupts #:allowing-interrupts #:waiting #:held-off-p #:protecting-strictly
            #:call-allowing-interrupts #:call-holding-interrupts
            #:call-open-to-interrupts #:with-deadline #:deadline-passed)
   ;; instances

@@ -53,17 +53,19 @@
              (give-up-custody custody)))))
 
 (defun call-with-custody (custody function otherwise)
-  "Call FUNCTION with CUSTODY, OTHERWISE if another thread has it. Return the values."
+  "Call FUNCTION with CUSTODY, OTHERWISE if another thread has it. Return the values. These can be
+interrupted if this thread could before."
   (if (mine-p custody)
       (funcall function)
-      (deferring-interrupts
-        (if (take-custody custody)
-            (let* ((held (cons custody *held*)) (*held* held))
-              (declare (dynamic-extent held))
-              (in-any-case
-                (allowing-interrupts (funcall function))
-                (give-up-custody custody)))
-            (allowing-interrupts (funcall otherwise))))))
+      (let ((open-p (not (held-off-p))))
+        (deferring-interrupts
+          (if (take-custody custody)
+              (let* ((held (cons custody *held*)) (*held* held))
+                (declare (dynamic-extent held))
+                (in-any-case
+                  (call-opening open-p function)
+                  (give-up-custody custody)))
+              (call-opening open-p otherwise))))))
 
 (defun hand-over (custody thread)
   "Let THREAD have CUSTODY, which this thread has."
