@@ -251,3 +251,46 @@
 (defun simulator-threads-of (map)
   (count (format nil "simulator of ~A" map) (sb-thread:list-all-threads)
          :test #'string-equal :key #'sb-thread:thread-name))
+
+;;; Maps of many clauses.
+
+(defun hall-of-things (count descriptor-of)
+  "Return the text of a map HALL with COUNT things, one a line from line 2, each with what
+DESCRIPTOR-OF returns of its number, as text."
+  (with-output-to-string (text)
+    (format text "(world:defmap hall (100 100)~%")
+    (dotimes (index count)
+      (format text " (obj (pot~D :prototype egg*) (~D ~D) ~A)~%" index (mod index 100)
+              (mod (floor index 100) 100) (funcall descriptor-of index)))
+    (format text ")")))
+
+(defvar *eggs-laid* 0 "How often the prototype of a test was asked for.")
+
+(define-symbol-macro egg* (progn (incf *eggs-laid*)
+                                 (world:make-new-thing 'egg nil '((:color red)))))
+
+(test maps.of-ten-thousand-things-are-data
+  "Clauses are not compiled: a tenth of these filled the memory."
+  (with-own-definitions
+    (setf *eggs-laid* 0)
+    (call-with-file #'load-here (hall-of-things 10000 (constantly "((:size 2) (:weight 3))")))
+    (let ((world (world:make-world 'hall)))
+      (is (= 10000 *eggs-laid*) "the prototype's form has a value for each clause")
+      (is (= 10000 (world:world-live-count world)))
+      (let ((last (elt (world:world-thing-list world) 9999)))
+        (is (equal '(99.0d0 99.0d0) (list (world:thing-x last) (world:thing-y last))))
+        (is (equal '(red 2 3) (loop for key in '(:color :size :weight)
+                                       collect (world:get-attribute last key))))))))
+
+(test maps.of-many-things-say-where-a-mistake-is
+  (with-own-definitions
+    (flet ((trouble-of (wrong)
+             (call-with-file
+              (lambda (path)
+                (handler-case (load-here path)
+                  (base:malformed-definition (condition) (princ-to-string condition))))
+              (hall-of-things 2000 (lambda (index) (if (= index 1500) wrong "()"))))))
+      (dolist (wrong '("((:size 2) (:size 3))" "((:weight heavy))"))
+        (let ((text (trouble-of wrong)))
+          (is (search ", line 1502" text) "~A" text)
+          (is (search "pot1500" text) "~A" text))))))

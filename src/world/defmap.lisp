@@ -46,15 +46,6 @@ PACKAGE is the one that the author writes in. Return the map."
     (warn-of-things-in-walls map)
     (register-map map)))
 
-(defun recipe-for-clause (function clause path compiler)
-  "Return what FUNCTION, compiled for CLAUSE at PATH of the definition, returns: a recipe. If that
-signals, the user may replace the clause by another, of which COMPILER makes a form."
-  (call-with-clause (lambda (chosen)
-                      (if (eq chosen clause)
-                          (funcall function)
-                          (eval (funcall compiler chosen))))
-                    clause path))
-
 ;;; What is doubtful.
 
 (defun outside-p (map point)
@@ -108,34 +99,106 @@ signals, the user may replace the clause by another, of which COMPILER makes a f
                  (every #'symbolp (getf (rest head) :kickers)))
       (reject-clause definition clause ":kickers (name ...), names in a list"))))
 
-(defun prototype-form (definition clause prototype)
-  "Return a form for the value of the form PROTOTYPE, which stands in CLAUSE (reading 59)."
-  (and prototype
-       `(call-for-value (lambda () ,prototype) ,definition ',clause
-                        "a prototype: a form whose value is a thing")))
+;;; A clause of a thing is data. Its author's code in it, prototypes and the lambdas of draw
+;;; functions, is compiled beside it: in a list of (key function), each once. A key is (name form),
+;;; with the name of a thing that is drawn. A clause that the user chose instead has none there.
 
-(defun recipe-form (definition clause path head descriptor contents &optional x y)
-  "Return a form that makes the recipe of a thing, from CLAUSE at PATH, which ends in CONTENTS."
+(defvar *code* '() "The compiled code of the map that is being defined.")
+
+(defun code-p (key value)
+  "True if VALUE, of the attribute KEY, has code that is to be evaluated."
+  (and (consp value) (same-name-p key :draw-function)))
+
+(defun code-in-thing (head descriptor contents)
+  "Return a list of (key form) for the code in the parts of a thing's clause."
+  (destructuring-bind (name &key prototype &allow-other-keys) (ensure-list head)
+    (append (and prototype (list (list (list nil prototype) prototype)))
+            (loop for (key value) in descriptor
+                  when (code-p key value)
+                    collect (list (list name value) (draw-function-form name value)))
+            (loop for (head descriptor . contents) in contents
+                  append (code-in-thing head descriptor contents)))))
+
+(defun code-form (objects)
+  "Return a form that makes the list of the code in the clauses OBJECTS."
+  (let ((code (loop for (head nil descriptor . contents) in (mapcar #'rest objects)
+                    append (code-in-thing head descriptor contents))))
+    `(list ,@(loop for (key form) in (remove-duplicates code :key #'first :test #'equal)
+                   collect `(list ',key (lambda () ,form))))))
+
+(defun code-value (name source form)
+  "Return the value of SOURCE, code of the thing called NAME or NIL, which FORM, evaluated, has."
+  (let ((compiled (second (find (list name source) *code* :key #'first :test #'equal))))
+    (if compiled (funcall compiled) (eval form))))
+
+(defun descriptor-value (name descriptor)
+  "Return DESCRIPTOR, of the thing called NAME, with the values of the code in it."
+  (loop for (key value) in descriptor
+        collect (list key (if (code-p key value)
+                              (code-value name value (draw-function-form name value))
+                              value))))
+
+(defun recipe-of-thing (definition clause path head descriptor contents &optional x y)
+  "Return the recipe of the thing in CLAUSE at PATH, which has been checked and ends in CONTENTS."
+  (destructuring-bind (name &key prototype kickers) (ensure-list head)
+    (flet ((value () (code-value nil prototype prototype)))
+      (clause-recipe definition clause name (descriptor-value name descriptor)
+                     :prototype (and prototype
+                                     (call-for-value #'value definition clause
+                                                     "a prototype: a form whose value is a thing"))
+                     :kickers kickers :x x :y y
+                     :contents (loop for inside in contents
+                                     for position from (- (length clause) (length contents))
+                                     for recipe = (recipe-for 'content definition inside
+                                                              (append path (list position)))
+                                     when recipe collect recipe)))))
+
+(defun recipe-of (kind definition clause path)
+  "Return the recipe of CLAUSE at PATH, of KIND OBJECT or CONTENT."
+  (if (eq kind 'object)
+      (destructuring-bind (head (x y) descriptor &rest contents) (rest clause)
+        (recipe-of-thing definition clause path head descriptor contents x y))
+      (destructuring-bind (head descriptor &rest contents) clause
+        (recipe-of-thing definition clause path head descriptor contents))))
+
+(defun recipe-for (kind definition clause path &rest size)
+  "Return the recipe of CLAUSE, which has been checked, or of another that the user puts in its
+place if that signals; NIL if it is left out. The rest are as for RECIPE-OF and CHECKED-THING."
+  (call-with-clause (lambda (chosen)
+                      (recipe-of kind definition
+                                 (if (eq chosen clause)
+                                     clause
+                                     (apply #'checked-thing kind definition chosen path size))
+                                 path))
+                    clause path))
+
+(defun recipes-for (definition objects width height code)
+  "Return the recipes for OBJECTS, a list of (position clause) in DEFINITION of a map of WIDTH by
+HEIGHT. CODE is as CODE-FORM makes it."
+  (let ((*code* code))
+    (loop for (position clause) in objects
+          collect (recipe-for 'object definition clause (list position) width height))))
+
+;;; Checking clauses of things.
+
+(defun check-thing-parts (definition clause head descriptor)
   (check-head definition clause head)
   (unless (descriptor-p descriptor)
     (reject-clause definition clause
-                   "an object descriptor ((attribute value) ...), each attribute once"))
-  (destructuring-bind (name &key prototype kickers) (ensure-list head)
-    (let ((first (- (length clause) (length contents))))
-      `(clause-recipe ,definition ',clause ',name ,(descriptor-form name descriptor)
-                      :prototype ,(prototype-form definition clause prototype)
-                      :kickers ',kickers :x ,x :y ,y
-                      :contents (remove nil (list ,@(contents-forms definition contents path
-                                                                    first)))))))
+                   "an object descriptor ((attribute value) ...), each attribute once")))
 
-(defun contents-forms (definition clauses path first)
-  "Return forms that make the recipes for CLAUSES, which begin at the position FIRST of what is at
-PATH."
-  (loop for clause in clauses
-        for position from first
-        collect (thing-form definition clause (append path (list position)) 'contents-form)))
+(defun with-checked-contents (definition clause contents path)
+  "Return CLAUSE at PATH, which ends in CONTENTS, with those that the user puts in their place."
+  (let* ((first (- (length clause) (length contents)))
+         (checked (loop for inside in contents
+                        for position from first
+                        collect (call-checked 'content definition inside
+                                              (append path (list position))))))
+    (if (every #'eq contents checked)
+        clause
+        (append (subseq clause 0 first) (remove nil checked)))))
 
-(defun contents-form (definition clause path)
+(defun checked-content (definition clause path)
   (when (keywordp (if (consp clause) (first clause) clause))
     (reject-clause definition clause
                    (format nil "contents: (name descriptor contents...); options stand beside ~
@@ -143,10 +206,10 @@ PATH."
   (unless (and (proper-list-p clause) (<= 2 (length clause)))
     (reject-clause definition clause "contents: (name descriptor contents...)"))
   (destructuring-bind (head descriptor &rest contents) clause
-    (recipe-form definition clause path head descriptor contents)))
+    (check-thing-parts definition clause head descriptor)
+    (with-checked-contents definition clause contents path)))
 
-(defun object-form (definition clause path width height)
-  "Return a form that makes the recipe for CLAUSE, an obj, at PATH."
+(defun checked-object (definition clause path width height)
   (unless (and (eq :obj (clause-kind definition clause)) (<= 4 (length clause)))
     (reject-clause definition clause "(obj name (x y) descriptor contents...)"))
   (destructuring-bind (head position descriptor &rest contents) (rest clause)
@@ -156,17 +219,21 @@ PATH."
       (reject-clause definition clause
                      (format nil "a position (x y) in the map, from 0 to below ~D and ~D"
                              width height)))
-    (recipe-form definition clause path head descriptor contents
-                 (first position) (second position))))
+    (check-thing-parts definition clause head descriptor)
+    (with-checked-contents definition clause contents path)))
 
-(defun thing-form (definition clause path compiler &rest arguments)
-  "Return a form for the recipe of CLAUSE at PATH, which COMPILER, the name of a function of these
-and of ARGUMENTS, makes. The user may replace the clause, now and when the form is evaluated."
+(defun checked-thing (kind definition clause path &rest size)
+  "Return CLAUSE at PATH, of KIND OBJECT, in a map of that SIZE, or CONTENT, with contents that are
+right. Signals MALFORMED-DEFINITION."
+  (if (eq kind 'object)
+      (apply #'checked-object definition clause path size)
+      (checked-content definition clause path)))
+
+(defun call-checked (kind definition clause path &rest size)
+  "Return what CHECKED-THING does of CLAUSE, or of another that the user puts in its place; NIL if
+it is left out."
   (call-with-clause (lambda (clause)
-                      `(recipe-for-clause
-                        (lambda () ,(apply compiler definition clause path arguments))
-                        ',clause ',path
-                        (lambda (clause) (,compiler ,definition clause ',path ,@arguments))))
+                      (apply #'checked-thing kind definition clause path size))
                     clause path))
 
 ;;; The clauses.
@@ -226,13 +293,13 @@ and of ARGUMENTS, makes. The user may replace the clause, now and when the form 
         collect (if (eq key :frame) `',value value)))
 
 (defun parse-clause (definition clause path width height)
-  "Return a list (kind form) for CLAUSE, at PATH of DEFINITION: of a thing, the form that makes its
-recipe, of anything else the clause itself. NIL if it is to be left out."
+  "Return a list (kind clause) for CLAUSE, at PATH of DEFINITION, when it is right. NIL if it is to
+be left out."
   (call-with-clause (lambda (clause)
                       (let ((kind (clause-kind definition clause)))
                         (list kind
                               (if (eq kind :obj)
-                                  (thing-form definition clause path 'object-form width height)
+                                  (checked-object definition clause path width height)
                                   (check-grid-clause definition clause kind)))))
                     clause path))
 
@@ -242,13 +309,15 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
     (multiple-value-bind (width height options) (check-size definition name size)
       (loop for clause in clauses
             for position from 3
-            for (kind form) = (unless (and (stringp clause) (= position 3))
-                                (parse-clause definition clause (list position) width height))
-            if (eq kind :obj) collect form into things
-            else if kind collect form into walls
+            for (kind chosen) = (unless (and (stringp clause) (= position 3))
+                                  (parse-clause definition clause (list position) width height))
+            if (eq kind :obj) collect (list position chosen) into objects
+            else if kind collect chosen into walls
             finally (return
                       `((define-map ',name ,width ,height
-                          ,@(option-forms options) :clauses ',walls :things (list ,@things)
+                          ,@(option-forms options) :clauses ',walls
+                          :things (recipes-for ,definition ',objects ,width ,height
+                                               ,(code-form (mapcar #'second objects)))
                           :package ,(package-name *package*))))))))
 
 (public defmap)
