@@ -233,3 +233,32 @@
 (test cache.tilde-is-home
   (is (equal (namestring (merge-pathnames "cache/x" (user-homedir-pathname)))
              (namestring (base:path-called "~/cache/x")))))
+
+(defun call-with-map-file (function)
+  "Call FUNCTION with a file that has a map with the cache cellar.map, and with the name of that."
+  (let ((file (base:path-called (format nil "~Aars-magna-tests/[maps]/cellar.lisp"
+                                        (uiop:temporary-directory)))))
+    (ensure-directories-exist file)
+    (unwind-protect
+         (progn (rewrite file "(world:defmap cellar (9 9 :cache \"cellar.map\"))")
+                (funcall function file (make-pathname :type "map" :defaults file)))
+      (mapc #'delete-file (uiop:directory-files (uiop:pathname-directory-pathname file))))))
+
+(test cache.is-beside-the-file-of-its-map
+  "Wherever Lisp happens to be."
+  (with-own-definitions
+    (call-with-map-file
+     (lambda (file cache)
+       (load-here file)
+       (is-true (probe-file cache))
+       (delete-file cache)
+       (world:rebuild-map 'cellar)
+       (is-true (probe-file cache) "also when it is built again")))))
+
+(test cache.of-a-map-that-was-typed-is-where-lisp-is
+  (with-own-definitions
+    (call-with-map-file
+     (lambda (file cache)
+       (uiop:with-current-directory ((uiop:pathname-directory-pathname file))
+         (eval '(world:defmap cellar (9 9 :cache "cellar.map"))))
+       (is-true (probe-file cache))))))

@@ -38,7 +38,8 @@ PACKAGE is the one that the author writes in. Return the map."
   (check-room (format nil "defmap ~(~A~)" name) width height)
   (let* ((recipes (remove nil things))
          (map (build-map
-               (%make-map :name name :width width :height height :clauses clauses :cache cache
+               (%make-map :name name :width width :height height :clauses clauses
+                          :cache (and cache (cache-path cache))
                           :frame frame :package (package-name (find-package package))
                           :things recipes
                           :attribute-names (attribute-names recipes)))))
@@ -324,7 +325,7 @@ be left out."
 (define-user-macro defmap (&whole form name &optional size &body clauses &environment environment)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in, unless a
-place type has a :checker. Ours is :frame with a list (size x y yaw), as MAP-FRAME says, and a
+place type has a :checker; it is looked for from the directory of the file in which DEFMAP stands. Ours is :frame with a list (size x y yaw), as MAP-FRAME says, and a
 string before the clauses, the map's documentation. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
   (rect (x0 y0) (x1 y1) substance parameter [parameter1 parameter2 parameter3]) -- an outline

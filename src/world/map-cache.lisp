@@ -166,9 +166,19 @@ or damaged, or that cannot be told."
   (and (map-cache map)
        (notany #'place-type-checker (registry-objects *place-types*))))
 
+(defun cache-path (name)
+  "Return the pathname of the cache called NAME, a string or pathname: as seen from the file that
+the definition at hand stands in, or from the current directory if that was typed."
+  (let ((directory (uiop:getcwd))
+        (file (source-file (current-source))))
+    (merge-pathnames (path-called name)
+                     (if file
+                         (merge-pathnames (uiop:pathname-directory-pathname file) directory)
+                         directory))))
+
 (defun usable-cache-path (map)
   "Return the file that MAP is to be kept in, if any; not one that holds something else."
-  (let ((path (and (keepable-p map) (path-called (map-cache map)))))
+  (let ((path (and (keepable-p map) (map-cache map))))
     (cond ((null path) nil)
           ((foreign-p path)
            (warning-set "The file " (native-name path)
