@@ -337,3 +337,6 @@
   (is-true (nisp:dsklap "ars-dir/alexandria"))
   (signals base:unknown-name (nisp:dsklap "ars-dir/no-such-system"))
   (signals base:wrong-argument (nisp:dsklap 7)))
+
+(test reader.passes-over-a-byte-order-mark
+  (is (equal '(1 2) (nisp-read (format nil "~A(1 2)" (code-char #xFEFF))))))

@@ -3,13 +3,15 @@
 (in-package :ars-magna.nisp)
 
 (defun ensure-nisp-readtable ()
-  "Return the readtable :NISP: standard syntax plus #t, #f, ! and ? (reading 31)."
+  "Return the readtable :NISP: standard syntax plus #t, #f, ! and ? (reading 31); and a byte order
+mark, which some editors begin a file with, is as good as a space."
   (let ((readtable (or (find-readtable :nisp)
                        (make-readtable :nisp :merge '(:standard)))))
     (set-macro-character #\! 'read-bang t readtable)
     (set-macro-character #\? 'read-query t readtable)
     (set-dispatch-macro-character #\# #\t 'read-true readtable)
     (set-dispatch-macro-character #\# #\f 'read-false readtable)
+    (set-syntax-from-char (code-char #xFEFF) #\Space readtable)
     readtable))
 
 (addition (in-readtable :nisp))
