@@ -253,6 +253,29 @@ one."
                    (is (same-cells-p map back))
                    (is (equal (world:map-frame map) (world:map-frame back)))))))))
 
+(test export.takes-what-import-took-for-unknown
+  "A name, or a list of that and a parameter; :WALLS and NIL are for no walls of their own."
+  (with-floor (yaml (pgm-text *corner*))
+    (flet ((again (imported exported)
+             (let ((map (ars:import-map yaml :name 'there :unknown imported :substance '(glass 5)))
+                   (file (base:native-path (format nil "~Ab.yaml" (base:native-name directory)))))
+               (ars:export-map map file :unknown exported)
+               (wall-rows (ars:import-map file :name 'back :unknown 'glass)))))
+      (is (equal *corner-rows* (again 'bricks 'bricks)))
+      (is (equal *corner-rows* (again '(glass 77) '(glass 77))))
+      (is (equal '("uuu." "u.u." "u...") (again '(glass 77) 'glass)) "both are of glass")
+      (is (equal '("###." "#.#." "#...") (again :walls :walls)))
+      (is (equal '("###." "#..." "#...") (again nil nil)))
+      (is (equal '("###." "#.#." "#...") (again '(glass 77) '(glass 78)))))
+    (dolist (wrong '(5 (glass heavy) ((glass)) "glass"))
+      (signals base:wrong-argument (ars:export-map 'there "room.yaml" :unknown wrong)))))
+
+(test import.warns-of-a-floor-where-nothing-is-free
+  (with-floor (yaml (pgm-text '((0 128 200))) (floor-text "mode: scale" "free_thresh: 0.1"))
+    (is (search "no cell is free" (first (warnings-of (lambda () (ars:import-map yaml)))))))
+  (with-floor (yaml (pgm-text '((0 128 255))) (floor-text "mode: scale" "free_thresh: 0.1"))
+    (is (null (warnings-of (lambda () (ars:import-map yaml)))))))
+
 (test export.writes-what-import-reads
   "Whatever frame a map has, and whatever the file is called; but for names that no line can hold."
   (with-own-definitions

@@ -9,21 +9,33 @@
   :documentation "How bright, from 0 to 255, pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+ are.")
 
 (defun number-of-substance (map substance)
-  "Return the number that the name SUBSTANCE has in MAP, NIL if it is NIL. Signals UNKNOWN-NAME."
+  "Return the number that the name SUBSTANCE has in MAP. Signals UNKNOWN-NAME."
   (let ((names (map-substance-types map)))
-    (and substance
-         (or (position substance names :start 1 :test #'same-name-p)
-             (reject-name "substance of walls in the map" substance
-                          (rest (coerce names 'list)))))))
+    (or (position substance names :start 1 :test #'same-name-p)
+        (reject-name "substance of walls in the map" substance (rest (coerce names 'list))))))
+
+(defun unknown-wall-test (map unknown)
+  "Return a function that says of a substance's number and a parameter whether walls of these in MAP
+stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals UNKNOWN-NAME."
+  (if (member unknown '(nil :walls))
+      (constantly nil)
+      (destructuring-bind (name &optional parameter) (ensure-list unknown)
+        (let ((wanted (number-of-substance map name)))
+          (lambda (number value)
+            (and (= number wanted)
+                 (or (null parameter) (= value parameter))))))))
 
 (defun map-grid (map unknown)
-  "Return the cells of MAP as a grid, with walls of the substance UNKNOWN, perhaps NIL, as such."
+  "Return the cells of MAP as a grid, with those that UNKNOWN says nobody knows as such."
   (let* ((grid (make-grid (map-width map) (map-height map)))
-         (cells (grid-cells grid)) (number (number-of-substance map unknown)))
+         (cells (grid-cells grid)) (unknown-p (unknown-wall-test map unknown)))
     (dotimes (index (length cells) grid)
       (when (logtest +wall+ (aref (map-flags map) index))
         (setf (aref cells index)
-              (if (eql number (aref (map-substances map) index)) +unknown+ +occupied+))))))
+              (if (funcall unknown-p (aref (map-substances map) index)
+                           (aref (map-parameters map) index))
+                  +unknown+
+                  +occupied+))))))
 
 (defun write-image (grid out)
   "Write GRID as PGM in bytes to OUT, a stream whose characters are octets."
@@ -93,10 +105,13 @@
   "Write the walls of MAP, a map or its name, as an occupancy grid for ROS's map_server: the YAML
 file FILE, a string or pathname whose name ends in .yaml or .yml, and beside it an image in PGM that
 is called the same. ~/ is the home directory. A pixel is a cell, as wide as MAP-FRAME says, and
-IMPORT-MAP makes the same cells of it. Walls of the substance UNKNOWN, a symbol, are written as
-what nobody knows. Substances and things are not written. Files of these names are replaced. Return
-the truenames of both. Signals UNUSABLE-FLOOR, WRONG-ARGUMENT and UNKNOWN-NAME."
+IMPORT-MAP makes the same cells of it. UNKNOWN says, as for IMPORT-MAP, which walls are written as
+what nobody knows: a substance, or a list of that and a parameter, such as (glass 5); NIL and :WALLS
+say none. Substances and things are not written. Files of these names are replaced. Return the
+truenames of both. Signals UNUSABLE-FLOOR, WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
+  (check-argument export-map unknown (substance-said-p unknown)
+                  "the name of a substance, or a list of that and a parameter, as in (glass 5)")
   (let ((map (map-from 'export-map map)) (path (file-called file)))
     (check-description-name file path)
     (let* ((grid (map-grid map unknown))

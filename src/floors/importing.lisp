@@ -18,15 +18,19 @@
   "Return VALUE, as an integer if it is whole."
   (if (= value (round value)) (round value) value))
 
+(defun substance-said-p (value)
+  "True if VALUE is a symbol, or a list of one and a number."
+  (or (symbolp value)
+      (and (proper-list-p value) (first value) (symbolp (first value))
+           (or (null (rest value))
+               (and (= 2 (length value)) (quantity-p (second value)))))))
+
 (defun sort-of-wall (option value)
   "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME if nobody has
 defined the substance."
-  (destructuring-bind (name &optional (parameter nil given) &rest more)
-      (if (proper-list-p value) (or value '(nil)) (list value))
-    (check-option option (and name (symbolp name) (null more)
-                              (or (not given) (quantity-p parameter)))
-                  value
-                  "the name of a substance, or a list of that and a parameter, as in (bricks 20)")
+  (check-option option (and value (substance-said-p value)) value
+                "the name of a substance, or a list of that and a parameter, as in (bricks 20)")
+  (destructuring-bind (name &optional (parameter nil given)) (ensure-list value)
     (let ((substance (find-substance name)))
       (list (substance-name substance)
             (if given parameter (plain-number (substance-parameter substance)))))))
@@ -100,6 +104,16 @@ those that are not known, of the sort UNKNOWN, unless that is NIL."
                      32767; give IMPORT-MAP :pixels ~D or more"
                     most (ceiling (max (image-width image) (image-height image)) 32767)))))
 
+(defun warn-of-nothing-free (description grid)
+  "Warn if no cell of GRID is free because DESCRIPTION says that shades are chances."
+  (when (and (eq :scale (description-mode description))
+             (zerop (count-of +free+ grid)))
+    (warn-of-definition "~A: no cell is free. In the mode scale a shade is the chance that ~
+                         something is there, and a pixel is free below ~A (free_thresh); if ~
+                         lighter pixels are meant to be free, give a higher free_thresh."
+                        (native-name (description-file description))
+                        (decimal (description-free description)))))
+
 (defun report-on (grid frame clauses)
   "Return what is said of an import, a plist."
   (list :width (grid-width grid) :height (grid-height grid) :cell (first frame)
@@ -124,6 +138,7 @@ of it. Nothing is defined. Signals the same."
     (let* ((grid (image-grid image description side (rational share)))
            (frame (frame-of description side))
            (lines (grid-clauses grid walls unknown)))
+      (warn-of-nothing-free description grid)
       (values `(defmap ,name (,(grid-width grid) ,(grid-height grid) :frame ,frame
                               ,@(and cache (list :cache cache)))
                  ,@lines ,@clauses)

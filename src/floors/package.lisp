@@ -6,8 +6,8 @@ read as maps, written from maps, and the way between their metres and our cells.
   (:use :cl :ars-magna.base)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-frame
-                #:map-substances #:map-substance-types #:+wall+ #:find-map #:defmap
-                #:find-substance #:substance-name #:substance-parameter #:bricks)
+                #:map-substances #:map-substance-types #:map-parameters #:+wall+ #:find-map
+                #:defmap #:find-substance #:substance-name #:substance-parameter #:bricks)
   ;; trouble
   (:export #:unusable-floor #:unusable-floor-file #:unusable-floor-line #:unusable-floor-reason)
   ;; frames

@@ -89,7 +89,8 @@ first: () if there is none. UNTIL and TURNS are as for DRAW-WAY."
 and ends; () if there is none. CHART may be a map or the name of one. START and GOAL are PTs or
 lists (x y); for one in a wall the nearest free point stands, up to five cells away. The way ends in
 the first cell, after that of START, that is a place of the type called UNTIL, or for whose column
-and row UNTIL, a function, returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+and row UNTIL, a function, returns true. A map stands for the chart that MAKE-CHART makes of it
+without options: a metre in a DOORWAY costs 2. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument find-way until (or (functionp until) (symbolp until))
                   "the name of a place type, or a function of a column and a row")
   (let* ((chart (chart-from 'find-way chart))
