@@ -325,7 +325,8 @@ be left out."
 (define-user-macro defmap (&whole form name &optional size &body clauses &environment environment)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in, unless a
-place type has a :checker; it is looked for from the directory of the file in which DEFMAP stands. Ours is :frame with a list (size x y yaw), as MAP-FRAME says, and a
+place type has a :checker; it is looked for from the directory of the file in which DEFMAP stands.
+Ours is :frame with a list (size x y yaw), as MAP-FRAME says, and a
 string before the clauses, the map's documentation. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
   (rect (x0 y0) (x1 y1) substance parameter [parameter1 parameter2 parameter3]) -- an outline
