@@ -133,6 +133,35 @@
     (base:call-replacing-file
      #'princ (base:native-path (format nil "/tmp/a~C" (code-char #xFFFD))))))
 
+(defun write-word (file)
+  (base:write-file-anew (lambda (out) (write-string "word" out)) file "the word"))
+
+(test files.keep-their-permissions-when-written-anew
+  (call-in-directory
+   (lambda (directory)
+     (let ((file (merge-pathnames "word.txt" directory)))
+       (flet ((mode () (logand #o777 (sb-posix:stat-mode (sb-posix:stat file)))))
+         (write-word file)
+         (dolist (mode '(#o600 #o664 #o640))
+           (sb-posix:chmod file mode)
+           (write-word file)
+           (is (= mode (mode)))))))))
+
+(test files.that-were-never-finished-are-removed-at-the-next-save
+  "But not those of processes that still run, nor of other machines, nor others."
+  (call-in-directory
+   (lambda (directory)
+     (let* ((host (base:host-name)) (dead 999999999)
+            (mine (format nil "ars-magna-~A-~D-TMP1" host (base:process-number)))
+            (others (list mine (format nil "ars-magna-~A-" host)
+                          (format nil "ars-magna-x~A-~D-TMP1" host dead) "ars-magna-1")))
+       (dolist (name (cons (format nil "ars-magna-~A-~D-TMPX" host dead) others))
+         (write-octets #(1) (merge-pathnames name directory)))
+       (write-word (merge-pathnames "word.txt" directory))
+       (is (equal (sort (cons "word.txt" others) #'string<)
+                  (sort (mapcar #'file-namestring (uiop:directory-files directory))
+                        #'string<)))))))
+
 (test arguments.of-readers-are-checked
   (flet ((refused-p (name &rest arguments)
            (typep (nth-value 1 (ignore-errors (apply name arguments))) 'base:wrong-argument)))

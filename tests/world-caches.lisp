@@ -207,7 +207,7 @@
           (sb-posix:unlink (uiop:native-namestring (cache-file)))
           (sb-posix:unlink (uiop:native-namestring new))
           (delete-file thesis))))
-    (is (notany (lambda (file) (search "map-cache" (file-namestring file)))
+    (is (notany (lambda (file) (search "ars-magna" (file-namestring file)))
                 (uiop:directory-files (cache-directory)))
         "nothing is left behind")))
 

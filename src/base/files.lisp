@@ -48,6 +48,12 @@ as they are, with nothing to be filled in. Signals an error if the system refuse
   (sb-posix:rename (native-name by) (native-name file))
   (values))
 
+(defun take-permissions (file from)
+  "Let FILE be open to the same people as the file FROM, if there is one."
+  (let ((status (ignore-errors (sb-posix:stat (native-name from)))))
+    (when status
+      (sb-posix:chmod (native-name file) (logand #o777 (sb-posix:stat-mode status))))))
+
 (defun plain-file-p (path)
   "True if PATH is a file of bytes: no directory, device or pipe. Signals an error if there is
 nothing."
@@ -143,3 +149,32 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
 (defun process-number ()
   "Return the number that the system has given to this process."
   (sb-posix:getpid))
+
+(defun process-running-p (number)
+  "True if a process of this machine has the NUMBER."
+  (handler-case (progn (sb-posix:kill number 0) t)
+    (sb-posix:syscall-error (condition)
+      (/= sb-posix:esrch (sb-posix:syscall-errno condition)))))
+
+;;; New files take the places of old ones when they are whole. Their names until then say who writes
+;;; them, so that those of processes that were killed can be told.
+
+(defun unfinished-prefix ()
+  "Return how the names of unfinished files of processes of this machine begin."
+  (format nil "ars-magna-~A-" (host-name)))
+
+(defun prefix-of-mine ()
+  "Return how the names of unfinished files of this process begin."
+  (format nil "~A~D-" (unfinished-prefix) (process-number)))
+
+(defun forsaken-p (file)
+  "True if FILE is unfinished, and the process that was writing it has ended."
+  (let ((name (file-namestring file)) (prefix (unfinished-prefix)))
+    (when (starts-with-subseq prefix name)
+      (let ((number (parse-integer name :start (length prefix) :junk-allowed t)))
+        (and number (not (process-running-p number)))))))
+
+(defun remove-forsaken (directory)
+  "Remove the files in DIRECTORY that were never finished."
+  (dolist (file (uiop:directory-files directory))
+    (when (forsaken-p file) (ignore-errors (delete-file file)))))

@@ -48,6 +48,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number
+           #:take-permissions #:prefix-of-mine #:remove-forsaken
            #:environment-value #:real-microseconds #:run-command #:run-attached
            #:run-filter)
   ;; writing

@@ -20,19 +20,21 @@ the name is illegible."
 (defun call-replacing-file (function file &key (external-format :utf-8) (check #'identity))
   "Call FUNCTION with a stream to a new file of UTF-8, which takes the place of FILE at one stroke
 when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename.
-What FUNCTION writes does not follow the printer's variables. In the EXTERNAL-FORMAT :LATIN-1 each
-character that is written is an octet. CHECK is called with the path of the new file when that is
-written; if it signals an error, FILE is as it was."
-  (let ((path (new-file-for file)))
+FILE keeps its permissions. What FUNCTION writes does not follow the printer's variables. In the
+EXTERNAL-FORMAT :LATIN-1 each character that is written is an octet. CHECK is called with the path
+of the new file when that is written; if it signals an error, FILE is as it was."
+  (let* ((path (new-file-for file)) (directory (uiop:pathname-directory-pathname path)))
+    (remove-forsaken directory)
     ;; The new file's name is rolled for: whoever writes a file rolls on as if he had not.
     (call-with-own-lisps-dice
      (lambda ()
        (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
-                                  :directory (uiop:pathname-directory-pathname path)
-                                  :prefix "ars-magna" :type :unspecific)
+                                  :directory directory :prefix (prefix-of-mine)
+                                  :type :unspecific)
          (printing-plainly () (funcall function out))
          :close-stream
          (funcall check new)
+         (take-permissions new path)
          (replace-file path new))))
     (truename path)))
 
