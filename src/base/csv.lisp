@@ -13,6 +13,36 @@
 
 (document-functions broken-line-text "Return the line that cannot be taken apart.")
 
+;;; Spreadsheets take what begins with = + - or @ for a formula, and carry it out. Such a text, if
+;;; it is no number, has ' before it, which says that it is text; so has one that begins with a '
+;;; already and would be mistaken for that. Reading takes it away.
+
+(defun formula-p (text)
+  "True if TEXT begins as a formula of a spreadsheet does, perhaps after some ' and no others."
+  (declare (type simple-string text))
+  (let ((first (find #\' text :test #'char/=)))
+    (and first (find first "=+-@") t)))
+
+(defun number-text-p (text)
+  "True if TEXT is a number as Lisp writes it."
+  (declare (type simple-string text))
+  (and (find-if #'digit-char-p text)
+       (every (lambda (char) (find char "+-.0123456789/defsDEFS")) text)
+       (realp (let ((*read-eval* nil)) (ignore-errors (read-from-string text))))))
+
+(defun marked (text)
+  "Return TEXT as a spreadsheet is to see it."
+  (if (and (formula-p text) (not (number-text-p text)))
+      (concatenate 'string "'" text)
+      text))
+
+(defun unmarked (text)
+  "Return the text that MARKED made TEXT of."
+  (declare (type simple-string text))
+  (if (and (plusp (length text)) (char= #\' (char text 0)) (formula-p text))
+      (subseq text 1)
+      text))
+
 ;;; Writing.
 
 (defun quotable-p (text)
@@ -32,7 +62,7 @@
 
 (defun csv-line (texts)
   "Return TEXTS, strings, as a line of a table, with its end."
-  (let* ((texts (mapcar #'quoted texts))
+  (let* ((texts (mapcar (lambda (text) (quoted (marked text))) texts))
          (line (make-string (loop for text in texts sum (1+ (length (the string text))))))
          (place 0))
     (declare (type fixnum place))
@@ -91,6 +121,7 @@
 (defun csv-texts (line)
   "Return the texts in LINE, of a table. Signals BROKEN-LINE."
   ;; Most lines have no quotes, and are taken apart faster so.
-  (if (find #\" (the simple-string line))
-      (texts-with-quotes line)
-      (texts-between-commas line)))
+  (let ((texts (if (find #\" (the simple-string line))
+                   (texts-with-quotes line)
+                   (texts-between-commas line))))
+    (if (find #\' (the simple-string line)) (mapcar #'unmarked texts) texts)))
