@@ -79,6 +79,15 @@ others need this thread for meanwhile is done, and what interrupts this thread i
 
 (pushnew 'note-leaving sb-ext:*exit-hooks*)
 
+;; What Lisp compiles in a thread of ours, as for generic functions, is no loss then.
+(defun tell-of-unit (function left-p)
+  "Let FUNCTION tell of the end of a compilation unit, LEFT-P before its end, unless that is so
+since this Lisp is being left."
+  (unless (and left-p *leaving-p* (own-thread-p))
+    (funcall function left-p)))
+
+(wrap-unit-summaries #'tell-of-unit)
+
 (defun join-thread (thread)
   "Wait until THREAD has ended, in whatever way. Return nothing."
   ;; One that was aborted, as from the debugger, makes this an error.

@@ -97,3 +97,10 @@ the name of the file that is being evaluated: if it returns true, FUNCTION's fil
 (defun wrap-compilation-units (wrapper)
   "Call WRAPPER, with SBCL's function and its arguments, where WITH-COMPILATION-UNIT begins a unit."
   (wrap-function (internal-name :sb-c '#:%with-compilation-unit) wrapper))
+
+(defun wrap-unit-summaries (wrapper)
+  "Call WRAPPER, with SBCL's function and whether the unit was left before its end, where the end of
+a unit is told."
+  (if-internal (:sb-c #:summarize-compilation-unit)
+    (wrap-function (internal-name :sb-c '#:summarize-compilation-unit) wrapper)
+    wrapper))

@@ -10,6 +10,8 @@ file. No other folder names such parts of SBCL.")
   (:export #:wrap-function #:unwrap-function #:wrapped-p)
   ;; floats
   (:export #:double-high-bits #:double-bits #:make-double #:make-single)
+  ;; reports
+  (:export #:*report-addition*)
   ;; memory
   (:export #:octets-before-garbage #:scrub-stack #:dynamic-usage #:collections)
   ;; stacks
@@ -35,7 +37,7 @@ file. No other folder names such parts of SBCL.")
   ;; compiler
   (:export #:show-lambda-list #:nested-p #:place-of #:set-place #:call-with-current-place
            #:positions-of-forms #:edited-file #:error-context #:call-with-error-context
-           #:call-as-compiler #:call-as-other-file #:wrap-compilation-units
+           #:call-as-compiler #:call-as-other-file #:wrap-compilation-units #:wrap-unit-summaries
            #:context-original-form)
   ;; reading
   (:export #:form-start #:encapsulated-condition)
