@@ -125,6 +125,19 @@ See reading 120."
     (attribute-redefined old (attribute-of name))
     name))
 
+(defun doubt-attribute-options (definition domain options)
+  "Warn if OPTIONS give an attribute of DOMAIN only the noise of the other kind. Values of numeric
+attributes that are symbols are read right in :success of all cases."
+  (flet ((given-p (option) (nth-value 2 (get-properties options (list option)))))
+    (let ((strange (if (consp domain)
+                       (find-if #'given-p '(:base :max-mult))
+                       (and (not (given-p :base)) (given-p :success) :success))))
+      (when strange
+        (doubt-definition "~A: ~(~S~) is for ~:[readings that are right or wrong; without :base ~
+                           numbers are read exactly~;numbers; the option for values in a list is ~
+                           :success~]."
+                          definition strange (consp domain))))))
+
 (defun attribute-forms (name domain options)
   "Return the forms that DEFATTRIBUTE expands to (reading 119)."
   (let ((definition (title "defattribute" name)))
@@ -133,6 +146,7 @@ See reading 120."
     (check-domain definition domain)
     (check-options definition options
                    '(:success :base :max-mult :noticed :support :supported-by :documentation))
+    (doubt-attribute-options definition domain options)
     (destructuring-bind (&key (success 1) (base 0) (max-mult 1) (support 0) (noticed support)
                            supported-by &allow-other-keys)
         options
