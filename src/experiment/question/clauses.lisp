@@ -147,6 +147,15 @@ true of; or about CLAUSE if there is none at all."
                          ~A?~]"
                         name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
 
+(defun doubt-measures (clauses)
+  "Warn of a measure of CLAUSES that is a call with a robot, without a name before it."
+  (loop with robots = (clause-called :robots clauses)
+        for (name form) in (clause-called :measure clauses)
+        when (and (fboundp name) (symbolp form) (member form robots))
+          do (doubt-definition "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
+                                it first: (:measure (NAME (~A ~A)))."
+                               name form name form name form)))
+
 ;;; A plan's name.
 
 (defun quoted-name (form)
@@ -230,4 +239,5 @@ true of; or about CLAUSE if there is none at all."
                 :test (lambda (name case) (assoc name (rest case))))
       (reject-clause definition part "something that the :conditions do not vary already")))
   (check-column-names definition clauses)
+  (doubt-measures clauses)
   (doubt-unused clauses))
