@@ -42,13 +42,20 @@ variables in ENVIRONMENT."
                    for trouble = (variable-trouble variable environment)
                    when trouble return (format nil "~(~S~) ~A" variable trouble))))))
 
+(defun forgotten-parameters-text (parameters environment)
+  "Return in a sentence that PARAMETERS are a form of the body, if they are like one; or NIL."
+  (and (typep parameters '(cons symbol))
+       (known-function-p (first parameters) environment)
+       "The list of parameters stands before the body; write () if there are none"))
+
 (defun plain-parameters (parameters form environment &optional (definition (author)))
   "Return PARAMETERS, of FORM in DEFINITION, without types. Signals MALFORMED-DEFINITION unless they
 are a lambda list."
   (flet ((reject (trouble)
            (reject-clause definition (if (consp parameters) parameters form)
-                          (format nil "an ordinary lambda list, such as (a &optional b &key c); ~A"
-                                  trouble))))
+                          (format nil "an ordinary lambda list, such as (a &optional b &key c); ~
+                                       ~A~@[. ~A~]"
+                                  trouble (forgotten-parameters-text parameters environment)))))
     (unless (proper-list-p parameters) (reject "this is no list that ends"))
     (let* ((plain (untyped-lambda-list parameters definition))
            (trouble (parameters-trouble plain environment)))

@@ -117,7 +117,15 @@ for its resource, and such lists for all that follows. The type is NIL where non
     (reject-clause definition (list option value) (argument-type-text type)))
   value)
 
+(defmethod advice-on-use ((operator (eql 'defmanipulation)) form)
+  (and (consp (cddr form))
+       (null (cdddr form))
+       "the list of options stands behind the parameters, () if there are none"))
+
 (defun check-method-options (definition options)
+  (unless (typep options '(or null (cons keyword)))
+    (reject-clause definition options
+                   "a list of options before the body, such as (:success 9/10), or () for none"))
   (check-options definition options '(:success :delay)))
 
 (defun outdated-p (name method source)
