@@ -2,10 +2,17 @@
 
 (in-package :ars-magna.rpl.constructs)
 
+(defun valve-advice (value)
+  "Return in words what to give for VALUE, which is no valve."
+  (format nil "a valve, made by make-valve~@[: ~(~A~) without a quote, if that is a variable for ~
+               one~]"
+          (and value (symbolp value) (not (keywordp value)) (not (eq t value)) value)))
+
 (defun valve-meant (object)
   "Return the valve here that OBJECT, perhaps a fluent, stands for. Signals WRONG-ARGUMENT."
   (let ((valve (fluent-value object)))
-    (check-argument with-valve valve (valve-p valve) "a valve, made by make-valve")
+    (unless (valve-p valve)
+      (reject-argument 'with-valve 'valve valve (valve-advice valve)))
     (here valve)))
 
 (defun checked-claim (priority valves task)

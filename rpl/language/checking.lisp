@@ -122,9 +122,17 @@ right."
                    lambda, or another form that only Lisp runs."
                   (first form))))
 
+(defun list-slip (part expected)
+  "Return in words that PART, a name, perhaps quoted, stands where a list like EXPECTED should."
+  (let ((name (if (typep part '(cons (eql quote) (cons symbol null))) (second part) part)))
+    (and name
+         (symbolp name)
+         (not (member (first expected) lambda-list-keywords))
+         (format nil "~(~S~): write (~(~A~))" part name))))
+
 (defun slip-in-construct (form lambda-list)
   "Return in words the keyword in FORM, a construct's, or in a list of options there, that is none
-of LAMBDA-LIST's, or NIL."
+of LAMBDA-LIST's, or what stands there for such a list; or NIL."
   (let ((shape (shape-of lambda-list)))
     (and (proper-list-p form)
          (or (and (consp (shape-keys shape))
@@ -133,7 +141,8 @@ of LAMBDA-LIST's, or NIL."
                    for expected in lambda-list
                    until (member expected lambda-list-keywords)
                    thereis (and (consp expected)
-                                (slip-in-construct (cons (first form) part) expected)))))))
+                                (or (list-slip part expected)
+                                    (slip-in-construct (cons (first form) part) expected))))))))
 
 ;;; Commands. They tell a continuation of their end, and no fluent, when they are not given by the
 ;;; plan's own functions.

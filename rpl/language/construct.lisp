@@ -83,9 +83,10 @@ the first one, as arguments come before bodies."
                        `(,documentation
                          (declare (ignorable ,@(element-names lambda-list)))
                          ,in-lisp))
-      `(defmacro ,name (&whole form ,@lambda-list)
+      ;; Outside of plans it does not matter whether the form fits.
+      `(defmacro ,name (&whole form &rest arguments)
          ,documentation
-         (declare (ignore ,@(element-names lambda-list)))
+         (declare (ignore arguments))
          (list 'in-plans-only form))))
 
 (defun construct-code-form (node clauses)
