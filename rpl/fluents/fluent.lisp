@@ -107,6 +107,7 @@ counts."
 
 (document-functions
  make-watcher "Return somebody who is to be told of a fluent by a function, on behalf of a client."
+ fluent-pulses "Return how often the fluent, a base fluent, was pulsed."
  watcher-p "True of watchers."
  watcher-fluent "Return the fluent that the watcher watches."
  watcher-wake "Return the function that is called when the fluent is heard to be true: see WATCHER."

@@ -14,7 +14,7 @@ no plan.")
   (:use :cl :ars-magna.base)
   (:local-nicknames (:lifted :ars-magna.rpl.lifted))
   ;; fluent
-  (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
+  (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p #:fluent-pulses
            #:make-watcher #:state #:watcher #:watcher-client #:watcher-wake #:watcher-pending
            #:watcher-fluent #:watcher-p #:define-membership)
   ;; network

@@ -46,15 +46,37 @@
          (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))
          text)))
 
+(defun advice-alone (plan)
+  "Return in sentences why PLAN, the name of one that runs without a robot, waits for one in vain."
+  (format nil "RUN-PLAN-ALONE runs ~A without a robot: no ticks of a run pass, in which commands ~
+               could end. Run it on the robot: (with-simulation (ROBOT) (run-plan '~:*~A)), or ~
+               live (simulator 'ROBOT) and (run-plan '~:*~A)." plan))
+
 (defun command-advice (tasks)
   "Return in a sentence which command the plan of TASKS, which wait for the robot, has given last."
-  (let* ((task (first tasks)) (plan (task-label (task-top task))))
-    (multiple-value-bind (name part) (last-command (runner-client (task-runner task)) task)
-      (if name
-          (format nil "The last one of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
-                       end~]." plan name (end-elsewhere name part tasks))
-          (format nil "~A has given none by a function such as rpl-robot-turn; plans do not ~
-                       hear of others." plan)))))
+  (let* ((task (first tasks)) (plan (task-label (task-top task)))
+         (client (runner-client (task-runner task))))
+    (multiple-value-bind (name part) (and client (last-command client task))
+      (cond
+        ((null client) (advice-alone plan))
+        (name
+         (format nil "The last one of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
+                      end~]." plan name (end-elsewhere name part tasks)))
+        (t (format nil "~A has given none by a function such as rpl-robot-turn; plans do not ~
+                        hear of others." plan))))))
+
+;; Whatever has pulsed a fluent that is waited for itself came before the wait.
+(defun missed-pulses-text (tasks)
+  "Return in a sentence that a fluent that one of TASKS waits for was pulsed before; or NIL."
+  (let ((fluent (find-if (lambda (subject)
+                           (and (fluent-p subject)
+                                (equal (list subject) (base-fluents subject))
+                                (not (robots-fluent-p subject))
+                                (plusp (fluent-pulses subject))))
+                         (mapcar (lambda (task) (traced-subject (task-awaiting task))) tasks))))
+    (and fluent
+         (format nil "~A has been pulsed ~D time~:P so far, before this wait began; a wait hears ~
+                      only pulses that come later." (fluent-text fluent) (fluent-pulses fluent)))))
 
 ;;; What does not end.
 
@@ -87,13 +109,14 @@
     (multiple-value-bind (robots others) (split-fluents (fluents-awaited tasks))
       (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is under way: ~
                    give one before you wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
-                   ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~A~]"
+                   ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~A~]~@[ ~A~]"
               (and valueless (no-fluent-advice valueless))
               (and robots
                    (format nil "~{~A~^, ~} change~:[s~;~]"
                            (mapcar #'fluent-text robots) (rest robots)))
               (and robots (command-advice tasks))
               (remove-duplicates (mapcar #'fluent-text others) :test #'string=)
+              (missed-pulses-text tasks)
               (endless-advice tasks)))))
 
 ;;; Reports.
