@@ -9,7 +9,8 @@
   :serial t
   :components
   ((:module "src/host" :serial t
-    :components ((:file "package") (:file "versions") (:file "wrapping") (:file "floats")
+    :components ((:file "package") (:file "versions") (:file "wrapping") (:file "reports")
+                 (:file "floats")
                  (:file "memory") (:file "stacks") (:file "interrupts") (:file "instances")
                  (:file "interpreter") (:file "closures") (:file "code") (:file "environments")
                  (:file "compiler") (:file "reading") (:file "random-state") (:file "debugger")
@@ -18,7 +19,7 @@
     :components ((:file "package") (:file "policy") (:file "public") (:file "floats")
                  (:file "numbers") (:file "globals") (:file "tables") (:file "atomic")
                  (:file "classes") (:file "packages")
-                 (:file "printing") (:file "files") (:file "code")
+                 (:file "printing") (:file "files") (:file "kinds-of-files") (:file "code")
                  (:file "processes") (:file "environments") (:file "undefined")
                  (:file "compiling") (:file "limits")
                  (:file "stacks") (:file "debuggers") (:file "abridging") (:file "conditions")
@@ -38,7 +39,7 @@
                  (:file "manners") (:file "copying") (:file "holding") (:file "fields")
                  (:file "contradictions")
                  (:file "given")
-                 (:file "argument-types") (:file "operators")))
+                 (:file "argument-types") (:file "lisp-slips") (:file "operators")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
                  (:file "intervals") (:file "angles")))
@@ -174,6 +175,7 @@
                  (:file "wishes") (:file "reacting") (:file "forking") (:file "handles") (:file "rewinding")
                  (:file "watching") (:file "thread") (:file "starting") (:file "accessors")
                  (:file "outcomes") (:file "commands") (:file "runs") (:file "stranded")
+                 (:file "cut-off")
                  (:file "seeing")))
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
@@ -470,7 +472,8 @@
                  (:file "experiment-compare-levels")
                  (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "unseen")
                  (:file "beginners") (:file "beginners-more") (:file "beginners-slips")
-                 (:file "beginners-words") (:file "projecting")
+                 (:file "beginners-words") (:file "beginners-ends")
+                 (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")

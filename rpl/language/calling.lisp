@@ -94,5 +94,5 @@ so (ours).")
     (when (nisps-own name)
       (reject-use "There is no plan procedure or function ~S; NISP has one. Write (in-package ~
                    :ars-user), or use the package NISP in yours." name))
-    (reject-name "plan procedure or function" name (mapcar #'procedure-name (all-procedures))
+    (reject-name "plan procedure or function" name (procedures-to-offer)
                  (known-operators (or (symbol-package name) *package*)))))

@@ -24,8 +24,11 @@
     twin))
 
 ;; What this thread is at cannot be gone on with elsewhere.
+(defmethod participant-around-p ((interface interface))
+  (and (holding-p interface) (not (interface-resting-p interface))))
+
 (defmethod check-forkable ((interface interface))
-  (when (and (holding-p interface) (not (interface-resting-p interface)))
+  (when (participant-around-p interface)
     (refuse-fork "a plan is at work here. In the text of a plan PROJECT and TRY-BEST fork the run ~
                   when the plans have come to rest.")))
 

@@ -4,7 +4,8 @@
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world
-                #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p #:warn-once)
+                #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p #:warn-once
+                #:said-p #:note-looked-after)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
@@ -24,6 +25,7 @@
                 #:participant-digest #:participant-end
                 #:participant-copy #:participant-at-rest #:check-forkable
                 #:call-as-participant-makes-way #:participant-unfinished
+                #:participant-cut-off #:participant-around-p
                 #:fork-simulation #:refuse-fork
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
                 #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*
@@ -49,7 +51,7 @@
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p
-                #:hear-of-trouble #:*realm*
+                #:hear-of-trouble #:note-seen #:*realm*
                 #:give-back-all #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete

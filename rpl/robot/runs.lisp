@@ -199,7 +199,9 @@ place. Signals UNKNOWN-NAME and MISUSE."
 (defun plans ()
   "Return a list of the tasks of the plans under way, in order of their start."
   (let ((interface (usable-interface)))
-    (and interface (tasks-of interface))))
+    (when interface
+      (note-seen interface)
+      (tasks-of interface))))
 
 (defun want-end (interface task)
   "Let TASK of INTERFACE, or all if it is NIL, evaporate when its runner gets to that."

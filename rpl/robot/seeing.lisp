@@ -25,9 +25,10 @@
 
 (defun call-with-plans-in-use (function)
   "Call FUNCTION with the runner of the plans in use, none of which goes on meanwhile, or with NIL."
-  (if *interface*
-      (with-plans (*interface*) (funcall function (interface-runner *interface*)))
-      (funcall function nil)))
+  (cond (*interface*
+         (note-seen *interface*)
+         (with-plans (*interface*) (funcall function (interface-runner *interface*))))
+        (t (funcall function nil))))
 
 (setf *still* (lambda (function)
                 (call-with-plans-in-use (lambda (runner)

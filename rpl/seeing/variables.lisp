@@ -10,11 +10,16 @@
   (loop for frame = (task-frame task) then (frame-up frame)
         while frame collect frame))
 
+(defun note-task-seen (task)
+  "Note that somebody looks at TASK."
+  (when (task-runner task) (note-seen (runner-client (task-runner task)))))
+
 (addition task-stack)
 (defun task-stack (task)
   "Return the expressions that TASK is at, as lists, innermost first: only its own, not those of the
 tasks that it is part of. Each call of a plan has one of its own. () when it is over."
   (check-argument task-stack task (task-p task) "a task, as begin-plan returns")
+  (note-task-seen task)
   (forms-under-way (task-frame task)))
 
 ;;; Variables.
@@ -99,4 +104,5 @@ list (name value), with the outermost expression that sees it."
   "Return the variables of the plan that TASK sees where it is, as a list of lists (name value),
 innermost first, but for those that others of the same name hide. () when it is over."
   (check-argument task-variables task (task-p task) "a task, as begin-plan returns")
+  (note-task-seen task)
   (and (task-frame task) (frame-variables (task-frame task))))

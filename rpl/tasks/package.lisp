@@ -40,6 +40,7 @@ plans nor a simulator.")
            #:runner-dice #:runner-lisps-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
            #:runner-note #:runner-serial #:runner-alive #:client-forked-p #:hear-of-trouble
+           #:note-seen
            #:runner-trace #:runner-client #:*plan-task-limit*)
   ;; words
   (:export #:note-word #:task-now)
@@ -61,7 +62,8 @@ plans nor a simulator.")
   (:export #:note-twin #:has-twin-p #:twin-text #:end-text #:last-command)
   ;; procedure
   (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list
-           #:reject-lisp-call #:all-procedures #:anonymous-procedure #:declare-procedure
+           #:reject-lisp-call #:all-procedures #:procedures-to-offer #:anonymous-procedure
+           #:declare-procedure
            #:defined-p #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure
            #:make-procedure #:procedure #:procedure-body #:procedure-entry
            #:check-arguments #:procedure-lambda-list #:procedure-name #:procedure-name-p

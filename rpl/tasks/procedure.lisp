@@ -59,6 +59,11 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
   "Return a list of all plan procedures that are defined, in order of definition."
   (remove-if-not #'defined-p (registered-procedures)))
 
+(defun procedures-to-offer ()
+  "Return the names of all plan procedures that are defined, the newest of users first."
+  (remove-if-not (lambda (name) (defined-p (registered-procedure name)))
+                 (names-to-offer *procedures*)))
+
 (defun live-namesake (name)
   "Return the live procedure defined last of those called NAME in any package, or NIL."
   (find-if (lambda (procedure)
@@ -90,7 +95,7 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
   (let ((remedy (plan-remedy name)))
     (if remedy
         (error 'unknown-name :kind "plan procedure" :name name :remedy remedy)
-        (reject-name "plan procedure" name (mapcar #'procedure-name (all-procedures))))))
+        (reject-name "plan procedure" name (procedures-to-offer)))))
 
 (defun find-procedure (name &optional (errorp t))
   "Return the plan procedure called NAME, a symbol or string: that of the very symbol, or else the

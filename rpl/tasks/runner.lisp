@@ -90,6 +90,12 @@ as it needs. CLIENT is on whose behalf all this is."
   (:method (client copier) (declare (ignore client copier)) nil))
 
 ;; What tasks go through that others than plans may want to know.
+(defgeneric note-seen (client)
+  (:documentation "Note that somebody looks at the plans of CLIENT, what a runner runs them for.")
+  (:method (client)
+    (declare (ignore client))
+    nil))
+
 (defgeneric hear-of-trouble (client task failure)
   (:documentation "In TASK, of plans of CLIENT, FAILURE has just happened, which something may take
 care of; or, if FAILURE is NIL, TASK is a part of a plan that somebody has just ended.")

@@ -21,12 +21,12 @@
    (expected :initarg :expected :reader wrong-argument-expected))
   (:report (lambda (condition stream)
              (let ((*print-circle* nil))
-               (format stream "~(~A~): ~(~A~) is ~S; give ~A."
+               (format stream "~(~A~): ~(~A~) is ~S; give ~A"
                        (wrong-argument-operator condition)
                        (wrong-argument-name condition)
                        (let ((value (wrong-argument-value condition)))
                          (if (pathnamep value) (shown-name value) (abridged value)))
-                       (wrong-argument-expected condition)))))
+                       (sentence (wrong-argument-expected condition))))))
   (:documentation "A function was called with an argument that it cannot use."))
 
 (defun reject-argument (operator name value expected)

@@ -90,7 +90,8 @@ none; and true. Return false as a third value for other types."
                       (range-words datum type)
                       (class-words type)))
            (value (safe-text datum :length 100)))
-      (cond (words (format nil "The value ~A is not ~A." value words))
+      (cond (words (format nil "The value ~A is not ~A.~@[ ~A~]"
+                           value words (type-slip-text datum type)))
             ((member (type-of condition) '(type-error simple-type-error))
              (format nil "The value ~A is not one that can be used here." value))))))
 
@@ -135,7 +136,8 @@ none; and true. Return false as a third value for other types."
   "Return our text for CONDITION, that a name means nothing, or NIL."
   (let ((name (unqualified-text (cell-error-name condition))))
     (typecase condition
-      (undefined-function (format nil "The function ~A is undefined." name))
+      (undefined-function (format nil "The function ~A is undefined.~@[ ~A~]"
+                                  name (function-slip-text (cell-error-name condition))))
       (unbound-variable (format nil "The variable ~A has no value.~@[ Did you mean ~A?~]"
                                 name
                                 (or (code-slip (cell-error-name condition))

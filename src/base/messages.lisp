@@ -47,7 +47,8 @@ end; or :AT-ONCE of one that is shown as it comes if nobody listens, as the run 
 that reports) after each message is queued. ERROR-POLICY says what becomes of errors in users'
 code: TROUBLES are the latest of them, the newest first, UNSIGNALLED is the first that is to be
 signalled, see troubles.lisp. SEEN is the end of NEWEST-FIRST that nobody needs to be shown. If
-ECHOED, a table, errors are shown as they come where nobody listens; the table counts them. LOCK
+ECHOED, a table, errors are shown as they come where nobody listens; the table counts them. READ-P
+is true once somebody has read messages. LOCK
 guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked without it."
   (lock (make-lock "messages") :read-only t)
   (newest-first '() :type list)
@@ -56,6 +57,7 @@ guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked wit
   (listener nil :type (or null function))
   (error-policy :report :type (member :report :signal :collect))
   (seen '() :type list)
+  (read-p nil :type boolean)
   (troubles '() :type list)
   (unsignalled nil :type (or null message))
   (echoed nil :type (or null hash-table) :read-only t))
@@ -70,6 +72,8 @@ guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked wit
       "True if users' code has been told otherwise of what the message tells of."
       (documentation 'message-run 'function) "Return the run that the message belongs to, or NIL."
       (documentation 'make-message-queue 'function) "Return a new, empty queue of messages."
+      (documentation 'message-queue-read-p 'function)
+      "True if somebody has read messages of the queue, or looked whether there are any."
       (documentation 'message-queue-listener 'function)
       "Return the function that is called after each message is queued, or NIL. Can be set."
       (documentation 'make-message 'function)
@@ -157,6 +161,7 @@ nothing."
   "Empty QUEUE. Return its messages, oldest first, at most *MESSAGE-LIMIT* of them. If older
 ones were forgotten, a warning that says how many comes first."
   (with-lock ((message-queue-lock queue))
+    (setf (message-queue-read-p queue) t)
     (let* ((messages (message-queue-newest-first queue))
            (kept (subseq messages 0 (min (length messages) *message-limit*)))
            (forgotten (+ (message-queue-forgotten queue) (- (length messages) (length kept)))))

@@ -47,7 +47,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:unusable-file-text #:shown-name
            #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
-           #:host-name #:process-number
+           #:host-name #:process-number #:file-advice
            #:take-permissions #:prefix-of-mine #:remove-forsaken
            #:environment-value #:real-microseconds #:run-command #:run-attached
            #:run-filter)
@@ -142,6 +142,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:registry #:define-registry #:registry-objects #:register
            #:*definition-listener* #:seal-definitions #:lookup-entry #:from-this-file-p
            #:entry-name #:entry-object #:entry-source #:entry-digest #:registry-entries #:users-p
+           #:names-to-offer
            #:current-form-digest #:form-digest #:file-digest #:text-checksum #:name-string
            #:defined-names #:find-definition #:all-definitions #:definition-to-replace
            #:variable-in-use-p
@@ -152,7 +153,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:error-set #:warning-set #:warn-at-once #:message-set #:error-display
            #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
-           #:copy-message-queue #:message-queue-listener #:message-queue-error-policy
+           #:copy-message-queue #:message-queue-read-p #:message-queue-listener
+           #:message-queue-error-policy
            #:message #:message-kind #:message-items #:message-asker
            #:message-robot #:message-told-p #:*robot-told-of* #:message-run
            #:*run-that-reports* #:*told-of*

@@ -110,12 +110,18 @@ called just so is looked for in upper case."
   "Return the names defined in REGISTRY, in order."
   (mapcar #'entry-name (registry-entries registry)))
 
+(defun names-to-offer (registry)
+  "Return the names defined in REGISTRY, those of users first, the newest of these before others."
+  (let ((entries (registry-entries registry)))
+    (mapcar #'entry-name (append (reverse (remove-if-not #'users-p entries))
+                                 (remove-if #'users-p entries)))))
+
 (defun find-definition (name registry errorp)
   "Return the object in REGISTRY that is called NAME. If there is none, return NIL, or signal
 UNKNOWN-NAME if ERRORP is true."
   (let ((entry (lookup-entry name registry)))
     (cond (entry (entry-object entry))
-          (errorp (reject-name (registry-text registry) name (defined-names registry))))))
+          (errorp (reject-name (registry-text registry) name (names-to-offer registry))))))
 
 (defun from-this-file-p (name registry)
   "True if NAME in REGISTRY is from the file that is being loaded, which may yet define it anew."

@@ -130,6 +130,8 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
   (check-readable file)
   (when (member (first-octets file 2) '("P2" "P5") :test #'string=)
     (reject-floor file nil "this is an image; give the .yaml file that names it"))
+  (let ((advice (file-advice file :floor)))
+    (when advice (reject-floor file nil "~A" advice)))
   (let ((size (with-open-file (in file :element-type '(unsigned-byte 8)) (file-length in))))
     (when (< +most-octets+ size)
       (reject-floor file nil "it has ~D bytes, and the description of a floor at most ~D; give the ~

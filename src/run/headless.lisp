@@ -17,7 +17,8 @@
              (or (simulation-ticking-p simulation)
                  (timeline-passing-p (simulation-timeline simulation))))
     (reject-use "run-ticks: a tick is under way; time cannot pass inside it, as in a continuation. ~
-                 A plan can be begun there, by (begin-plan ...) instead of (run-plan ...).")))
+                 A plan can be begun there, by (begin-plan ...) instead of (run-plan ...); a plan ~
+                 waits by (wait-time N).")))
 
 (defun await-free (simulation)
   "Wait a moment for another thread that has SIMULATION in custody only to look at it. Signals
@@ -60,6 +61,15 @@ continuations."
       (if gate (pass-gate count simulation gate) (pass-freely count simulation))
       (setf (timeline-passing-p timeline) nil))))
 
+(defun doubt-passing (operator simulation)
+  "Say once if a step of a plan calls OPERATOR, which lets ticks of SIMULATION pass before the plan
+goes on."
+  (when (some #'participant-around-p (simulation-participants simulation))
+    (warn-once (list :in-plan operator) (simulation-world simulation)
+               (format nil "~(~A~) was called inside of a step of a plan, which stands still ~
+                            meanwhile. A plan waits by (wait-time N) or (wait-until TEST)."
+                       operator))))
+
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
   "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. A fork
@@ -69,6 +79,7 @@ in users' code are to be signalled, USER-CODE-ERROR after the tick in which one 
 restart CONTINUE that lets the other ticks pass."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
   (let ((simulation (going-on simulation)))
+    (doubt-passing :run-ticks simulation)
     (prog1 (pass-ticks-of simulation count)
       (look-after-ticks simulation))))
 
@@ -103,11 +114,26 @@ restart CONTINUE that lets the other ticks pass."
         until (or (simulation-over simulation) (<= last (simulation-tick simulation))))
   (simulation-tick simulation))
 
+(defun tell-of-limit (limit simulation)
+  "Say once in the run of SIMULATION that RUN-UNTIL has met LIMIT, which nobody has asked for."
+  (warn-once '(:limit :run-until) (simulation-world simulation)
+             (format nil "run-until: its test was still false after ~D ticks, at tick ~D, and it ~
+                          returned NIL. ~D is the default; (run-until TEST :limit TICKS) sets ~
+                          another."
+                     limit (simulation-tick simulation) limit)))
+
+(defun note-how-met (answer limit-p limit simulation)
+  "Note that RUN-UNTIL has come to an end in SIMULATION: by ANSWER, or if that is NIL by LIMIT,
+which the program has given if LIMIT-P."
+  (cond (answer (note-looked-after (simulation-world simulation)))
+        ((not (or limit-p (simulation-over simulation))) (tell-of-limit limit simulation))))
+
 (addition run-until)
-(defun run-until (predicate &key (limit 100000) (simulation (current-simulation)))
+(defun run-until (predicate &key (limit 100000 limit-p) (simulation (current-simulation)))
   "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
-true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit.
-Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
+true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit, of which
+a warning tells once in a run if none was given. Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS
+does."
   (check-argument run-until predicate (or (functionp predicate)
                                         (and (symbolp predicate) (fboundp predicate)))
                   "a function of no arguments, such as (lambda () (< 9 (simulation-tick)))")
@@ -115,10 +141,12 @@ Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
   (let ((simulation (going-on simulation)))
     (check-headless simulation 'run-until)
     (check-not-over simulation 'run-until)
+    (doubt-passing :run-until simulation)
     (let ((answer (loop for left downfrom limit
                         thereis (funcall predicate)
                         until (zerop left)
                         do (pass-ticks-of (going-on simulation) 1))))
+      (note-how-met answer limit-p limit (going-on simulation))
       (look-after-ticks (going-on simulation))
       (values answer (simulation-tick simulation)))))
 
@@ -238,17 +266,37 @@ nothing."
                    (run-plan ...) instead of (begin-plan ...)~]."
               undone plans))))
 
+(defun cut-off-text (simulation)
+  "Return in sentences what the end of SIMULATION cuts off, and a remedy; NIL if there is nothing,
+or the program has looked itself at what was under way."
+  (let ((cut-off (and (not (looked-after-p (simulation-world simulation)))
+                      (loop for participant in (simulation-participants simulation)
+                            append (participant-cut-off participant)))))
+    (when cut-off
+      (format nil "At the end of with-simulation, at tick ~D, ~{~A~^, ~} had not ended and ~
+                   ~:[was~;were~] cut off. Call (run-ticks N) with more ticks, or (run-plan ...) ~
+                   instead of (begin-plan ...)."
+              (simulation-tick simulation) cut-off (rest cut-off)))))
+
+(defun text-at-end (simulation)
+  "Return in sentences what was asked for in SIMULATION, which ends, and came to nothing; or NIL."
+  (if (zerop (simulation-tick simulation))
+      (let ((undone (undone-text simulation)))
+        (and undone (format nil "No ticks have passed in with-simulation, so ~A" undone)))
+      (and (eq :report (message-queue-error-policy (simulation-messages simulation)))
+           ;; Who reads messages looks after the plans.
+           (not (message-queue-read-p (simulation-messages simulation)))
+           (eq simulation (latest simulation))
+           (cut-off-text simulation))))
+
 (defun look-at-end (simulation left-p)
-  "Say so if something was asked for in SIMULATION, whose run is to end, and no tick has passed;
-but not if the run is LEFT-P, as by an error, or ticks may have passed in a fork."
-  (let ((undone (and (not left-p)
-                     (not (simulation-forked-p simulation))
-                     (zerop (simulation-tick simulation))
-                     (undone-text simulation))))
-    (when undone
-      (queue-message (make-message :warning
-                                   (list "No ticks have passed in with-simulation, so " undone)
-                                   :notable-p t)
+  "Say so if something was asked for in SIMULATION, whose run is to end, and no tick has passed, or
+too few have; but not if the run is LEFT-P, as by an error, or ticks may have passed in a fork."
+  (let ((text (and (not left-p)
+                   (not (simulation-forked-p simulation))
+                   (text-at-end simulation))))
+    (when text
+      (queue-message (make-message :warning (list text) :notable-p t)
                      (simulation-messages simulation)))))
 
 (defvar *rewound-end-hooks* '()

@@ -19,6 +19,8 @@
                      (damaged-file-reason condition))))
   (:documentation "A file that should hold a journal cannot be used."))
 
+(defmethod kind-damaged ((damage (eql 'damaged-journal))) :journal)
+
 ;;; Writing.
 
 (defun check-printable (journal)

@@ -14,6 +14,8 @@
                      (damaged-file-reason condition))))
   (:documentation "A file that should hold a saved run cannot be used."))
 
+(defmethod kind-damaged ((damage (eql 'damaged-simulation))) :run)
+
 ;;; The head.
 
 (defun check-saved-head (datum)

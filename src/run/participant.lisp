@@ -94,3 +94,16 @@ Meanwhile what PARTICIPANT does in another thread stops as soon as it can.")
   (:method (participant)
     (declare (ignore participant))
     '()))
+
+(defgeneric participant-around-p (participant)
+  (:documentation "True if PARTICIPANT does something around this call, as a step of a plan.")
+  (:method (participant)
+    (declare (ignore participant))
+    nil))
+
+(defgeneric participant-cut-off (participant)
+  (:documentation "Return in words, in a list, what PARTICIPANT has begun that the end of the run
+cuts off, though it would have ended by itself, such as \"the plan p\".")
+  (:method (participant)
+    (declare (ignore participant))
+    '()))

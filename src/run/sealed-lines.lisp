@@ -90,6 +90,12 @@ file of bytes, or too long."
       (error "it has ~D bytes, more than such files have" (file-length in)))
     (with-homeless-symbols () (funcall function in))))
 
+(defgeneric kind-damaged (damage)
+  (:documentation "Return the kind of the files that the class of conditions DAMAGE tells of.")
+  (:method (damage)
+    (declare (ignore damage))
+    nil))
+
 (defun call-reading-file (function file damage)
   "Return what FUNCTION returns; if it signals an error other than UNKNOWN-NAME, signal one of the
 class DAMAGE, which says that FILE is to blame."
@@ -98,7 +104,8 @@ class DAMAGE, which says that FILE is to blame."
     (stream-error ()
       (error damage :file file :reason "the system does not let it be read"))
     ((or error storage-condition) (trouble)
-      (error damage :file file :reason (one-line-text trouble)))))
+      (error damage :file file :reason (or (file-advice file (kind-damaged damage))
+                                           (one-line-text trouble))))))
 
 (defun reason-of-refusal (trouble)
   "Return why READING-FILE has refused a file, by the condition TROUBLE, as a part of a sentence."

@@ -76,7 +76,8 @@
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing
            #:destroyed-thing #:tell-if-in-wall)
   ;; saying
-  (:export #:first-time-p #:warn-once #:doubt-angle)
+  (:export #:first-time-p #:said-p #:note-looked-after #:looked-after-p
+           #:warn-once #:doubt-angle)
   ;; undeclared
   (:export #:note-strange-name #:warn-of-slips #:value-like)
   ;; kickers

@@ -22,6 +22,14 @@
       (push key (world-noted-names world))
       t)))
 
+(defun note-looked-after (world)
+  "Note that the program has looked itself at what was under way in the run of WORLD."
+  (first-time-p '(:looked-after) world))
+
+(defun looked-after-p (world)
+  "True if the program has looked itself at what was under way in the run of WORLD."
+  (said-p '(:looked-after) world))
+
 (defun warn-once (key world items &key (notable t))
   "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had one about KEY,
 such as a list of a topic and a name. It is shown like an error if nobody reads it and NOTABLE is

@@ -174,8 +174,11 @@ if it is nowhere."
 
 (defun not-a-thing-text (value)
   "Return in words how to have a thing, for somebody who gave VALUE instead."
-  (format nil "such as (find-thing '~:[NAME~;~:*~(~A~)~]) returns"
-          (and value (symbolp value) (not (keywordp value)) value)))
+  (format nil "such as (find-thing '~:[NAME~;~:*~(~A~)~]) returns~:[~;, which is NIL where nothing ~
+               is called NAME~@[: ~A~]~]"
+          (and value (symbolp value) (not (keywordp value)) value)
+          (null value)
+          (missed-name-text)))
 
 (define-argument-type 'thing #'thing-p "a thing" #'not-a-thing-text)
 

@@ -179,6 +179,8 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   "Return the path of DIRECTORY, in which there is a table. Signals MISUSE."
   (let ((path (directory-called directory)))
     (unless (existing-path (rows-file path))
+      (let ((advice (file-advice (path-called directory) nil)))
+        (when advice (reject-use "~A is no directory of an experiment: ~A." directory advice)))
       (reject-use "There is no rows.csv in ~A. Give the directory of an experiment."
                   (native-name path)))
     path))

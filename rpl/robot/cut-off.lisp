@@ -1,0 +1,35 @@
+;;;; cut-off.lisp -- plans that were begun, headless, and that the end of the run cuts off.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; Programs begin plans that never end, and stop when they have seen enough. Loops and policies say
+;;; so, and RUN-UNTIL, PRINT-PLANS and the like do, see NOTE-LOOKED-AFTER. What is left are plans
+;;; that would have ended, had more ticks passed.
+
+(defun watches-anywhere-p (task)
+  "True if TASK or a part of it is in a loop, or waits for whatever may come."
+  (or (watches-p task)
+      (some #'watches-anywhere-p (task-children task))))
+
+(defun told-stranded-p (interface task)
+  "True if it was said of TASK, of the plans of INTERFACE, that it waits in vain."
+  (said-p (list :stranded (task-label task))
+          (simulation-world (interface-simulation interface))))
+
+(defun cut-off-p (interface task)
+  "True if TASK, of the plans of INTERFACE, is under way and would have ended by itself."
+  (not (or (task-parent task)
+           (task-over-p task)
+           (member task (interface-unwanted interface))
+           (told-stranded-p interface task)
+           (watches-anywhere-p task))))
+
+(defmethod note-seen ((interface interface))
+  (note-looked-after (simulation-world (interface-simulation interface))))
+
+(defmethod participant-cut-off ((interface interface))
+  (when (interface-valid-p interface)
+    (with-plans (interface)
+      (loop for task in (tasks-of interface)
+            when (cut-off-p interface task)
+              collect (format nil "the plan ~A" (task-label task))))))
