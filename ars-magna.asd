@@ -271,7 +271,8 @@
                    (:file "search") (:file "tabbing") (:file "standard")
                    (:file "ahead") (:file "handed-text")))
      (:module "prompt" :serial t
-      :components ((:file "user-names") (:file "reporting") (:file "repetition")
+      :components ((:file "user-names") (:file "reporting") (:file "line-askers")
+                   (:file "repetition")
                    (:file "flooding") (:file "session") (:file "visit")
                    (:file "company") (:file "listening") (:file "whereabouts") (:file "going-on")
                    (:file "line")

@@ -77,6 +77,28 @@ turn 1
 (camera-turn (elt !>dot.cameras 0) 1)
 resume" "--rate" "free")))))
 
+(test scripts.tell-of-what-waited-with-the-line-that-has-asked-for-it
+  "Not with that of RESUME, also if it is Lisp, or the end of a plan."
+  (flet ((script (&rest options)
+           (apply #'run-script "(def-interp-proc give-up () (wait-time 2) (fail))
+pause
+turn 1
+(camera-turn (elt !>dot.cameras 0) 1)
+plan give-up
+resume
+turn 1" "--rate" "free" options)))
+    (is-true (find-if (lambda (line) (has-words-p line "line 5: give-up failed")) (script)))
+    (let ((objects (script "--json")))
+      (loop for (line . words) in '((3 "Robot turned") (4 "camera-turn") (5 "give-up failed")
+                                    (7 "Robot turned"))
+            do (is-true (find-if (lambda (object)
+                                   (apply #'has-words-p object "\"message\""
+                                          (format nil "\"line\":~D}" line) words))
+                                 objects)
+                        "~A: ~A" line objects))
+      (is-true (find "done\",\"line\":6,\"text\":\"resume\",\"ok\":true" (ends-in objects)
+                     :test #'string=)))))
+
 (test json.of-an-error-is-not-well-also-if-the-line-waits
   (is (find "done\",\"line\":3,\"text\":\"(error \\\"x\\\")\",\"ok\":false"
             (ends-in (objects-of-script "pause

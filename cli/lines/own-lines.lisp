@@ -50,7 +50,7 @@ back to NAME."
 (define-line "EVAL" (session (exp :form "a Lisp form"))
     (:general)
     "Evaluate EXP as Lisp and print its values; so does a line that begins with a parenthesis."
-  (let ((*asker* +asker+)) (evaluate-text session exp)))
+  (let ((*asker* (asker-for (session-account session)))) (evaluate-text session exp)))
 
 (defun switch-setting (name word)
   "Return true if WORD, what the line NAME was given, is on, NIL if it is off. Signals BAD-LINE for

@@ -125,6 +125,7 @@ package; NIL if there is none."
     (pushnew (procedure-name plan) (session-plans session))
     (let ((task (begin-errand errand plan arguments)))
       (push errand (session-errands session))
+      (note-plan-of-line (session-account session) task)
       (when (live-p (plan-errand-simulation errand)) (start-watching-plan errand))
       (unless (waits-p session)
         (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (procedure-name plan))))))

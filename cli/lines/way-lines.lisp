@@ -31,11 +31,12 @@ of SIMULATION."
     "Let the robot find its way to X, Y, through doorways and round obstacles."
   (let ((errand (make-errand :name "GO-TO" :verdict-p t))
         (simulation (current-simulation))
-        (point (point-text x y)))
-    (let ((*asker* "GO-TO"))
+        (point (point-text x y))
+        (account (session-account session)))
+    (let ((own (asker-for account)) (*asker* (asker-for account :text "GO-TO")))
       (robot-go-to (session-robot) x y
                    (lambda (err robot)
-                     (let ((*asker* +asker+) (*told-of* +asker+))
+                     (let ((*asker* own) (*told-of* own))
                        (if (eq simulation (latest simulation))
                            (tell-arrival err robot point)
                            (tell-rewound point simulation)))

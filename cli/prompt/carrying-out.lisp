@@ -25,7 +25,7 @@ for, or 79."
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
   (let ((arguments (read-arguments line text))
         (*text-width* (text-width session))
-        (*asker* *line-asker*))
+        (*asker* (asker-for (session-account session) :typed-p t)))
     (if (unhurried-p line)
         (apply (line-action line) session arguments)
         (write-string (fitted (with-output-to-string (*standard-output*)
@@ -40,7 +40,7 @@ for, or 79."
 
 (defun run-text (session text)
   "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."
-  (let ((*asker* +asker+))
+  (let ((*asker* (asker-for (session-account session))))
     (cond ((comment-p text))
           ((lisp-p text) (evaluate-line session text))
           (t (let ((text (expand-alias text)))

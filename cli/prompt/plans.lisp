@@ -15,6 +15,8 @@
   (plan nil :type symbol :read-only t)
   (session nil :type session :read-only t)
   (simulation nil :read-only t)
+  ;; Who has started it, as messages tell.
+  (asker *asker* :read-only t)
   (task nil)
   ;; Nothing is to be told of its end, as the run has been rewound.
   (let-go-p nil)
@@ -93,8 +95,10 @@ message. Prints as TEXT."
                 (plan-errand-session errand)))
 
 (defmacro with-messages-to ((errand) &body body)
-  "Run BODY, whose messages are of the simulation of ERRAND."
-  `(let ((*message-queue* (simulation-messages (plan-errand-simulation ,errand)))) ,@body))
+  "Run BODY, whose messages are of the simulation of ERRAND and what its line has asked for."
+  `(let ((*message-queue* (simulation-messages (plan-errand-simulation ,errand)))
+         (*told-of* (plan-errand-asker ,errand)))
+     ,@body))
 
 (defun waiting-for-plan-p (session)
   "True if a plan that SESSION has started, and waits for, is under way."

@@ -10,13 +10,14 @@
   "Where a session is in FILE, the name of a script or NIL. The line under way, TEXT, is the one
 with the number LINE, or 0 if an option has asked for it; ERRORS were there before it. CONSOLE is
 where objects are written, or NIL. WAITING are lines before it whose work waits for time to pass,
-the newest first."
+the newest first. PLANS are pairs of an asker and the line that has begun that plan."
   (file nil :type (or null string) :read-only t)
   (console nil :type (or null console) :read-only t)
   (line 0 :type fixnum)
   (text nil :type (or null string))
   (errors 0 :type fixnum)
-  (waiting '() :type list))
+  (waiting '() :type list)
+  (plans '() :type list))
 
 (defun reports-p (account)
   "True if what has ACCOUNT reports by objects."
@@ -39,10 +40,9 @@ reports by objects. True if it is."
 has asked for."
   (and (plusp (account-line account)) (account-line account)))
 
-(defun report-message (account kind text)
-  "Report a message of KIND that says TEXT."
-  (report-object account "message" :kind kind :text text :tick (now)
-                                   :line (line-under-way account)))
+(defun report-message (account kind text &optional (line (line-under-way account)))
+  "Report a message of KIND that says TEXT, of what LINE has asked for."
+  (report-object account "message" :kind kind :text text :tick (now) :line line))
 
 (defun report-trouble (account text)
   "Report that a line makes no sense, as TEXT says. True if ACCOUNT is of what reports by objects."
@@ -52,17 +52,22 @@ has asked for."
   "Report MESSAGES. True if ACCOUNT is of what reports by objects."
   (when (reports-p account)
     (dolist (message messages t)
-      (report-message account (message-kind message) (message-text message)))))
+      (report-message account (message-kind message) (message-text message)
+                      (line-of-message account message)))))
 
 (defun report-values (account texts)
   "Report TEXTS, of the values of a form of Lisp. True if ACCOUNT is of what reports by objects."
   (when (reports-p account)
     (dolist (text texts t) (report-object account "value" :text text))))
 
-(defun placed-text (account text)
-  "Return TEXT, of what goes wrong in a line, after the place of that line if it is of a script."
-  (if (and account (account-file account) (account-text account) (line-under-way account))
-      (format nil "~A, line ~D: ~A" (account-file account) (account-line account) text)
+(defun line-done-now (account)
+  "Return the number of the line that is being done, or NIL: ACCOUNT may be NIL, or between lines."
+  (and account (account-text account) (line-under-way account)))
+
+(defun placed-text (account text &optional (line (line-done-now account)))
+  "Return TEXT, of what goes wrong in LINE, after the place of that line if it is of a script."
+  (if (and account (account-file account) line)
+      (format nil "~A, line ~D: ~A" (account-file account) line text)
       text))
 
 ;;; Lines.
@@ -94,6 +99,13 @@ nothing to do in it, is about to be done, and that there were ERRORS so far."
   (dolist (waiting (reverse (shiftf (account-waiting account) '())))
     (report-line account "done" (first waiting) (second waiting) :ok :false)))
 
+(defun forget-plans-of-lines (account)
+  "Forget which plans were begun by lines of ACCOUNT that do not wait any more."
+  (setf (account-plans account)
+        (remove-if-not (lambda (plan)
+                         (find (cdr plan) (account-waiting account) :key #'first))
+                       (account-plans account))))
+
 (defun note-line-ended (account errors end)
   "Note, and report, that all that the line under way has asked for is done, and that there were
 ERRORS so far. If END is not NIL, that waits for time to pass: END returns NIL until it is done, and
@@ -105,7 +117,8 @@ then :OK or :FAILED."
           (good-p (= errors (account-errors account))))
       (cond (end (push (list line text good-p end) (account-waiting account))
                  (report-line account "waiting" line text))
-            (t (report-line account "done" line text :ok (if good-p t :false)))))))
+            (t (report-line account "done" line text :ok (if good-p t :false))))
+      (forget-plans-of-lines account))))
 
 (defun report-asking (account)
   "Report that a program reads the line that is sent next."

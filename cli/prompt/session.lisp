@@ -170,19 +170,12 @@ DISPLAY says so."
 
 ;;; What others than the prompt ask of the robot, such as plans, ends with messages like its own.
 
-(define-constant +asker+ "the prompt" :test #'string=
-  :documentation "Who asks for what lines ask for.")
-
-;; Equal to that, but another object: an error of what a line has asked for is the line's.
-(defparameter *line-asker* (copy-seq +asker+)
-  "Who asks for what lines that are no Lisp ask for.")
-
 (defun left-to-program-p (message)
   "True if MESSAGE tells how a command ended that a program has given, with a continuation: that is
 told, and may recover from an error."
   (and (message-robot message)
        (message-told-p message)
-       (not (eq *line-asker* (message-asker message)))))
+       (not (line-asker-p (message-asker message)))))
 
 (defun others-p (message)
   "True if MESSAGE tells how a command ended that a plan or program has given."
@@ -203,10 +196,11 @@ told, and may recover from an error."
 
 (defun message-words (message session)
   "Return what SESSION says for MESSAGE: whose command it tells of, if another robot's; and if it is
-an error in a script, with the place of the line under way."
-  (let ((text (format nil "~@[~(~A~): ~]~A" (other-robot message session) (message-text message))))
+an error in a script, with the place of its line."
+  (let ((text (format nil "~@[~(~A~): ~]~A" (other-robot message session) (message-text message)))
+        (account (session-account session)))
     (if (eq :error (message-kind message))
-        (placed-text (session-account session) text)
+        (placed-text account text (line-of-message account message))
         text)))
 
 (defun write-painted (message session out)
@@ -240,10 +234,16 @@ an error in a script, with the place of the line under way."
        (terminal-p session)
        (repeated-often-p message (session-told session))))
 
+(defun count-error (session message)
+  "Count the error MESSAGE in SESSION; if it is of an earlier line, not as one of the line under way."
+  (let ((account (session-account session)))
+    (incf (session-errors session))
+    (when (others-error-p account message) (incf (account-errors account)))))
+
 (defun messages-for (session messages)
   "Count the errors among MESSAGES, and return those that SESSION is to show."
-  (incf (session-errors session)
-        (count-if (lambda (message) (counts-p message session)) messages))
+  (dolist (message messages)
+    (when (counts-p message session) (count-error session message)))
   (remove-if (lambda (message) (told-often-p message session))
              (if (session-quiet-p session) (remove-if #'others-p messages) messages)))
 
