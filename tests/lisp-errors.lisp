@@ -106,3 +106,28 @@
     (let ((texts (mapcar #'base:message-text (base:take-messages))))
       (dolist (words '("is not a number." "Lisp error in a plan: The value 11 is not a list."))
         (is-true (find-if (lambda (text) (search words text)) texts) "~A: ~S" words texts)))))
+
+;;; What cannot be printed takes nothing else along.
+
+(define-condition half-said (error) ()
+  (:report (lambda (condition stream)
+             (declare (ignore condition))
+             (format stream "The gripper said ")
+             (error "no number ~D" 7))))
+
+(test lisp-errors.that-cannot-be-printed-keep-their-authors-words
+  (loop for (form . words)
+          in '(("(error \"no ~A for ~D\" (ars-magna.tests::make-speechless) 3)"
+                "no #<error printing a SPEECHLESS" "This cannot be printed." "> for 3"
+                "simple-error, whose report fails")
+               ("(error 'ars-magna.tests::half-said)" "The gripper said..."
+                "half-said, whose report fails: no number 7")
+               ("(error \"this is ~A, and that ~A\" 3)" "this is 3, and that"
+                "simple-error, whose report fails"))
+        do (is-true (apply #'has-words-p (error-text-of form) words) "~A" (error-text-of form))
+           (is (not (search "{1" (error-text-of form))) "an address is another each time"))
+  (is (string= "this what cannot be printed (speechless: This cannot be printed) here"
+               (base:message-text
+                (base::make-message :message (list "this " (make-speechless) " here")))))
+  (is-true (tells-p "The gripper said... (half-said, whose report fails: no number 7)"
+                    (rpl:interp-lambda () (error 'half-said)))))

@@ -76,3 +76,24 @@
                                   :thing (first (world:world-thing-list
                                                  (robot:robot-world ars-worlds:robbie))))
                             (make-instance 'cli::object-stream :stream out)))))))
+
+(test printing.what-is-said-is-the-same
+  (flet ((text-of (control &rest arguments)
+           (base::text-of-condition (apply #'make-condition 'simple-error
+                                           (list :format-control control
+                                                 :format-arguments arguments)))))
+    (writes-the-same-p
+     (lambda ()
+       (list (text-of "~A ~S of ~A" 17 'red '(1 2 3))
+             (base:message-text (base::make-message :message (list "at " 17 'red '(1 2 3))))
+             (base:safe-text 17)
+             (tasks:shape-text '(a &optional b))
+             (tasks::form-text '(17 18))
+             (handler-case (base:reject-use "not ~S ~A" 17 'red)
+               (base:misuse (condition) (princ-to-string condition)))))))
+  (run:with-simulation (ars-worlds:robbie :seed 1)
+    (writes-the-same-p
+     (lambda ()
+       (command:robot-place ars-worlds:robbie)
+       (run:run-ticks 3)
+       (mapcar #'base:message-text (base:take-messages))))))

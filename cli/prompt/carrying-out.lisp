@@ -28,8 +28,9 @@ for, or 79."
         (*asker* (asker-for (session-account session) :typed-p t)))
     (if (unhurried-p line)
         (apply (line-action line) session arguments)
-        (write-string (fitted (with-output-to-string (*standard-output*)
-                                (apply (line-action line) session arguments))
+        (write-string (fitted (printing-words ()
+                                (with-output-to-string (*standard-output*)
+                                  (apply (line-action line) session arguments)))
                               (session-console session))))))
 
 (defun evaluate-line (session text)

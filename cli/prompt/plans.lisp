@@ -67,7 +67,7 @@
   (let ((*package* (user-package))
         (*read-default-float-format* 'double-float)
         (*print-pretty* nil))
-    (cut (one-line (funcall function object)) 300)))
+    (cut (one-line (printing-words () (funcall function object))) 300)))
 
 (defun reason-text (failure)
   "Return in words why a plan failed."

@@ -29,7 +29,7 @@
 (defun error-details (command)
   (loop for code in (command-errors command)
         for text = (error-code-text code)
-        collect (format nil "~S~:[~; -- ~:*~A~]" (error-code-keyword code)
+        collect (format nil ":~A~:[~; -- ~:*~A~]" (symbol-name (error-code-keyword code))
                         (and (stringp text) text))))
 
 (defun command-details (command)

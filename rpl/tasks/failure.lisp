@@ -68,10 +68,11 @@ innermost first.")
 (defconstant +longest-failure+ 2000 "How many characters the text of a failure has at most.")
 
 (defmacro reporting ((condition) form)
-  "Return the beginning of the text that FORM returns; if it cannot, what CONDITION is."
-  `(handler-case (cut ,form +longest-failure+)
-     ((or error storage-condition) ()
-       (format nil "~S, whose report fails" (type-of ,condition)))))
+  "Return the beginning of the text that FORM returns; if it cannot, what can be printed of
+CONDITION."
+  `(cut (handler-case (printing-words () ,form)
+          ((or error storage-condition) () (report-anyhow ,condition)))
+        +longest-failure+))
 
 (defun report-of (failure)
   "Return what WRITE-FAILURE writes of FAILURE."

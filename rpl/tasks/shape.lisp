@@ -40,8 +40,9 @@ keywords; :NONE if there is no &KEY. OPEN is true if other keywords do as well."
 
 (defun shape-text (lambda-list)
   "Return LAMBDA-LIST as people write it."
-  (let ((*print-case* :downcase) (*print-pretty* nil))
-    (format nil "~:A" lambda-list)))
+  (printing-words ()
+    (let ((*print-case* :downcase) (*print-pretty* nil))
+      (format nil "~:A" lambda-list))))
 
 (defun keyword-slip (shape rest &key (wrong-p #'keywordp))
   "Return in words the keyword among REST, arguments or forms after the others, that is none of

@@ -209,7 +209,7 @@ first."
   "Return FORM, or any other object, on one line of at most WIDTH characters, with at most LENGTH
 elements of each list in it, to the depth LEVEL, and symbols without their packages."
   (let ((*print-case* :downcase) (*print-pretty* nil) (*print-readably* nil)
-        (*print-length* length) (*print-level* level))
+        (*print-length* length) (*print-level* level) (*print-base* 10) (*print-radix* nil))
     (cut (substitute #\Space #\Newline
                      (handler-case (written form)
                        ((or error storage-condition) () "what cannot be printed")))

@@ -77,8 +77,8 @@
   (:documentation "A definition needs what there is not yet, or has what it does not need."))
 
 (defun text-for-author (control arguments)
-  (let ((*print-case* :downcase))
-    (apply #'format nil control arguments)))
+  (printing-words ()
+    (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
 
 (defun warn-of-definition (control &rest arguments)
   "Signal a DEFINITION-WARNING with a text formatted from CONTROL and ARGUMENTS."
@@ -135,8 +135,8 @@ author meant."
 
 (defun reject-outlived (control &rest arguments)
   "Signal OUTLIVED, a MISUSE, with a text formatted from CONTROL and ARGUMENTS."
-  (error 'outlived :text (apply #'format nil control arguments)))
+  (error 'outlived :text (printing-words () (apply #'format nil control arguments))))
 
 (defun reject-use (control &rest arguments)
   "Signal MISUSE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
-  (error 'misuse :text (apply #'format nil control arguments)))
+  (error 'misuse :text (printing-words () (apply #'format nil control arguments))))

@@ -208,9 +208,16 @@ line (reading 36)."
   (finish-output)
   (values))
 
+(defun item-text (item)
+  "Return ITEM as OUT writes it; words that say so if it cannot be printed."
+  (handler-case (printing-words ()
+                  (with-output-to-string (stream) (write-item item stream)))
+    (error (trouble) (format nil "what cannot be printed (~A: ~A)"
+                             (string-downcase (type-of item)) (one-line-text trouble)))))
+
 (defun message-text (message)
   "Return the items of MESSAGE as a string, without the marker of its kind."
-  (with-output-to-string (stream) (write-items (message-items message) stream)))
+  (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
 
 (defun write-message (message stream &optional (text (message-text message)))
   "Write MESSAGE, which says TEXT, and a new line to STREAM, or return that if STREAM is NIL, marked

@@ -40,7 +40,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
   ;; printing
-  (:export #:call-printing-plainly #:printing-plainly)
+  (:export #:call-printing-plainly #:printing-plainly #:printing-words)
   ;; files, processes
   (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
            #:replace-file #:plain-file-p
@@ -100,7 +100,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; lisp-errors
   (:export #:note-error-code #:variable-slip)
   ;; telling
-  (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
+  (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text #:report-anyhow
            #:reading-trouble #:text-of-condition #:one-line-text #:point-in-text #:hundredths
            #:editors-output)
   ;; breaking-lines

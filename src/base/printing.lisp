@@ -19,3 +19,12 @@ Return its values."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
      (call-printing-plainly #'body)))
+
+;;; So does what the simulator says to people: its numbers are decimal, its lists whole.
+
+(defmacro printing-words (() &body body)
+  "Run BODY, which makes text for people, with the printer's variables that change numbers, names
+and lists as a fresh Lisp has them."
+  `(let ((*print-base* 10) (*print-radix* nil) (*print-case* :upcase) (*print-length* nil)
+         (*print-level* nil) (*print-lines* nil) (*print-readably* nil) (*print-array* t))
+     ,@body))

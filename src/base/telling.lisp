@@ -6,8 +6,9 @@
 
 (defun format-briefly (destination control &rest arguments)
   "Do as FORMAT does. Of ARGUMENTS that are deep, long or circular, only a part is shown."
-  (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
-    (apply #'format destination control arguments)))
+  (printing-words ()
+    (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
+      (apply #'format destination control arguments))))
 
 (defun blank-p (char)
   "True if CHAR is a space, newline or the like."
@@ -38,7 +39,7 @@ cannot be printed."
       (let ((*print-circle* t) (*print-pretty* nil) (*print-readably* nil) (*print-escape* escape)
             (*print-length* (or *print-length* 100))
             (*print-level* (or *print-level* 20))
-            (*print-gensym* nil))
+            (*print-gensym* nil) (*print-base* 10) (*print-radix* nil))
         (cut (write-to-string (if (typep object '(or cons string bit-vector number symbol))
                                   (without-packages (abridged object))
                                   object))
@@ -85,9 +86,53 @@ streams that no user knows."
         (format nil "~A~@[. ~A~]" (string-right-trim "." text) (naming-remedy text)))))
 
 (defun own-text (condition)
-  "Return what CONDITION, or another object, says of itself; an empty text if it cannot."
+  "Return what CONDITION says of itself, as much of it as can be printed; or what another object
+does, an empty text if it cannot."
   (handler-case (without-reference (format-briefly nil "~A" condition))
-    ((or error storage-condition) () "")))
+    ((or error storage-condition) () (if (typep condition 'condition)
+                                         (report-anyhow condition)
+                                         ""))))
+
+;;; A report may fail, or what it is to print may have a method for PRINT-OBJECT that does. What its
+;;; author wrote is shown all the same, as far as it came.
+
+(defun without-addresses (text)
+  "Return TEXT without the addresses of objects, which are others in each Lisp."
+  (loop for start = (search " {" text)
+        for end = (and start (position #\} text :start start))
+        while (and end (every (lambda (char) (digit-char-p char 16)) (subseq text (+ 2 start) end)))
+        do (setf text (concatenate 'string (subseq text 0 start) (subseq text (1+ end))))
+        finally (return text)))
+
+(defun failing-report-text (condition trouble beginning)
+  "Return in words that CONDITION said BEGINNING before its report failed, with TROUBLE."
+  (let ((why (or (our-text trouble)
+                 (ignore-errors (format-briefly nil "~A" trouble))
+                 ;; It tells of the condition, which cannot be printed.
+                 (ignore-errors (simple-condition-format-control trouble))
+                 (type-of trouble))))
+    (format nil "~@[~A... ~](~(~A~), whose report fails: ~A)"
+            (and (string/= "" beginning) (string-right-trim " " beginning))
+            (type-of condition)
+            (without-addresses (one-line (princ-to-string why))))))
+
+(defun write-report (condition stream)
+  "Write to STREAM what CONDITION reports, with words for the objects that cannot be printed."
+  (printing-words ()
+    (let ((sb-ext:*suppress-print-errors* 'error) (*print-escape* nil) (*print-circle* nil)
+          (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
+      (print-object condition stream))))
+
+(defun report-anyhow (condition)
+  "Return what CONDITION reports, as much of it as can be printed. If its report fails, that is said
+too."
+  (let ((out (make-string-output-stream)))
+    (handler-case (progn (write-report condition out)
+                         (format nil "~A (~(~A~), whose report fails)"
+                                 (without-addresses (get-output-stream-string out))
+                                 (type-of condition)))
+      ((or error storage-condition) (trouble)
+        (failing-report-text condition trouble (get-output-stream-string out))))))
 
 (defun our-text (condition)
   "Return what CONDITION, which Lisp itself has signalled, means to a user, in words that are the
@@ -99,7 +144,7 @@ same on every version of SBCL; NIL if we have none."
 
 (defun text-of-condition (condition)
   "Return what CONDITION says, or what it is if it cannot say that."
-  (let ((text (or (our-text condition) (own-text condition))))
+  (let ((text (or (printing-words () (our-text condition)) (own-text condition))))
     (if (string= text "") (string-downcase (type-of condition)) text)))
 
 (defun hundredths (number)

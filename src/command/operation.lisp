@@ -129,7 +129,7 @@ told, too."
     (cond ((eq code :interrupt)
            (tell-of-failure operation :warning code (interrupted-text operation)))
           (code (tell-of-failure operation :error code (error-text operation code)))
-          (report (let ((text (apply report operation results)))
+          (report (let ((text (printing-words () (apply report operation results))))
                     (when text (tell-of operation text)))))))
 
 (defun fit-results (operation results)
