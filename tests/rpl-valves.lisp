@@ -236,18 +236,45 @@
 
 ;;; Many.
 
-(defun looks-of-queue (count)
-  "Return how often it is asked whether a claim can be granted while COUNT tasks have a valve."
-  (let ((looks 0) (valve (rpl:make-valve 'hand)))
-    (host:wrap-function 'constructs::available-p
+(defun calls-of (name function)
+  "Return how often the function called NAME is called while FUNCTION is."
+  (let ((calls 0))
+    (host:wrap-function name
                         (lambda (function &rest arguments)
-                          (incf looks)
+                          (incf calls)
                           (apply function arguments))
                         'test)
-    (unwind-protect (plan-value (rpl:par-loop (i (make-list count))
-                                  (rpl:with-valve (valve) (rpl:wait-time 1))))
-      (host:unwrap-function 'constructs::available-p 'test))
-    looks))
+    (unwind-protect (funcall function)
+      (host:unwrap-function name 'test))
+    calls))
+
+(defun looks-of-queue (count)
+  "Return how often it is asked whether a claim can be granted while COUNT tasks have a valve."
+  (let ((valve (rpl:make-valve 'hand)))
+    (calls-of 'constructs::available-p
+              (lambda ()
+                (plan-value (rpl:par-loop (i (make-list count))
+                              (rpl:with-valve (valve) (rpl:wait-time 1))))))))
+
+(defun order-of-queue (priorities)
+  "Return PRIORITIES in the order in which tasks with those have a valve that another had first."
+  (let ((valve (rpl:make-valve 'hand)) (order '()))
+    (plan-value (rpl:par (rpl:with-valve (valve :priority 1000000) (rpl:wait-time 2))
+                         (rpl:par-loop (priority priorities)
+                           (rpl:with-valve (valve :priority priority)
+                             (push priority order)
+                             (rpl:wait-time 0)))))
+    (nreverse order)))
+
+(test with-valve.to-queue-takes-little-with-as-many-priorities
+  (flet ((priorities (count)
+           ;; Rising, falling, mixed.
+           (append (loop for i below count collect i)
+                   (loop for i below count collect (- i))
+                   (loop for i below count collect (+ 1/2 (mod (* i 7919) count))))))
+    (is (equal (sort (priorities 40) #'>) (order-of-queue (priorities 40))))
+    (is (< (calls-of 'constructs::before-p (lambda () (order-of-queue (priorities 400))))
+           (* 1200 100)))))
 
 (test with-valve.to-queue-takes-the-same-however-many-do
   (is (< (looks-of-queue 1000) 10000))

@@ -235,7 +235,7 @@ an error in a script, with the place of its line."
        (repeated-often-p message (session-told session))))
 
 (defun count-error (session message)
-  "Count the error MESSAGE in SESSION; if it is of an earlier line, not as one of the line under way."
+  "Count the error MESSAGE in SESSION: if it is of an earlier line, not for the line under way."
   (let ((account (session-account session)))
     (incf (session-errors session))
     (when (others-error-p account message) (incf (account-errors account)))))

@@ -8,14 +8,16 @@
 ;;; part of. Any other claim was preempted: it has LOST the valve, and its task does not run.
 ;;; The claims that wait for a valve queue by priority, by level, then first in first out, in a LINE
 ;;; for each priority and level; one that wants several can be overtaken by such as can have what
-;;; they want. To queue, to leave, and to be the next take the same time however many wait, but for
-;;; a look at each line.
+;;; they want. To queue, to leave, and to be the next take the same time however many wait in a line,
+;;; and grow with the logarithm of the number of lines.
 
 (defstruct (valve (:include entity) (:constructor %make-valve (name)) (:copier nil))
-  "What guarantees that one task at a time has a resource. LINES are of those that wait for it."
+  "What guarantees that one task at a time has a resource. LINES, a tree, are of those that wait for
+it, COUNT is how many lines there ever were."
   (name nil :read-only t)
   (claims '() :type list)
-  (lines '() :type list))
+  (lines nil)
+  (count 0 :type fixnum))
 
 (defstruct (claim (:constructor make-claim (task valves priority)) (:copier nil))
   "That TASK wants or has VALVES. TAKEN are those that it has, LOST those of them that have been
@@ -28,7 +30,11 @@ taken from it. TURNS are its places in the lines of VALVES while it waits."
   (turns '() :type list))
 
 (defstruct (line (:constructor make-line (valve priority level)) (:copier nil))
-  "The turns of claims of one PRIORITY to VALVE, by tasks of one LEVEL, first come first."
+  "The turns of claims of one PRIORITY to VALVE, by tasks of one LEVEL, first come first. As a part
+of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
+  (ahead nil :type (or null line))
+  (behind nil :type (or null line))
+  (weight 0 :type (unsigned-byte 32))
   (valve nil :type valve :read-only t)
   (priority 0 :type real :read-only t)
   (level 0 :type fixnum :read-only t)
@@ -76,7 +82,19 @@ taken from it. TURNS are its places in the lines of VALVES while it waits."
 
 (defun valve-requests (valve)
   "Return the tasks that wait for VALVE, the next to have it first."
-  (mapcar #'claim-task (mapcan #'claims-in-line (valve-lines (here valve)))))
+  (let ((tasks '()))
+    (some-line (lambda (line)
+                 (dolist (claim (claims-in-line line)) (push (claim-task claim) tasks))
+                 nil)
+               (valve-lines (here valve)))
+    (nreverse tasks)))
+
+(defun some-line (function tree)
+  "Return the first true value that FUNCTION returns for a line of TREE, from ahead; or NIL."
+  (and tree
+       (or (some-line function (line-ahead tree))
+           (funcall function tree)
+           (some-line function (line-behind tree)))))
 
 (defun holders (valve)
   "Return the claims that hold VALVE: that of its owner, and those of tasks that this is part of,
@@ -147,15 +165,62 @@ innermost first."
       (and (= (line-priority line) (line-priority other))
            (> (line-level line) (line-level other)))))
 
+;;; The lines of a valve are a treap: a tree in which each line has more weight than those below it.
+;;; Weights are as good as drawn, so that it is hardly ever deep.
+
+(defun next-weight (valve)
+  "Return the weight of a new line of VALVE, as different from the last as can be."
+  (ldb (byte 32 0) (* 2654435769 (incf (valve-count valve)))))
+
+(defun split-lines (tree line)
+  "Return a tree of the lines of TREE that go before LINE, and one of the others."
+  (cond ((null tree) (values nil nil))
+        ((before-p tree line)
+         (multiple-value-bind (ahead behind) (split-lines (line-behind tree) line)
+           (setf (line-behind tree) ahead)
+           (values tree behind)))
+        (t (multiple-value-bind (ahead behind) (split-lines (line-ahead tree) line)
+             (setf (line-ahead tree) behind)
+             (values ahead tree)))))
+
+(defun joined-lines (ahead behind)
+  "Return one tree of the lines of AHEAD, and of those of BEHIND, which go after them."
+  (cond ((null ahead) behind)
+        ((null behind) ahead)
+        ((> (line-weight ahead) (line-weight behind))
+         (setf (line-behind ahead) (joined-lines (line-behind ahead) behind))
+         ahead)
+        (t (setf (line-ahead behind) (joined-lines ahead (line-ahead behind)))
+           behind)))
+
+(defun without-line (tree line)
+  "Return TREE without LINE, which is in it."
+  (cond ((eq tree line) (joined-lines (line-ahead line) (line-behind line)))
+        ((before-p line tree)
+         (setf (line-ahead tree) (without-line (line-ahead tree) line))
+         tree)
+        (t (setf (line-behind tree) (without-line (line-behind tree) line))
+           tree)))
+
+(defun line-like (line tree)
+  "Return the line of TREE for claims such as those in LINE, or NIL."
+  (loop while tree
+        do (cond ((before-p line tree) (setf tree (line-ahead tree)))
+                 ((before-p tree line) (setf tree (line-behind tree)))
+                 (t (return tree)))))
+
+(defun insert-line (line valve)
+  "Put LINE among those of VALVE. Return it."
+  (setf (line-weight line) (next-weight valve))
+  (multiple-value-bind (ahead behind) (split-lines (valve-lines valve) line)
+    (setf (valve-lines valve) (joined-lines (joined-lines ahead line) behind)))
+  line)
+
 (defun line-for (claim valve)
   "Return the line of VALVE that CLAIM is to wait in, a new one if there is none for its like."
   (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
-    (loop for before = nil then tail
-          for tail = (valve-lines valve) then (rest tail)
-          while (and tail (before-p (first tail) line))
-          finally (return (cond ((and tail (not (before-p line (first tail)))) (first tail))
-                                (before (setf (rest before) (cons line tail)) line)
-                                (t (setf (valve-lines valve) (cons line tail)) line))))))
+    (or (line-like line (valve-lines valve))
+        (insert-line line valve))))
 
 (defun queue-up (claim)
   (dolist (valve (claim-valves claim))
@@ -169,7 +234,7 @@ innermost first."
     (let ((line (turn-line turn)))
       (unless (line-first-turn line)
         (let ((valve (line-valve line)))
-          (setf (valve-lines valve) (delete line (valve-lines valve) :count 1)))))))
+          (setf (valve-lines valve) (without-line (valve-lines valve) line)))))))
 
 (defmethod withdraw (task (claim claim))
   (leave-queues claim))
@@ -184,7 +249,7 @@ innermost first."
 (defun grant-waiting (valve)
   "Grant the first of the claims that wait for VALVE and can be granted, or else give it back to
 those who lost it last."
-  (let ((claim (some #'next-in-line (valve-lines valve))))
+  (let ((claim (some-line #'next-in-line (valve-lines valve))))
     (when claim
       (leave-queues claim)
       (grant claim)
@@ -192,12 +257,16 @@ those who lost it last."
   (dolist (holder (holders valve))
     (regain valve holder)))
 
+(defun without-claim (claims claim)
+  "Return CLAIMS without CLAIM, which is mostly the newest of them."
+  (if (eq claim (first claims)) (rest claims) (remove claim claims)))
+
 (defun give-back (claim)
   "Let CLAIM have nothing any more."
   (leave-queues claim)
   (let ((valves (shiftf (claim-taken claim) '())))
     (dolist (valve valves)
-      (setf (valve-claims valve) (remove claim (valve-claims valve)))
+      (setf (valve-claims valve) (without-claim (valve-claims valve) claim))
       (regain valve claim))
     (mapc #'grant-waiting valves)))
 

@@ -100,7 +100,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; lisp-errors
   (:export #:note-error-code #:variable-slip)
   ;; telling
-  (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text #:report-anyhow
+  (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
+           #:report-anyhow
            #:reading-trouble #:text-of-condition #:one-line-text #:point-in-text #:hundredths
            #:editors-output)
   ;; breaking-lines
