@@ -8,7 +8,7 @@
 ;;; part of. Any other claim was preempted: it has LOST the valve, and its task does not run.
 ;;; The claims that wait for a valve queue by priority, by level, then first in first out, in a LINE
 ;;; for each priority and level; one that wants several can be overtaken by such as can have what
-;;; they want. To queue, to leave, and to be the next take the same time however many wait in a line,
+;;; they want. To queue, to leave, and to be next take the same time however many wait in a line,
 ;;; and grow with the logarithm of the number of lines.
 
 (defstruct (valve (:include entity) (:constructor %make-valve (name)) (:copier nil))
