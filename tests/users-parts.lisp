@@ -131,3 +131,18 @@
     (base:malformed-definition (trouble)
       (is (search "define-command nap" (princ-to-string trouble)))
       (is (search "nosuch-type" (princ-to-string trouble))))))
+
+(test plans.that-call-a-command-of-users-are-told-what-it-lacks
+  (let* ((name (intern "RPL-PROBE-FAIL" :ars-magna.tests))
+         (advice (funcall ars-magna.rpl.language:*advice-on-call* name)))
+    (is-true (has-words-p advice "the end of the command probe-fail" "(define-fluents probe"
+                          "(define-outcome (probe-fail)" "(:pulse my-fluent*))")
+             "~A" advice)
+    (signals base::definition-doubt
+      (handler-bind ((base::definition-doubt #'error))
+        (eval `(rpl:interp-lambda () (,name 0)))))
+    (is-true (tells-p "the end of the command probe-fail"
+                      (handler-bind ((warning #'muffle-warning))
+                        (eval `(rpl:interp-lambda () (,name 0)))))))
+  (dolist (name '(rpl-nosuch robot-turn driver:rpl-robot-turn))
+    (is (null (funcall ars-magna.rpl.language:*advice-on-call* name)))))

@@ -64,6 +64,11 @@ construct of NISP, as WAIT-FOR is in packages that do not use NISP."
                                       :ars-user), or nisp:~:*~(~A~)."
                                      (symbol-name name)))))))
 
+;; What knows more names than plans' and functions' sets it.
+(defvar *advice-on-call* (constantly nil)
+  "A function of a symbol that is the name of no plan procedure or function: it returns in sentences
+why, and what to write; or NIL.")
+
 (defun warn-of-unknown (form)
   (let* ((name (first form))
          (namesake (find-procedure name nil)))
@@ -72,6 +77,9 @@ construct of NISP, as WAIT-FOR is in packages that do not use NISP."
                          "there is no plan procedure or function ~S. If the plan of another ~
                           package is meant, write ~S."
                          name (procedure-name namesake)))
+          ((funcall *advice-on-call* name)
+           (warn-of-call #'doubt-definition form "there is no plan procedure or function ~(~A~): ~A"
+                         name (funcall *advice-on-call* name)))
           ((nisps-own name)
            (warn-of-call #'doubt-definition form
                          "there is no plan procedure or function ~S; NISP has one. Write ~

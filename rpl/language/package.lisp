@@ -13,7 +13,7 @@ DEFINE-CONSTRUCT adds to it.")
   ;; names, items
   (:export #:check-variables #:plain-parameters #:item-list)
   ;; checking
-  (:export #:warn-of-call #:doubt-own-form)
+  (:export #:warn-of-call #:doubt-own-form #:*advice-on-call*)
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope
            #:scope-environment #:scope-variables)

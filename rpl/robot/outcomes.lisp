@@ -136,3 +136,31 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
                                                     (ignorable resource err ,@results))
                                            (append ,@(mapcar #'clause-form clauses)))
                                          (list ,@parameters))))))
+
+;;; A command of users' has a function in plans only when it is known what becomes of its end.
+
+(defun command-without-outcome (name)
+  "Return the name of the command that plans could call by NAME, a symbol, if there were a
+DEFINE-OUTCOME for it; or NIL."
+  (let ((text (symbol-name name)))
+    (and (starts-with-subseq "RPL-" text)
+         (let ((command (find-command (subseq text (length "RPL-")) nil)))
+           (and command
+                (not (has-twin-p (command-name command)))
+                (same-name-p name (plan-function-name (command-name command)))
+                (command-name command))))))
+
+(defun advice-on-command (name)
+  "Return in sentences what lets plans call NAME, if a command is called so; or NIL."
+  (let ((command (command-without-outcome name)))
+    (and command
+         (let ((*print-case* :downcase) (found (find-command command)))
+           (format nil "plans do not know yet what tells them of the end of the command ~A. Say so ~
+                        once: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
+                        (define-outcome (~2:*~A~*) ~:A (:pulse my-fluent*)), names of the package ~
+                        ars-magna.rpl-robot, with a name of yours for my-fluent*."
+                   (string-downcase command)
+                   (spec-type (command-resource found))
+                   (mapcar #'spec-name (command-results found)))))))
+
+(setf *advice-on-call* 'advice-on-command)

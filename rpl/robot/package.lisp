@@ -44,7 +44,7 @@
                 #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
                 #:waiting-parts #:text-of-plans #:advice-on-stillness #:fluents-awaited
-                #:fluent-text #:note-twin #:last-command #:endless-advice
+                #:fluent-text #:note-twin #:has-twin-p #:last-command #:endless-advice
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure
@@ -57,7 +57,7 @@
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:part-of-p #:frame-node #:frame-up #:node-form #:task-level #:evaporating-p
                 #:reasons #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
-                #:*on-outside-change* #:note-word #:task-now)
+                #:*on-outside-change* #:note-word #:task-now #:*advice-on-call*)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place* #:camera-input* #:camera-views*
