@@ -268,8 +268,8 @@
       :components ((:file "keys") (:file "changes") (:file "history")
                    (:file "kinds-of-lines") (:file "pasting")
                    (:file "octet-queue") (:file "editor")
-                   (:file "search") (:file "tabbing") (:file "standard")
-                   (:file "ahead") (:file "handed-text")))
+                   (:file "search") (:file "tabbing") (:file "ahead")
+                   (:file "standard") (:file "handed-text")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "line-askers")
                    (:file "repetition")

@@ -231,6 +231,27 @@ name in *KEY-CODES*."
     (is-true (cli::typed-within-p stream 0))
     (is (equal "two" (read-line stream)))))
 
+(test editing.takes-for-pasted-what-comes-all-at-once
+  "Where the terminal does not say so: as lines that wait for each other, also to be dropped."
+  (flet ((typed (&rest keys)
+           (let ((stream (typed-text-for (keyboard-for keys :at-hand t) (terminal-console))))
+             (values stream (read-line stream)))))
+    (is-true (cli::pasted-lines-left-p (typed "one" :enter "two" :enter)))
+    (is-false (cli::pasted-lines-left-p (typed "one" :enter)))
+    (is-false (cli::pasted-lines-left-p (typed "one" :enter "t")))
+    (let ((stream (typed "one" :enter "two" :enter "three" :enter "fo")))
+      (is (= 2 (cli::drop-waiting stream)))
+      (is (equal "fo" (read-line stream))))))
+
+(test editing.swallows-one-key-and-no-more
+  (flet ((rest-of (&rest keys)
+           (let ((stream (typed-text-for (keyboard-for keys :at-hand t) (terminal-console))))
+             (cli::swallow-key stream)
+             (read-line stream nil))))
+    (is (null (rest-of "q")))
+    (is (null (rest-of :up)))
+    (is (equal "go 3" (rest-of "go 3" :enter)))))
+
 (test editing.answers-programs-that-ask
   (multiple-value-bind (console out) (terminal-console)
     (let* ((stream (typed-text-for (keyboard-for '("x" :enter "y" :rubout "y" :enter)) console))

@@ -18,6 +18,10 @@ control C."
 (defun empty-queue-p (queue)
   (null (octet-queue-octets queue)))
 
+(defun whole-line-p (queue)
+  "True if QUEUE has all of a line."
+  (find-if (lambda (octet) (find octet '(#\Return #\Newline))) (octet-queue-octets queue)))
+
 (defun take-octet (queue)
   "Take the first octet out of QUEUE, which has one, and return it."
   (let ((octet (pop (octet-queue-octets queue))))

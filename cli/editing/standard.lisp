@@ -57,13 +57,17 @@ that is not NIL.")
         (amend-entry (edited-history input) (concatenate 'string before '(#\Newline) line))
         (add-entry (edited-history input) line))))
 
+;;; A terminal may paste without saying so. What comes all at once, with more than a line, is
+;;; counted as pasted, too: nobody types as fast, but while nothing was read.
+
 (defgeneric pasted-lines-left-p (input)
   (:documentation "True if lines that were pasted into INPUT, with the one read last, wait to be
 read.")
   (:method (input)
     (declare (ignore input))
     nil)
-  (:method ((input edited-text)) (and (edited-lines input) t)))
+  (:method ((input edited-text))
+    (and (or (edited-lines input) (whole-line-p (edited-ahead input))) t)))
 
 (defgeneric take-waiting (input)
   (:documentation "Return the lines that wait to be read of INPUT, and leave them unread.")
@@ -72,7 +76,30 @@ read.")
     '())
   (:method ((input edited-text))
     (setf (typed-position input) (length (typed-line input)))
-    (shiftf (edited-lines input) '())))
+    (append (shiftf (edited-lines input) '()) (take-lines-ahead input))))
+
+(defun take-lines-ahead (input)
+  "Return the lines that came into INPUT all at once with the one read last, and leave them unread.
+What is no whole line is being typed."
+  (when (whole-line-p (edited-ahead input))
+    (let ((ahead (ahead-in (coerce (take-all-octets (edited-ahead input)) 'string) '())))
+      (unless (string= "" (ahead-text ahead))
+        (setf (edited-put-off input) (list (ahead-text ahead) (ahead-point ahead))))
+      (ahead-lines ahead))))
+
+(defun one-key-p (octets)
+  "True if OCTETS, a list, are those of one key."
+  (let ((next (text-reader (coerce octets 'string))))
+    (read-key next)
+    (null (funcall next))))
+
+(defgeneric swallow-key (input)
+  (:documentation "Take the key that was pressed in INPUT; but leave it to be read if more was typed
+or pasted with it.")
+  (:method (input) (clear-input input))
+  (:method ((input edited-text))
+    (let ((octets (octets-come input)))
+      (unless (one-key-p octets) (add-octets (edited-ahead input) octets)))))
 
 (defun drop-waiting (input)
   "Leave the lines that wait to be read of INPUT; the history has them as one entry. Return how many

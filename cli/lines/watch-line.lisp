@@ -63,26 +63,36 @@ something."
         +frame-seconds+
         (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
 
+(defun seen-enough-p (session simulation end)
+  "True if WATCH is to end at the tick that it is in SIMULATION, whatever is typed: it is END, or no
+more tick will come, if END is not NIL; other lines wait; or there is something to be answered."
+  (or (if end
+          (or (>= (simulation-tick simulation) end) (idle-here-p session simulation))
+          (typed-ahead-p (session-input session)))
+      (simulation-over simulation)
+      (session-breaks session)))
+
+(defun pressed-within-p (session seconds)
+  "Wait for a key to be pressed in SESSION for SECONDS at most. True if one was."
+  (octets-within-p (source-of (session-input session)) seconds))
+
 (defun watch-screen (session simulation count options)
   "Show maps of SIMULATION in place until COUNT ticks have passed, or no more will, if COUNT is not
-NIL, or a key is pressed, or there is something else to be answered."
+NIL, or a key is pressed, or there is something else to be done. True if it was a key."
   (loop with end = (and count (+ (simulation-tick simulation) count))
         with console = (session-console session)
         do (write-at-once (over-screen (frame session simulation options)) console)
-        until (or (and end (or (>= (simulation-tick simulation) end)
-                               (idle-here-p session simulation)))
-                  (simulation-over simulation)
-                  (session-breaks session)
-                  (typed-within-p (session-input session) (frame-seconds session simulation)))
-        do (unless (time-passes-p session simulation) (pass-tick session simulation))))
+        until (seen-enough-p session simulation end)
+        do (when (pressed-within-p session (frame-seconds session simulation)) (return t))
+           (unless (time-passes-p session simulation) (pass-tick session simulation))))
 
 (defun watch-in-place (session simulation count options)
-  (handler-case (call-with-screen
-                 (lambda () (watch-screen session simulation count options))
-                 (session-console session))
-    (user-interrupt () nil))
   ;; The key that has ended it is no beginning of a line.
-  (clear-input (session-input session))
+  (when (handler-case (call-with-screen
+                       (lambda () (watch-screen session simulation count options))
+                       (session-console session))
+          (user-interrupt () nil))
+    (swallow-key (session-input session)))
   (format t "~A~%" (time-text session simulation)))
 
 ;;; The line.
@@ -112,7 +122,8 @@ NIL, or a key is pressed, or there is something else to be answered."
     (:seeing)
     "Show the map again and again while time passes, in place on a terminal, where a key or
 Control-C ends it: for as many ticks as the number that comes first says, or until nothing happens
-any more. Where time stands still, these ticks pass. What follows that number is as for MAP."
+any more. Where time stands still, these ticks pass. What follows that number is as for MAP. Lines
+that were pasted with it, or are meanwhile, come after it; without a number they end it."
   (check-run)
   (multiple-value-bind (count rest) (take-count what)
     (let ((simulation (current-simulation)) (options (map-options rest)))
