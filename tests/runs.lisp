@@ -273,6 +273,17 @@
              (is (search "would wait for itself" (displayed))))
         (run:stop-simulator foal)))))
 
+(test await-idle.waits-for-no-kickers
+  "They go on as long as the run; at a rate, too."
+  (with-messages
+    (unwind-protect
+         (progn
+           (run:simulator 'ars-worlds:robbie :display nil :rate 500)
+           (command:robot-turn ars-worlds:robbie 1/10)
+           (is-true (run:await-idle time:*simulation* 20))
+           (is-false (run:idle-p)))
+      (run:stop-simulator))))
+
 (defclass saboteur () ())
 
 (defmethod run:participant-after-tick ((saboteur saboteur) simulation)

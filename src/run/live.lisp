@@ -69,9 +69,9 @@ place. Return SIMULATION."
 
 (addition await-idle)
 (defun await-idle (&optional (simulation (current-simulation)) (seconds 60))
-  "Wait until nothing is left to do in the live SIMULATION, at most SECONDS. True if so. Where
-things have kickers, something is always left to do. Of one that is not live, return at once whether
-nothing is left. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and MISUSE if the
+  "Wait until nothing that comes to an end is left to do in the live SIMULATION, at most SECONDS.
+True if so. Things that have kickers go on by themselves, and are not waited for, nor are tracks. Of
+one that is not live, return at once whether nothing is left at all. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and MISUSE if the
 simulator has failed and is paused for that: it would wait in vain."
   (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
@@ -83,16 +83,17 @@ simulator has failed and is paused for that: it would wait in vain."
 
 ;; Plans first: what they have asked for by the time that they rest is seen then.
 (defun all-still-p (simulation)
-  "True if nothing is left to do in SIMULATION, and nobody who takes part in it is at work."
+  "True if nothing that comes to an end is left in SIMULATION, and nobody who takes part in it is at
+work."
   (asking (simulation)
     (and (notany #'participant-at-work-p (simulation-participants simulation))
-         (idle-p simulation))))
+         (settled-p simulation))))
 
 (defun wait-until-idle (simulation seconds)
   "Do what AWAIT-IDLE says, for one that is live and passes its ticks in another thread."
   (let ((idle (make-semaphore "idle")))
     (flet ((look (simulation)
-             (when (idle-p simulation) (signal-semaphore idle))))
+             (when (settled-p simulation) (signal-semaphore idle))))
       (in-any-case
         (progn (add-observer #'look simulation)
                (await-stillness idle seconds simulation))

@@ -165,17 +165,23 @@ these leads to the next, so that all but the last can be forgotten."
         append (participant-unfinished participant)))
 
 (addition idle-p)
+(defun settled-p (simulation)
+  "True if nothing that comes to an end is under way in SIMULATION, or waits to begin. Kickers and
+tracks go on as long as the run does."
+  (let ((timeline (simulation-timeline simulation)))
+    (and (zerop (agenda-pending (timeline-agenda timeline)))
+         (null (timeline-inbox timeline))
+         (notany (lambda (participant) (participant-busy-p participant simulation))
+                 (simulation-participants simulation)))))
+
 (defun idle-p (&optional (simulation (current-simulation)))
   "True if nothing can happen in SIMULATION until somebody asks for something. In a live one at the
 rate :FREE, things with kickers wait for that, too: else a million ticks, which nobody wants, would
 be over before anybody could ask."
-  (let ((timeline (simulation-timeline simulation)) (world (simulation-world simulation)))
-    (and (zerop (agenda-pending (timeline-agenda timeline)))
-         (null (timeline-inbox timeline))
-         (or (and (eq :free (pace simulation)) (live-p simulation))
+  (let ((world (simulation-world simulation)))
+    (and (or (and (eq :free (pace simulation)) (live-p simulation))
              (not (or (world-has-kickers-p world) (tracks-busy-p world))))
-         (notany (lambda (participant) (participant-busy-p participant simulation))
-                 (simulation-participants simulation)))))
+         (settled-p simulation))))
 
 ;;; Chance.
 
