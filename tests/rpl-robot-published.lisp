@@ -86,3 +86,27 @@ that breaks is stopped there until the semaphore is signalled."
                     "~A" text))
          (base:signal-semaphore answered)
          (awaiting (not (driver::asks-p interface))))))))
+
+;;; A live run that is started inside of a headless one.
+
+(test published.by-a-run-inside-of-a-headless-one-ends-with-that
+  "Outside, the fluents and the robot of plans are again those of the run that is current there."
+  (let ((before (base:global-value 'time:*simulation*)) (outer nil))
+    (with-messages
+      (unwind-protect
+           (let ((inner nil))
+             (run:simulator 'ars-worlds:dot :rate :free :display nil)
+             (setf outer time:*simulation*)
+             (driver:rpl-init-robot 'ars-worlds:dot)
+             (let ((fluent (base:global-value 'driver:robot-stopped*)))
+               (run:call-with-simulation
+                (lambda ()
+                  (run:simulator 'ars-worlds:robbie :rate :free :display nil)
+                  (driver:rpl-init-robot 'ars-worlds:robbie)
+                  (setf inner time:*simulation*)
+                  (is (not (eq fluent (base:global-value 'driver:robot-stopped*)))))
+                '(fitter))
+               (is (eq fluent (base:global-value 'driver:robot-stopped*)))
+               (run:stop-simulator inner)))
+        (run:stop-simulator outer)
+        (setf (base:global-value 'time:*simulation*) before)))))

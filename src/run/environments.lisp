@@ -39,10 +39,38 @@ it last said so. Can be set."
       (setf (simulation-environment simulation) environment)
       (setf (simulation-left simulation) environment)))
 
+;;; A live run that is started inside of WITH-SIMULATION is current there only. When that ends, the
+;;; one that is current outside has its variables again.
+
+(defvar *outer-globals* nil
+  "In a headless simulation, a list. Its rest is (run (symbol . value)...): the live run that is
+current outside and what *SIMULATION-VARIABLES* were before another was started here; or ().")
+
+(defun note-outer-globals (simulation)
+  "Note what *SIMULATION-VARIABLES* are globally, if SIMULATION is about to set them from inside of a
+headless one while another live run is current outside."
+  (let ((current (global-value '*simulation*)))
+    (when (and *outer-globals*
+               (null (rest *outer-globals*))
+               current
+               (live-p current)
+               (not (eq current simulation)))
+      (setf (rest *outer-globals*)
+            (cons current (loop for symbol in *simulation-variables*
+                                collect (cons symbol (global-value symbol))))))))
+
+(defun restore-outer-globals ()
+  "Set *SIMULATION-VARIABLES* globally to what they were before a live run was started in here."
+  (destructuring-bind (&optional run &rest values) (rest *outer-globals*)
+    (when (and run (eq run (global-value '*simulation*)))
+      (loop for (symbol . value) in values
+            do (setf (global-value symbol) value)))))
+
 (defun publish-variables (simulation)
   "Let all threads of the live SIMULATION see what *SIMULATION-VARIABLES* are here, where a headless
 simulation around it may have bound them."
   (when (live-p simulation)
+    (note-outer-globals simulation)
     (dolist (symbol *simulation-variables*)
       (setf (global-value symbol) (symbol-value symbol)))))
 

@@ -214,6 +214,7 @@ KEEP says, see KEEP-FORKS. Then the run is over."
          (*world* (simulation-world simulation))
          (*tick-dice* nil)
          (*asked-with* '())
+         (*outer-globals* (list :around))
          (robots (simulation-robots simulation)))
     (setf (simulation-variables simulation)
           (append variables (mapcar #'robot-name robots) *simulation-variables*
@@ -223,14 +224,16 @@ KEEP says, see KEEP-FORKS. Then the run is over."
                 (list (or (simulation-dice simulation)
                           (seeded-lisps-dice (simulation-seed simulation)))))
       (note-environment simulation)
-      (call-telling-names
-       (remove-duplicates (append variables (mapcar #'robot-name robots)))
-       (lambda ()
-         (call-telling-errors
-          (lambda ()
-            (when keep (keep-forks keep simulation))
-            (funcall function))
-          simulation))))))
+      (in-any-case
+        (call-telling-names
+         (remove-duplicates (append variables (mapcar #'robot-name robots)))
+         (lambda ()
+           (call-telling-errors
+            (lambda ()
+              (when keep (keep-forks keep simulation))
+              (funcall function))
+            simulation)))
+        (restore-outer-globals)))))
 
 (defun call-telling-errors (function simulation)
   "Call FUNCTION in the headless SIMULATION, whose run is then over. What has gone wrong that nobody
