@@ -47,7 +47,7 @@ it last said so. Can be set."
 current outside and what *SIMULATION-VARIABLES* were before another was started here; or ().")
 
 (defun note-outer-globals (simulation)
-  "Note what *SIMULATION-VARIABLES* are globally, if SIMULATION is about to set them from inside of a
+  "Note what *SIMULATION-VARIABLES* are globally, if SIMULATION is about to set them inside of a
 headless one while another live run is current outside."
   (let ((current (global-value '*simulation*)))
     (when (and *outer-globals*

@@ -71,8 +71,9 @@ place. Return SIMULATION."
 (defun await-idle (&optional (simulation (current-simulation)) (seconds 60))
   "Wait until nothing that comes to an end is left to do in the live SIMULATION, at most SECONDS.
 True if so. Things that have kickers go on by themselves, and are not waited for, nor are tracks. Of
-one that is not live, return at once whether nothing is left at all. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and MISUSE if the
-simulator has failed and is paused for that: it would wait in vain."
+one that is not live, return at once whether nothing is left at all. Signals WRONG-ARGUMENT unless
+SECONDS is a number from 0 to 1e9, and MISUSE if the simulator has failed and is paused for that: it
+would wait in vain."
   (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
   (let ((simulation (simulation-meant simulation 'await-idle)))
