@@ -99,6 +99,19 @@ turn 1" "--rate" "free" options)))
       (is-true (find "done\",\"line\":6,\"text\":\"resume\",\"ok\":true" (ends-in objects)
                      :test #'string=)))))
 
+(test scripts.count-errors-of-lines-while-a-plan-is-under-way
+  "Those of the plan are its own; those of other lines are not."
+  (multiple-value-bind (objects status)
+      (run-script "(def-interp-proc wait-a-while () (wait-time 3))
+pause
+plan wait-a-while
+(error-set \"own\")
+resume" "--rate" "free" "--json")
+    (is (= 1 status))
+    (is-true (find-if (lambda (object) (has-words-p object "\"done\"" "\"line\":4" "\"ok\":false"))
+                      objects)
+             "~A" objects)))
+
 (test json.of-an-error-is-not-well-also-if-the-line-waits
   (is (find "done\",\"line\":3,\"text\":\"(error \\\"x\\\")\",\"ok\":false"
             (ends-in (objects-of-script "pause

@@ -85,7 +85,8 @@
     (writes-the-same-p
      (lambda ()
        (list (text-of "~A ~S of ~A" 17 'red '(1 2 3))
-             (base:message-text (base::make-message :message (list "at " 17 'red '(1 2 3))))
+             (base:message-text (base::make-message :message
+                                                    (list (base:phrase "at ~A ~A" 17 'red))))
              (base:safe-text 17)
              (tasks:shape-text '(a &optional b))
              (tasks::form-text '(17 18))

@@ -41,7 +41,8 @@ for, or 79."
 
 (defun run-text (session text)
   "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."
-  (let ((*asker* (asker-for (session-account session))))
+  (let* ((*asker* (asker-for (session-account session)))
+         (*told-of* *asker*))
     (cond ((comment-p text))
           ((lisp-p text) (evaluate-line session text))
           (t (let ((text (expand-alias text)))

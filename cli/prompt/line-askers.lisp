@@ -29,6 +29,11 @@ TYPED-P is true of a line that is no Lisp."
   "True if ASKER, of a message, asks for what lines that are no Lisp ask for."
   (or (eq *line-asker* asker) (third (gethash asker *askers*))))
 
+(defun of-line-p (message)
+  "True if MESSAGE tells of what a line that is counted has asked for, itself and not by a plan."
+  (let ((asker (message-asker message)))
+    (and (equal asker +asker+) (gethash asker *askers*) t)))
+
 (defun note-plan-of-line (account plan)
   "Note that the line under way of ACCOUNT, or NIL, has begun PLAN, a task."
   (when account (push (cons (asker-note plan) (account-line account)) (account-plans account))))

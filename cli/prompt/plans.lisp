@@ -112,7 +112,7 @@ that a plan, GO-TO or a program gives that is told of them are its own."
   (and (null (session-visit session))
        (or (verdict-p (first (message-items message)))
            (not (or (left-to-program-p message)
-                    (waiting-for-plan-p session)
+                    (and (waiting-for-plan-p session) (not (of-line-p message)))
                     (and (others-p message)
                          (some #'errand-verdict-p (errands-under-way session))))))))
 

@@ -183,7 +183,8 @@ ones were forgotten, a warning that says how many comes first."
       "Return an item of a message that says what FORMAT makes of the arguments, once it is read.")
 
 (defmethod print-object ((phrase phrase) stream)
-  (apply #'format stream (phrase-control phrase) (phrase-arguments phrase)))
+  (printing-words ()
+    (apply #'format stream (phrase-control phrase) (phrase-arguments phrase))))
 
 ;;; Printing.
 
@@ -210,8 +211,7 @@ line (reading 36)."
 
 (defun item-text (item)
   "Return ITEM as OUT writes it; words that say so if it cannot be printed."
-  (handler-case (printing-words ()
-                  (with-output-to-string (stream) (write-item item stream)))
+  (handler-case (with-output-to-string (stream) (write-item item stream))
     (error (trouble) (format nil "what cannot be printed (~A: ~A)"
                              (string-downcase (type-of item)) (one-line-text trouble)))))
 

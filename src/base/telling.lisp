@@ -89,9 +89,10 @@ streams that no user knows."
   "Return what CONDITION says of itself, as much of it as can be printed; or what another object
 does, an empty text if it cannot."
   (handler-case (without-reference (format-briefly nil "~A" condition))
-    ((or error storage-condition) () (if (typep condition 'condition)
-                                         (report-anyhow condition)
-                                         ""))))
+    ((or error storage-condition) ()
+      ;; Nothing at all may be left that can be printed.
+      (or (and (typep condition 'condition) (ignore-errors (report-anyhow condition)))
+          ""))))
 
 ;;; A report may fail, or what it is to print may have a method for PRINT-OBJECT that does. What its
 ;;; author wrote is shown all the same, as far as it came.
