@@ -110,3 +110,18 @@ that breaks is stopped there until the semaphore is signalled."
                (run:stop-simulator inner)))
         (run:stop-simulator outer)
         (setf (base:global-value 'time:*simulation*) before)))))
+
+(test threads-of-plans.end-with-the-clock
+  "Plans stay: they go on with ticks that somebody lets pass, or with the next clock."
+  (flet ((pass-ticks (simulation) (run:run-ticks 900 simulation))
+         (start-anew (simulation) (run:start-clock simulation :rate :free)))
+    (dolist (go-on (list #'pass-ticks #'start-anew))
+      (live (simulation :rate 20)
+        (let ((task (driver:begin-plan (rpl:make-plan '(rpl:seq (rpl:wait-time 800) :fine)))))
+          (awaiting (eq :waiting (rpl:task-state task)))
+          (run:stop-clock simulation)
+          (awaiting (null (driver::thread-of driver::*interface*)))
+          (is-false (rpl:task-over-p task))
+          (funcall go-on simulation)
+          (awaiting (rpl:task-over-p task))
+          (is (eq :fine (rpl:task-result task))))))))

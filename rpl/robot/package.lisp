@@ -22,7 +22,7 @@
                 #:remove-participant #:participant-after-tick #:participant-after-ticks
                 #:participant-origin
                 #:participant-busy-p #:participant-at-work-p #:participant-reseed
-                #:participant-digest #:participant-end
+                #:participant-digest #:participant-end #:participant-clock-stopped
                 #:participant-copy #:participant-at-rest #:check-forkable
                 #:call-as-participant-makes-way #:participant-unfinished
                 #:participant-cut-off #:participant-around-p

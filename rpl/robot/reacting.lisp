@@ -131,6 +131,10 @@ wait, and for something else. True if so. Most ticks are like that."
           (digest-add digest :at-work))
         (with-plans (interface) (add)))))
 
+;; A thread of plans has nothing to do while no ticks pass; nor is it there for ever.
+(defmethod participant-clock-stopped ((interface interface))
+  (wake interface))
+
 (defmethod participant-end ((interface interface) simulation)
   (declare (ignore simulation))
   (close-interface interface))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
-;;; It lives as long as there are plans, and sleeps only while none of them is ready. If it is ended
-;;; from outside, the next tick that finds plans starts another.
+;;; It lives as long as there are plans and ticks pass by themselves, and sleeps only while none of
+;;; the plans is ready. The next tick that finds plans starts another.
 
 (defun wake (interface)
   (when (interface-thread interface)
@@ -25,7 +25,9 @@
 
 (defun leave-to-ticks (interface)
   "Let the plans of INTERFACE, which are to have a thread no longer, go on in the ticks."
-  (setf (interface-thread interface) nil)
+  (swap-if (interface-thread interface) (current-thread) nil)
+  ;; Somebody may have closed it, and left that to this thread, before it had none.
+  (when (interface-closing-p interface) (react-fully interface))
   (wake-owner (simulation-timeline (interface-simulation interface)))
   :over)
 
@@ -38,7 +40,11 @@ NIL if that was aborted."
     ;; Looked at first: what is to end the plans is heard in this reaction.
     (let* ((closing-p (interface-closing-p interface))
            (outcome (call-user-code #'react-fully (participant-origin interface) interface)))
-      (cond ((and (tasks-of interface) (not closing-p)) outcome)
+      (cond ((and (tasks-of interface) (not closing-p))
+             (if (and (not (live-p (interface-simulation interface)))
+                      (or (eq :idle outcome) (waits-for-tick-p interface)))
+                 (leave-to-ticks interface)
+                 outcome))
             (t (setf (interface-thread interface) nil)
                :over)))))
 

@@ -32,6 +32,12 @@ WITH-SIMULATION, around SIMULATOR."
        (call-with-parameters
         '() (lambda () (call-with-lisps-dice function (simulation-seed simulation))))))))
 
+(defun call-in-clock (simulation function)
+  "Call FUNCTION, what a thread of the live SIMULATION does. Whoever takes part hears of its end."
+  (in-any-case
+    (call-as-owner simulation function)
+    (mapc #'participant-clock-stopped (simulation-participants simulation))))
+
 (defun start-clock (simulation &key (rate *default-rate*) (real t) paused-p)
   "Run SIMULATION live, in a thread of its own, at RATE; if PAUSED-P, from when it is told to
 RESUME. Plans have a thread as well if REAL is true and thinking is not charged for. Return
@@ -40,7 +46,7 @@ positive number nor :FREE."
   (check-parameters)
   (let ((output (editors-output))
         ;; What users' code reads and prints there, also in a debugger, is as here.
-        (caller (spread-specials (lambda (function) (call-as-owner simulation function))
+        (caller (spread-specials (lambda (function) (call-in-clock simulation function))
                                  '*package*)))
     (asking (simulation)
       (check-not-over simulation 'start-clock)

@@ -11,7 +11,7 @@ takes part in it. Manual 2.3 and appendix A.")
   (:export #:participant-after-tick #:participant-after-ticks #:participant-origin
            #:participant-busy-p #:participant-at-work-p
            #:participant-reseed #:participant-digest
-           #:participant-copy #:participant-end #:participant-unfinished
+           #:participant-copy #:participant-end #:participant-clock-stopped #:participant-unfinished
            #:participant-cut-off #:participant-around-p)
   ;; run
   (:export #:simulation #:simulation-p #:simulation-name #:simulation-world #:simulation-timeline

@@ -82,6 +82,12 @@ Meanwhile what PARTICIPANT does in another thread stops as soon as it can.")
     (declare (ignore participant))
     (funcall function)))
 
+(defgeneric participant-clock-stopped (participant)
+  (:documentation "Let PARTICIPANT know that no ticks pass by themselves any more. For any thread.")
+  (:method (participant)
+    (declare (ignore participant))
+    (values)))
+
 (defgeneric participant-end (participant simulation)
   (:documentation "Let PARTICIPANT know that SIMULATION is over.")
   (:method (participant simulation)
