@@ -3,8 +3,8 @@
 (in-package :ars-magna.rpl-robot)
 
 ;;; Whoever lets plans react holds the interface's lock. Headless that is whoever passes ticks or
-;;; starts plans; live a thread of their own, which exists while there are plans and a clock. The simulator
-;;; only posts to that and never waits for it.
+;;; starts plans; live a thread of their own, which exists while there are plans and a clock. The
+;;; simulator only posts to that and never waits for it.
 ;;;
 ;;; One rule for what several threads read: timers, ready tasks and all else of the runner are read
 ;;; and changed by the thread that holds the lock. When it gives the lock back it publishes, as one
