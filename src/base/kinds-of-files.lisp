@@ -25,12 +25,27 @@
                 (subseq text 0 (read-sequence text in))))))
       ""))
 
+(defun known-beginning (path)
+  "Return the list (kind beginning advice) of the file PATH, or NIL."
+  (find-if (lambda (beginning)
+             (starts-with-subseq beginning (beginning-of-file path)))
+           *file-beginnings* :key #'second))
+
 (defun file-advice (path kind)
   "Return in words what is in the file PATH, and what reads it, if that is another kind of file than
 KIND, a keyword; else NIL."
-  (let ((entry (find-if (lambda (beginning)
-                          (starts-with-subseq beginning (beginning-of-file path)))
-                        *file-beginnings* :key #'second)))
+  (let ((entry (known-beginning path)))
     (and entry
          (not (eq kind (first entry)))
          (third entry))))
+
+(defun check-not-foreign (file kind what)
+  "Signal MISUSE if there is something called FILE that is neither empty nor of KIND, a WHAT, whole
+or damaged, or that cannot be told."
+  (let ((path (ignore-errors (probe-file file))))
+    (unless (or (null path)
+                (ignore-errors
+                 (and (plain-file-p path)
+                      (or (string= "" (beginning-of-file path))
+                          (eq kind (first (known-beginning path)))))))
+      (reject-use "~A is no ~A, and is left as it is. Give another name." (shown-name file) what))))

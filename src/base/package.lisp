@@ -47,7 +47,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:unusable-file-text #:shown-name
            #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
-           #:host-name #:process-number #:file-advice
+           #:host-name #:process-number #:file-advice #:check-not-foreign
            #:take-permissions #:prefix-of-mine #:remove-forsaken
            #:environment-value #:real-microseconds #:run-command #:run-attached
            #:run-filter)

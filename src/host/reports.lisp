@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.host)
 
-;;; Tried with SBCL 2.2.9 and 2.5.2. A debugger of Lisp's or of an editor writes a report as
+;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. A debugger of Lisp's or of an editor writes a report as
 ;;; PRINC does.
 
 (defvar *report-addition* (constantly nil)

@@ -186,9 +186,11 @@ or, if it is NIL, that of the current simulation up to now."
 
 (addition save-journal)
 (defun save-journal (file &optional (simulation (current-simulation)))
-  "Write the journal of SIMULATION up to now to FILE. Return its truename. Signals MISUSE, and
-WRONG-ARGUMENT unless FILE is a name."
+  "Write the journal of SIMULATION up to now to FILE, in place of the journal that was there. Return
+its truename. Signals MISUSE, as where FILE is something else than a journal, and WRONG-ARGUMENT
+unless FILE is a name; then FILE is as it was."
   (check-argument save-journal file (typep file '(or string pathname)) "the name of a file")
+  (check-not-foreign file :journal "journal")
   (asking (simulation) (write-journal (end-of-journal simulation) file)))
 
 (addition load-journal)

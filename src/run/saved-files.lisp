@@ -5,20 +5,6 @@
 ;;; A file is loaded before it takes the place of what was there: so saving refuses what loading
 ;;; would refuse, by the same checks.
 
-(defun begins-as-saved-p (path)
-  "True if the file PATH is empty, or begins as those do that hold saved runs."
-  (with-open-file (in path :external-format :latin-1)
-    (let* ((start (make-string (length +saved-title+)))
-           (end (read-sequence start in)))
-      (or (zerop end)
-          (and (= end (length start)) (string= start +saved-title+))))))
-
-(defun foreign-file-p (file)
-  "True if there is something called FILE that is not a saved run, whole or damaged, or that cannot
-be told."
-  (and (ignore-errors (probe-file file))
-       (not (ignore-errors (and (plain-file-p file) (begins-as-saved-p file))))))
-
 (defun check-loadable (path name)
   "Signal MISUSE unless the saved run in the file PATH, that of the run called NAME, can be loaded."
   (handler-case (read-simulation path)
@@ -72,6 +58,5 @@ loaded again, or cannot be written, as where FILE is something else than a saved
 WRONG-ARGUMENT unless FILE is a name. Whatever it signals, FILE is as it was."
   (check-argument save-simulation file (typep file '(or string pathname)) "the name of a file")
   (check-argument save-simulation simulation (simulation-p simulation) "a simulation")
-  (when (foreign-file-p file)
-    (reject-use "~A is no saved run, and is left as it is. Give another name." (shown-name file)))
+  (check-not-foreign file :run "saved run")
   (save-deciding simulation file))
