@@ -466,7 +466,7 @@
                  (:file "libraries") (:file "our-manual") (:file "examples")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "lisp-errors")
-                 (:file "experiments-tables") (:file "experiments-fingerprints")
+                 (:file "experiments-tables") (:file "experiments-files") (:file "experiments-fingerprints")
                  (:file "thinking-experiments")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")

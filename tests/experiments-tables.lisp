@@ -374,13 +374,3 @@
         (experiment:run-experiment 'walk :trials 1 :directory path :stream nil)
         (is-true (probe-file (base:native-path (concatenate 'string path "rows.csv")))
                  "~A" name)))))
-
-(test rows.are-no-formulas
-  "Spreadsheets carry those out. What is read is what was written, whatever that begins with."
-  (loop for (text written) in '(("=HYPERLINK(1)" "'=HYPERLINK(1)") ("@x" "'@x") ("+a" "'+a")
-                                ("-" "'-") ("--1" "'--1") ("'=1" "''=1") ("''+" "'''+")
-                                ("-1.5" "-1.5") ("+7" "+7") ("-1/2" "-1/2") ("-1.5d0" "-1.5d0")
-                                ("'twas" "'twas") ("a=b" "a=b") ("'" "'") ("" ""))
-        do (let ((line (coerce (format nil "1,~A" written) '(simple-array character (*)))))
-             (is (equal (format nil "~A~%" line) (base:csv-line (list "1" text))) "~A" text)
-             (is (equal (list "1" text) (base:csv-texts line)) "~A" text))))

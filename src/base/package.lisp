@@ -43,7 +43,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:call-printing-plainly #:printing-plainly #:printing-words)
   ;; files, processes
   (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
-           #:replace-file #:plain-file-p
+           #:replace-file #:plain-file-p #:dangling-link-p
            #:unusable-file-text #:shown-name
            #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory

@@ -23,6 +23,15 @@
 (defun machine-file (directory) (file-in directory "machine.csv"))
 (defun description-file (directory) (file-in directory "experiment.txt"))
 
+(defun check-files-plain (directory)
+  "Signal DAMAGED-TABLE if what is called like a file of DIRECTORY is no file of bytes."
+  (dolist (file (list (rows-file directory) (machine-file directory) (description-file directory)))
+    (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that there is not")
+                         ((and (probe-file file) (not (plain-file-p file)))
+                          "it is a directory, pipe, socket or device"))))
+      (when trouble
+        (reject-table file nil "~A. Remove it, or give another directory." trouble)))))
+
 (defun directory-called (name)
   "Return the absolute path of the directory NAME, a string or pathname."
   (uiop:ensure-directory-pathname (merge-pathnames (path-called name :directory t) (uiop:getcwd))))
@@ -48,6 +57,7 @@
   (flet ((reject ()
            (reject-use "Another run writes to ~A. Wait for its end, or give another directory."
                        (native-name path))))
+    (check-files-plain path)
     (unless (claim-directory path) (reject))
     (unwind-protect
          (multiple-value-bind (done value)

@@ -178,6 +178,7 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 (defun existing-table (directory)
   "Return the path of DIRECTORY, in which there is a table. Signals MISUSE."
   (let ((path (directory-called directory)))
+    (check-files-plain path)
     (unless (existing-path (rows-file path))
       (let ((advice (file-advice (path-called directory) nil)))
         (when advice (reject-use "~A is no directory of an experiment: ~A." directory advice)))
