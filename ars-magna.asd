@@ -203,7 +203,7 @@
                  (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
     :components ((:file "row") (:file "checking") (:file "lines") (:file "directory")
-                 (:file "description") (:file "results") (:file "merging") (:file "shards")))
+                 (:file "origin") (:file "description") (:file "results") (:file "merging") (:file "shards")))
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
                  (:file "stopping") (:file "repeatable") (:file "running")))

@@ -39,3 +39,59 @@
                              (lambda () (experiment:merge-results (list other directory)))
                              (lambda () (experiment:merge-results (list other) :to directory))))
             (signals experiment:damaged-table (funcall use))))))))
+
+;;; What is beside the table.
+
+(test descriptions.say-what-the-table-was-made-with
+  (define-walk)
+  (with-directories (directory)
+    (walk directory :trials 1)
+    (let ((text (base:file-text (uiop:subpathname directory "experiment.txt"))))
+      (dolist (words (list "Written 2" " UTC by SBCL " (lisp-implementation-version)
+                           "Libraries: alexandria" "bordeaux-threads" "Check sum: "))
+        (is (search words text) "~A" words)))))
+
+(test descriptions.name-the-commit-and-whether-files-have-changed
+  (if (null (base:run-command "git" '("--version")))
+      (skip "no git here")
+      (call-in-directory
+       (lambda (directory)
+         (flet ((git (&rest arguments)
+                  (is (eql 0 (base:run-command
+                              "git" (list* "-C" (base:native-name directory) "-c" "user.name=a"
+                                           "-c" "user.email=a@b" "-c" "commit.gpgsign=false"
+                                           arguments))))))
+           (is (null (experiment::commit-text directory)) "no tree")
+           (git "init" "-q")
+           (is (null (experiment::commit-text directory)) "no commit yet")
+           (write-octets #(65) (uiop:subpathname directory "a.lisp"))
+           (git "add" "a.lisp")
+           (git "commit" "-q" "-m" "a")
+           (is (= (length "commit 0123456789012345678901234567890123456789")
+                  (length (experiment::commit-text directory))))
+           (write-octets #(66) (uiop:subpathname directory "a.lisp"))
+           (is (search ", and changes since" (experiment::commit-text directory))))))))
+
+(test descriptions.that-are-damaged-are-noticed
+  "Wherever they were cut or changed; the rows are read all the same."
+  (define-walk)
+  (with-directories (directory)
+    (walk directory :trials 2)
+    (flet ((warned-p ()
+             (handler-case (progn (experiment:read-results directory) nil)
+               (warning (warning) (search "is damaged" (princ-to-string warning))))))
+      (is (not (warned-p)))
+      (let* ((file (uiop:subpathname directory "experiment.txt"))
+             (text (base:file-text file)) (dice (base:make-dice 5)))
+        (loop repeat 20
+              for place = (base:roll-index (1- (length text)) dice)
+              do (rewrite file (subseq text 0 place))
+                 (is-true (warned-p) "cut at ~D" place)
+                 (let ((changed (copy-seq text)))
+                   (setf (char changed place) #\%)
+                   (rewrite file changed)
+                   (is-true (warned-p) "changed at ~D" place)))
+        (write-octets #(255 254 65) file)
+        (is-true (warned-p) "no text")
+        (handler-bind ((warning #'muffle-warning)) (walk directory :trials 2))
+        (is (not (warned-p)))))))

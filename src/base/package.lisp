@@ -49,7 +49,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number #:file-advice #:check-not-foreign
            #:take-permissions #:prefix-of-mine #:remove-forsaken
-           #:environment-value #:real-microseconds #:run-command #:run-attached
+           #:environment-value #:real-microseconds #:date-and-time #:run-command #:run-attached
            #:run-filter)
   ;; writing
   (:export #:call-replacing-file #:write-file-anew #:unwritten-reason)

@@ -12,6 +12,12 @@
   (multiple-value-bind (seconds microseconds) (sb-ext:get-time-of-day)
     (+ (* 1000000 seconds) microseconds)))
 
+(defun date-and-time ()
+  "Return the date and the time in UTC, as text. No result may depend on it."
+  (multiple-value-bind (second minute hour day month year)
+      (decode-universal-time (get-universal-time) 0)
+    (format nil "~D-~2,'0D-~2,'0D ~2,'0D:~2,'0D:~2,'0D UTC" year month day hour minute second)))
+
 (defun run-command (program arguments &key input output)
   "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS, and wait for its end.
 INPUT is a stream for it to read, :INTERACTIVE to read what this Lisp would, or NIL. Return its exit

@@ -92,6 +92,7 @@ code."
                      collect (prepare-condition experiment condition))))
     (multiple-value-bind (presence samples) (rows-there experiment parts directory)
       (check-samples experiment samples *seconds-for-checks*)
+      (note-damaged-description directory)
       (save-description experiment parts trials until directory)
       (call-with-store
        (lambda (store)

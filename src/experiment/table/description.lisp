@@ -33,14 +33,15 @@
             name (and until (value-text until)) trials)))
 
 (defun write-description (experiment parts trials until stream)
-  "Write to STREAM all that decides EXPERIMENT with TRIALS, or UNTIL intervals are narrow. PARTS are
-those of the fingerprints of its conditions, in order."
+  "Write to STREAM all that decides EXPERIMENT with TRIALS, or UNTIL intervals are narrow, and what
+it is run with. PARTS are those of the fingerprints of its conditions, in order."
   (format stream "The experiment ~(~A~).~@[~%~A~]~2%~A~%"
           (experiment-name experiment) (experiment-documentation experiment)
           (repetition-text experiment trials until))
   (format stream "Trial T has the seed ~D + T under all conditions, and at most ~D ticks.~%~
-                  ARS MAGNA ~A.~2%~A~2%"
+                  ARS MAGNA ~A.~%~{~A~%~}~%~A~2%"
           (experiment-seed experiment) (experiment-limit experiment) *simulator-version*
+          (origin-lines experiment)
           (form-text (experiment-form experiment) (experiment-package experiment)))
   (format stream "What decides the trials of each condition:~%")
   (loop for condition in (experiment-conditions experiment)
@@ -48,10 +49,37 @@ those of the fingerprints of its conditions, in order."
         do (format stream "~%~A~%= ~A~%~{  ~A~%~}" (condition-fingerprint condition)
                    (condition-name condition) (mapcar #'part-text its))))
 
+;;; The last line has a check sum of all before it.
+
+(defparameter *check-title* "Check sum: ")
+
+(defun check-line (text)
+  (format nil "~A~8,'0X~%" *check-title* (text-checksum text)))
+
+(defun description-text (directory)
+  "Return the text in DIRECTORY, or NIL if there is none that can be read."
+  (ignore-errors (file-text (description-file directory))))
+
+(defun whole-description-p (text)
+  "True if TEXT, of a file, is as it was written."
+  (let ((place (and text (search *check-title* text :from-end t))))
+    (and place
+         (string= (check-line (subseq text 0 place)) (subseq text place)))))
+
+(defun note-damaged-description (directory)
+  "Warn if the text in DIRECTORY is not as it was written."
+  (let ((file (description-file directory)))
+    (unless (or (not (existing-path file))
+                (whole-description-p (description-text directory)))
+      (warn "~A is damaged or has been changed: its last line is no check sum of the others. The ~
+             rows beside it are read all the same. To run the experiment again with that ~
+             directory writes the file anew."
+            (native-name file)))))
+
 (defun description-lines (directory)
   "Return the lines of the text in DIRECTORY; NIL if there is none."
-  (ignore-errors (uiop:split-string (file-text (description-file directory))
-                                    :separator '(#\Newline))))
+  (let ((text (description-text directory)))
+    (and text (uiop:split-string text :separator '(#\Newline)))))
 
 (defun until-described (directory)
   "Return how wide the text in DIRECTORY says intervals were to be, or NIL."
@@ -63,9 +91,13 @@ those of the fingerprints of its conditions, in order."
                             (position #\Space command :start (+ place (length "--until "))))))))
 
 (defun save-description (experiment parts trials until directory)
-  (call-replacing-file (lambda (stream)
-                         (write-description experiment parts trials until stream))
-                       (description-file directory)))
+  (let ((text (with-output-to-string (stream)
+                (printing-plainly ()
+                  (write-description experiment parts trials until stream)))))
+    (call-replacing-file (lambda (stream)
+                           (write-string text stream)
+                           (write-string (check-line text) stream))
+                         (description-file directory))))
 
 ;;; What has changed.
 

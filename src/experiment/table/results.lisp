@@ -184,6 +184,7 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
         (when advice (reject-use "~A is no directory of an experiment: ~A." directory advice)))
       (reject-use "There is no rows.csv in ~A. Give the directory of an experiment."
                   (native-name path)))
+    (note-damaged-description path)
     path))
 
 (addition read-results)
