@@ -172,3 +172,35 @@
     (is-true (told-p t t nil))
     (is-true (told-p nil t t))
     (is (not (told-p t t t)))))
+
+(test functions.that-the-prompt-calls-otherwise-are-named
+  (is-true (has-words-p (base::function-slip-text 'hand-grasp) "write ars:hand-grasp-desig"))
+  (is-true (has-words-p (funcall language:*advice-on-call* 'rpl-hand-grasp)
+                        "plans call it rpl-hand-grasp-desig"))
+  (is (null (funcall language:*advice-on-call* 'driver:rpl-robot-turn))))
+
+(test plans.that-are-begun-while-no-ticks-pass-are-told
+  (with-messages
+    (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* nil))
+      (run:simulator 'rover :display nil :rate :free)
+      (unwind-protect
+           (progn
+             (driver:begin-plan (rpl:make-plan '(rpl:wait-time 1)))
+             (is (null (message-texts)) "while they do")
+             (run:stop-simulator)
+             (driver:begin-plan (rpl:make-plan '(rpl:wait-time 1)))
+             (is-true (has-words-p (format nil "~{~A~}" (message-texts))
+                                   "waits until ticks pass" "(run-ticks N)")))
+        (run:stop-simulator)
+        (driver:end-plan :all)))))
+
+(test trials.that-begin-runs-of-their-own-are-warned-of
+  (flet ((warnings-of-run (form)
+           (warnings-of (lambda ()
+                          (with-own-definitions
+                            (eval `(experiment:defexperiment nested (:robots rover)
+                                     (:run ,form))))))))
+    (is-true (has-words-p (first (warnings-of-run '(run:with-simulation (rover)
+                                                    (driver:run-plan 'anything))))
+                          "a trial is a run of its own" "Leave with-simulation out"))
+    (is (null (warnings-of-run '(driver:run-plan 'anything))))))

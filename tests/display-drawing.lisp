@@ -162,7 +162,8 @@
                                                            "self-made")))
     (world:set-attribute thing :draw-function #'draw-word)
     (uiop:with-temporary-file (:pathname file)
-      (finishes (ars:save-simulation file))
+      (finishes (ars:save-simulation file)))
+    (uiop:with-temporary-file (:pathname file)
       (finishes (ars:save-journal file)))))
 
 (test draw-functions.a-name-that-is-defined-anew-is-drawn-anew

@@ -170,9 +170,15 @@
                               (run:run-ticks 2)))
                           "my slip")
              "~A" function))
-  (is (string= "" (error-output (run:with-simulation (rover)
-                                  (driver:rpl-init-robot rover)
-                                  (driver:run-plan (rpl:interp-lambda () (rpl:fail))))))))
+  (flet ((says (&rest options)
+           (error-output (run:call-with-simulation
+                          (lambda ()
+                            (driver:run-plan (rpl:make-plan '(rpl:fail :class :lost)))
+                            (driver:run-plan (rpl:make-plan '(rpl:fail :class :lost))))
+                          '(rover) :errors (or (first options) :report)))))
+    (is-true (has-words-p (says) "failed: Plan failure :LOST" "which is true" ":FAILED"))
+    (is (= 1 (count "failed: Plan failure" (lines-of (says)) :test #'search)) "once for a plan")
+    (is (string= "" (says :collect)))))
 
 (test errors.that-are-collected-are-the-latest
   (with-messages

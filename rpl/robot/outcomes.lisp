@@ -139,16 +139,30 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
 
 ;;; A command of users' has a function in plans only when it is known what becomes of its end.
 
+(defun command-called (name)
+  "Return the command that NAME, a symbol that begins with RPL-, is for; or NIL."
+  (let ((text (symbol-name name)))
+    (and (starts-with-subseq "RPL-" text)
+         (find-command (subseq text (length "RPL-")) nil))))
+
 (defun command-without-outcome (name)
   "Return the name of the command that plans could call by NAME, a symbol, if there were a
 DEFINE-OUTCOME for it; or NIL."
-  (let ((text (symbol-name name)))
-    (and (starts-with-subseq "RPL-" text)
-         (let ((command (find-command (subseq text (length "RPL-")) nil)))
-           (and command
-                (not (has-twin-p (command-name command)))
-                (same-name-p name (plan-function-name (command-name command)))
-                (command-name command))))))
+  (let ((command (command-called name)))
+    (and command
+         (not (has-twin-p (command-name command)))
+         (same-name-p name (plan-function-name (command-name command)))
+         (command-name command))))
+
+(defun advice-on-prompt-name (name)
+  "Return in a sentence what plans call the command that the prompt calls like NAME, but without
+RPL-; or NIL."
+  (let* ((command (command-called name))
+         (own (and command (plan-function-name (command-name command)))))
+    (and own
+         (not (same-name-p own name))
+         (has-twin-p (command-name command))
+         (format nil "plans call it ~(~A~)." own))))
 
 (defun advice-on-command (name)
   "Return in sentences what lets plans call NAME, if a command is called so; or NIL."
@@ -163,4 +177,5 @@ DEFINE-OUTCOME for it; or NIL."
                    (spec-type (command-resource found))
                    (mapcar #'spec-name (command-results found)))))))
 
-(setf *advice-on-call* 'advice-on-command)
+(setf *advice-on-call* (lambda (name)
+                         (or (advice-on-prompt-name name) (advice-on-command name))))

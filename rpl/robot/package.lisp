@@ -17,7 +17,7 @@
                 #:robot-meant #:simulation-over
                 #:simulation-seed #:simulation-plans-dice-p #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:simulation-observers
-                #:simulation-world #:robot-simulation
+                #:simulation-world #:simulation-messages #:robot-simulation
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
                 #:remove-participant #:participant-after-tick #:participant-after-ticks
                 #:participant-origin
@@ -43,7 +43,8 @@
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
-                #:waiting-parts #:text-of-plans #:advice-on-stillness #:fluents-awaited
+                #:waiting-parts #:failure-text #:lisp-failure
+                #:text-of-plans #:advice-on-stillness #:fluents-awaited
                 #:fluent-text #:note-twin #:has-twin-p #:last-command #:endless-advice
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner

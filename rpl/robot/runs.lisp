@@ -57,11 +57,23 @@ called with that before anything else can happen."
     (ensure-thread interface)
     (call-to-plans interface)))
 
+(defun tell-if-begun-for-later (plan interface)
+  "Say once for the robot of INTERFACE if PLAN, begun on it, waits for a run to go on."
+  (let* ((robot (interface-robot interface)) (world (robot-world robot)))
+    (when (and (between-runs-p world) (null *asker*) (not *ticks-follow-p*))
+      (warn-once (list :kept (robot-name robot) :plan) world
+                 (format nil "The plan ~A waits until ticks pass: none of ~A do by themselves now. ~
+                              (run-ticks N) lets some pass, (simulator '~(~A~)) all that come."
+                         (if (symbolp plan) (string-downcase plan) "that was begun")
+                         robot (robot-name robot))))))
+
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. Headless
 it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
-  (begin-in (ensure-interface) plan arguments #'identity))
+  (let ((interface (ensure-interface)))
+    (prog1 (begin-in interface plan arguments #'identity)
+      (tell-if-begun-for-later plan interface))))
 
 (defconstant +longest-report+ 4000
   "How many characters a report of plans has at most.")
@@ -170,6 +182,19 @@ but somebody outside can let plans go on, say so, once."
   (loop for tasks = (interface-awaited interface)
         until (swap-if (interface-awaited interface) tasks (remove task tasks :test #'eq))))
 
+;; A failure is true, so a program that only asks whether there is a value takes it for success.
+(defun tell-of-failure (interface task)
+  "Say once for each plan of a headless run that TASK, which RUN-PLAN ran for a program, failed."
+  (let ((simulation (interface-simulation interface)))
+    (unless (or *asker*
+                (typep (task-result task) 'lisp-failure) ; an error is reported anyway
+                (live-p simulation)
+                (not (eq :report (message-queue-error-policy (simulation-messages simulation)))))
+      (warn-once (list :failed (task-label task)) (simulation-world simulation)
+                 (format nil "The plan ~A failed: ~A. The second value of RUN-PLAN says so, ~
+                              :FAILED; the first is the failure, which is true."
+                         (task-label task) (failure-text (task-result task)))))))
+
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT; else
@@ -190,7 +215,8 @@ place. Signals UNKNOWN-NAME and MISUSE."
                          (lambda (begun)
                            (setf task begun)
                            (atomic-push begun (interface-awaited interface))))
-               (setf state (await-plan interface task)))
+               (setf state (await-plan interface task))
+               (when (eq :failed state) (tell-of-failure interface task)))
         (when (and task (not (task-over-p task))) (end-in interface task))
         (when task (await-no-longer interface task)))
       (values (task-result task) state))))

@@ -23,14 +23,22 @@ that exports it; or NIL."
           (and (find-package package) (find-symbol (symbol-name name) package))
         (when (and (eq :external status) (fboundp symbol)) (return (values symbol package)))))))
 
+;; The layer that knows commands sets it.
+(defvar *function-meant* (constantly nil)
+  "A function of a symbol that is the name of no function: it returns that of one which is called so
+elsewhere, as at the prompt, or NIL.")
+
 (defun function-slip-text (name)
   "Return in a sentence what NAME, of no function, may be a slip for, or NIL."
   (when (and (symbolp name) (symbol-package name))
-    (multiple-value-bind (ours package) (ours-called name)
+    (multiple-value-bind (ours package)
+        (ours-called (or (funcall *function-meant* name) name))
       (if ours
-          (format nil "There is one in ~A: write ~(~:*~A:~A~), or type (in-package :ars-user) ~
-                       first."
-                  package name)
+          (if (eq ours (find-symbol (symbol-name ours) (symbol-package name)))
+              (format nil "In Lisp it is ~(~A~)." ours)
+              (format nil "There is one in ~A: write ~(~:*~A:~A~), or type (in-package :ars-user) ~
+                           first."
+                      package ours))
           (let ((like (nearest-name name (functions-like name (symbol-package name)))))
             (and like (format nil "Did you mean ~(~A~)?" (unqualified-text like))))))))
 

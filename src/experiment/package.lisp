@@ -28,7 +28,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
            #:experiment-from #:experiment-package #:experiment-limit #:find-condition #:trial-values
-           #:condition-name #:condition-parameters)
+           #:condition-name #:condition-parameters #:doubt-nested-run)
   ;; trial, workers, description, values
   (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text #:experiment-file #:number-in
            #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks

@@ -10,7 +10,7 @@ experiments to their rates of success. Use it beside FIVEAM.")
   (:import-from :ars-magna.run #:variables-among)
   (:import-from :ars-magna.experiment
                 #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions
-                #:experiment-trials #:experiment-limit #:experiment-package
+                #:experiment-trials #:experiment-limit #:experiment-package #:doubt-nested-run
                 #:find-condition #:condition-name
                 #:run-trial #:replay-trial #:call-in-silence #:call-by-workers #:form-text
                 #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error)

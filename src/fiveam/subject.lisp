@@ -69,6 +69,7 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
 
 (defun subject-maker (operator form robots parameters clean limit)
   "Return a form for the subject that OPERATOR, a macro of this name, was given in these."
+  (doubt-nested-run form)
   (let ((names (robot-names operator robots form)))
     `(make-subject (lambda ()
                      (declare (special ,@(variables-among names)))

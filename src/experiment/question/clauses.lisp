@@ -156,6 +156,13 @@ true of; or about CLAUSE if there is none at all."
                                 it first: (:measure (NAME (~A ~A)))."
                                name form name form name form)))
 
+(defun doubt-nested-run (forms)
+  "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
+  (when (mentioned-p 'with-simulation forms)
+    (doubt-definition "a trial is a run of its own, and a with-simulation in it another one, which ~
+                       has the same seed in each trial, and of which measures see nothing. Leave ~
+                       with-simulation out: (run-plan ...) alone.")))
+
 ;;; A plan's name.
 
 (defun quoted-name (form)
@@ -240,4 +247,5 @@ true of; or about CLAUSE if there is none at all."
       (reject-clause definition part "something that the :conditions do not vary already")))
   (check-column-names definition clauses)
   (doubt-measures clauses)
+  (doubt-nested-run (clause-called :run clauses))
   (doubt-unused clauses))
