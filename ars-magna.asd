@@ -114,7 +114,7 @@
                  (:file "journal-text") (:file "replay") (:file "redoing") (:file "rewinding")
                  (:file "outer-names") (:file "inventory") (:file "saved-values") (:file "saving")
                  (:file "restoring") (:file "loading") (:file "saved-files")
-                 (:file "status")))
+                 (:file "status") (:file "leaving")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "contrast") (:file "gcontext")
                  (:file "canvas") (:file "blank-canvas") (:file "drawing")

@@ -204,3 +204,18 @@
                                                     (driver:run-plan 'anything))))
                           "a trial is a run of its own" "Leave with-simulation out"))
     (is (null (warnings-of-run '(driver:run-plan 'anything))))))
+
+(test programs.that-end-before-their-commands-have-are-told
+  "What a live robot was asked for, also if it was stopped; but not what goes on for ever."
+  (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* nil))
+    (run:simulator 'rover :display nil :rate :free)
+    (let ((world (run:simulation-world time:*simulation*)))
+      (unwind-protect
+           (progn
+             (is (null (run::text-on-leaving world)))
+             (time:pause)
+             (command:robot-turn (symbol-value 'rover) 1 (lambda (&rest ignore) ignore))
+             (run:stop-simulator)
+             (is-true (has-words-p (run::text-on-leaving world) "robot-turn has ended"
+                                   "(await-idle) waits")))
+        (run:stop-simulator)))))

@@ -80,7 +80,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
            #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:*while-waiting* #:wait-a-while #:wait-patiently #:call-when-free
-           #:*leaving-p* #:start-thread #:own-thread-p #:join-thread #:interrupt-thread
+           #:*leaving-p* #:call-when-leaving
+           #:start-thread #:own-thread-p #:join-thread #:interrupt-thread
            #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; finishing

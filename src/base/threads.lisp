@@ -77,7 +77,11 @@ others need this thread for meanwhile is done, and what interrupts this thread i
 (defun note-leaving ()
   (setf *leaving-p* t))
 
-(pushnew 'note-leaving sb-ext:*exit-hooks*)
+(defun call-when-leaving (name)
+  "Let the function called NAME be called when this Lisp is left, before its threads end."
+  (pushnew name sb-ext:*exit-hooks*))
+
+(call-when-leaving 'note-leaving)
 
 ;; What Lisp compiles in a thread of ours, as for generic functions, is no loss then.
 (defun tell-of-unit (function left-p)

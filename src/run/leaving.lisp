@@ -1,0 +1,39 @@
+;;;; leaving.lisp -- what a program without a debugger leaves undone when it ends.
+
+(in-package :ars-magna.run)
+
+;;; A script that asks a live robot for something, and ends, never sees it done: nobody types on.
+;;; Where somebody may, as at a REPL, it is his own choice to leave.
+
+(defun programs-request-p (request)
+  "True if a program has asked for REQUEST itself, as no plan, continuation or prompt has."
+  (and (request-name request)
+       (starts-with-subseq "Lisp" (note-text (request-asker request)))))
+
+(defun left-undone (world)
+  "Return the names of what programs have asked for in WORLD that is under way or has not begun."
+  (let ((resources (loop for robot in (world-robots world)
+                         append (cons robot (robot-parts robot)))))
+    (loop for request in (append (mapcar #'resource-event resources)
+                                 (timeline-inbox (world-timeline world)))
+          when (and (typep request 'request) (programs-request-p request))
+            collect (string-downcase (request-name request)))))
+
+(defun text-on-leaving (world)
+  "Return in sentences what is left undone in WORLD, and a remedy; NIL if there is nothing."
+  (let ((undone (remove-duplicates (left-undone world) :test #'string=)))
+    (when undone
+      (format nil "The program ends before ~{~A~^, ~} ~:[has~;have~] ended in ~(~A~), at tick ~D. ~
+                   (await-idle) waits for that."
+              undone (rest undone) (map-name (world-map world)) (world-tick world)))))
+
+(defun tell-of-left-undone ()
+  "Write to the error output what is left undone in the worlds that top-level code works in, if
+there is no debugger."
+  (when (disabled-hook-p (debugger-hook))
+    (dolist (map (all-maps))
+      (let ((text (and (map-resident map)
+                       (ignore-errors (text-on-leaving (map-resident map))))))
+        (when text (format *error-output* "~&*WARNING* -> ~A~%" text))))))
+
+(call-when-leaving 'tell-of-left-undone)
