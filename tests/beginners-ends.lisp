@@ -219,3 +219,16 @@
              (is-true (has-words-p (run::text-on-leaving world) "robot-turn has ended"
                                    "(await-idle) waits")))
         (run:stop-simulator)))))
+
+(test commands.that-cut-each-other-short-are-told-live-too
+  (with-messages
+    (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* nil))
+      (run:simulator 'rover :display nil :rate 20)
+      (unwind-protect
+           (let ((rover (symbol-value 'rover)))
+             (time:pause)
+             (command:robot-turn rover 1 nil)
+             (command:robot-go-forward rover 3 nil)
+             (is-true (has-words-p (format nil "~{~A~}" (message-texts))
+                                   "robot-turn does nothing" "(await-idle)")))
+        (run:stop-simulator)))))

@@ -74,11 +74,21 @@ WITH-SIMULATION, somebody at a REPL or a continuation."
                   (lasting-p (operation-command request))))
            (timeline-inbox timeline)))
 
+(defun barely-begun (resource timeline)
+  "Return what a live robot's RESOURCE carries out, if it takes time and was asked for in the last
+tick; or NIL."
+  (let ((event (resource-event resource)))
+    (and (live-p timeline)
+         (operation-p event)
+         (lasting-p (operation-command event))
+         (<= (timeline-tick timeline) (1+ (operation-asked event)))
+         event)))
+
 (defun doubt-hurry (command resource timeline)
   "Say once for a pair if COMMAND is asked of RESOURCE by who has asked for another one in the same
-tick, and is not told of the end of that."
+tick, or live in the one before, and is not told of the end of that."
   (when (and (by-program-p) (lasting-p command))
-    (let ((before (not-yet-begun resource timeline)))
+    (let ((before (or (not-yet-begun resource timeline) (barely-begun resource timeline))))
       (when (and before
                  (not (eq command (operation-command before)))
                  (null (operation-continuation before))
@@ -93,9 +103,10 @@ tick, and is not told of the end of that."
                (format nil "~(~A~) does nothing: ~(~A~) was asked for before a tick has passed, ~
                             and ~A carries out one command at a time. Ask for that in the ~
                             continuation, (~(~A~) ... (continuation ~(~A~) (~(~A~) ...))), or ~
-                            let ticks pass before it: (run-ticks N)."
+                            let ticks pass before it: ~:[(run-ticks N)~;(await-idle)~]."
                        (command-name before) (command-name command) resource
-                       (command-name before) (told-at-end before) (command-name command)))))
+                       (command-name before) (told-at-end before) (command-name command)
+                       (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
 ;; Manipulations, and commands that users define, may be for two robots.
 (defun doubt-owners (command robot arguments)
