@@ -47,7 +47,10 @@
         (awaited (mapcar #'task-awaiting parts)))
     (warn-once (list :stranded (task-label task))
                (simulation-world simulation)
-               (list "At tick " (simulation-tick simulation) " " (text-of-stranded task parts))
+               (list "At tick " (simulation-tick simulation) " " (text-of-stranded task parts)
+                     (if (and (live-p simulation) (notany #'robots-wait-p parts))
+                         " So it waits until you do, as from a REPL."
+                         ""))
                :notable (or (live-p simulation)
                             (lambda () (still-waiting-p parts awaited))))))
 
