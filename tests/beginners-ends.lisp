@@ -232,3 +232,11 @@
              (is-true (has-words-p (format nil "~{~A~}" (message-texts))
                                    "robot-turn does nothing" "(await-idle)")))
         (run:stop-simulator)))))
+
+(test failures.that-nobody-has-read-name-their-command
+  (is-true (has-words-p (error-output
+                          (run:with-simulation (rover)
+                            (command:robot-set-speed (symbol-value 'rover) 1 nil)
+                            (command:hand-ungrasp (robot:robot-hand (symbol-value 'rover) 0) nil)
+                            (run:run-ticks 20)))
+                        "*ERROR* -> hand-ungrasp: Hand 0 is not holding anything")))

@@ -22,15 +22,16 @@
   "A function that returns the run that a message queued in this thread belongs to, or NIL.")
 
 (defstruct (message (:constructor make-message
-                        (kind items &key cause (summary "") told-p notable-p))
+                        (kind items &key cause (summary "") told-p notable-p about))
                     (:copier nil))
   "What the simulator or a user has to say: KIND is :error, :warning or :message. ASKER is a note of
 who asked for what it tells of, such as a command that has ended, or NIL; ROBOT is the name of the
 robot whose command that is, or NIL. RUN is what it belongs to, as several runs may share a queue,
 or NIL. CAUSE is what is wrong with users' code, which SUMMARY says in a line, or NIL, see
-troubles.lisp. TOLD-P is true if users' code has been told of it otherwise. NOTABLE-P is true of a
-warning that is shown like an error if nobody reads it; or a function that returns that in the
-end; or :AT-ONCE of one that is shown as it comes if nobody listens, as the run may never end."
+troubles.lisp. ABOUT, or NIL, is the name of the command whose failure it tells. TOLD-P is true if
+users' code has been told of it otherwise. NOTABLE-P is true of a warning that is shown like an
+error if nobody reads it; or a function that returns that in the end; or :AT-ONCE of one that is
+shown as it comes if nobody listens, as the run may never end."
   (kind :message :type (member :error :warning :message) :read-only t)
   (items '() :type list :read-only t)
   (asker *told-of* :read-only t)
@@ -38,6 +39,7 @@ end; or :AT-ONCE of one that is shown as it comes if nobody listens, as the run 
   (run (funcall *run-that-reports*) :read-only t)
   (cause nil :read-only t)
   (summary "" :type string :read-only t)
+  (about nil :type (or null symbol) :read-only t)
   (told-p nil :type boolean :read-only t)
   (notable-p nil :type (or boolean (eql :at-once) function) :read-only t))
 
@@ -218,6 +220,14 @@ line (reading 36)."
 (defun message-text (message)
   "Return the items of MESSAGE as a string, without the marker of its kind."
   (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
+
+(defun text-with-command (message)
+  "Return what MESSAGE says, with the name of the command that it is about before it: for somebody
+who has not just asked for that."
+  (let ((text (message-text message)) (name (message-about message)))
+    (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
+        (format nil "~(~A~): ~A" name text)
+        text)))
 
 (defun write-message (message stream &optional (text (message-text message)))
   "Write MESSAGE, which says TEXT, and a new line to STREAM, or return that if STREAM is NIL, marked

@@ -117,7 +117,7 @@ it otherwise."
   "Write MESSAGES to STREAM, the same text once, with how often it came."
   (let ((counts (make-hash-table :test 'equal)) (texts '()))
     (dolist (message messages)
-      (let ((text (write-message message nil)))
+      (let ((text (write-message message nil (text-with-command message))))
         (when (= 1 (incf (gethash text counts 0))) (push text texts))))
     (loop for text in (reverse texts)
           repeat *most-unread*
@@ -172,7 +172,8 @@ unless they were read or told before."
 (defun echo-message (message queue)
   "Show MESSAGE to who works at this Lisp. Of what comes again and again, less and less is shown."
   (unless flush-all-errors*
-    (let* ((text (string-right-trim '(#\Newline) (write-message message nil)))
+    (let* ((text (string-right-trim '(#\Newline)
+                                    (write-message message nil (text-with-command message))))
            (count (count-echo text queue))
            (stream (or *echo-output* *error-output*)))
       (when (power-of-ten-p count)

@@ -116,6 +116,7 @@ command that it cut short, or NIL"))
   "Queue TEXT, a message of KIND, as OPERATION ends with the error CODE, which its continuation is
 told, too."
   (queue-message (make-message kind (list text)
+                               :about (command-name (operation-command operation))
                                :told-p (and (operation-continuation operation) t))
                  *message-queue*)
   (note-failed operation code text))
