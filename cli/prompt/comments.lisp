@@ -32,7 +32,7 @@ it ends. Signals BAD-LINE if it does not."
         (when end (return (subseq line end)))
         (setf depth deeper
               position 0
-              line (or (read-input session "     > " text)
+              line (or (read-outline session text)
                        (reject-line "The comment that begins with #| does not end; close it with ~
                                      |#.")))))))
 

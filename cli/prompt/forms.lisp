@@ -11,31 +11,13 @@
     (unless line (reject-line "The form is not complete: ~A" (one-line text)))
     (concatenate 'string text '(#\Newline) line)))
 
-(defclass growing-text (fundamental-character-input-stream)
-  ((text :initarg :text :accessor grown-text)
-   (position :initarg :position :accessor grown-position)
-   (more :initarg :more :reader text-grower))
-  (:documentation "The characters of TEXT from POSITION on. After its end comes a newline, and then
-what the function MORE returns of it: the same text, that newline and another line."))
-
-(defmethod stream-read-char ((stream growing-text))
-  (when (< (length (grown-text stream)) (grown-position stream))
-    (setf (grown-text stream) (funcall (text-grower stream) (grown-text stream))))
-  (let ((text (grown-text stream)) (position (grown-position stream)))
-    (incf (grown-position stream))
-    (if (< position (length text)) (char text position) #\Newline)))
-
-(defmethod stream-unread-char ((stream growing-text) char)
-  (declare (ignore char))
-  (decf (grown-position stream))
-  nil)
-
 (defun read-growing (session text start)
   "Return what READ-FORM does, of a form that goes on after TEXT."
   (let* ((stream (make-instance 'growing-text
                                 :text text :position start
                                 :more (lambda (text) (read-more session text))))
-         (form (read-preserving-whitespace stream)))
+         (form (skipping-rest (session (grown-text stream) start)
+                 (read-preserving-whitespace stream))))
     (values form
             (min (grown-position stream) (length (grown-text stream)))
             (grown-text stream))))
@@ -52,8 +34,10 @@ what the function MORE returns of it: the same text, that newline and another li
 
 (defun read-form (session text &optional (start 0))
   "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;
-and TEXT with what was read. Where Lisp leaves out what is there, the form is one without values."
-  (handler-case (read-from-string text t nil :start start)
+and TEXT with what was read. Where Lisp leaves out what is there, the form is one without values.
+One that cannot be read is read over to its end."
+  (handler-case (skipping-rest (session text start)
+                  (read-from-string text t nil :start start))
     (end-of-file ()
       (if (left-out-p text start)
           (values '(values) (length text) text)

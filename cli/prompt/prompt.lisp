@@ -35,12 +35,23 @@ tell somebody who sits there."
   (note-line-begun (session-account session) (if (comment-p text) nil text)
                    (lines-typed (session-input session)) (session-errors session)))
 
+(defun begin-long-line (session condition)
+  "Begin the line of SESSION that is too long, as CONDITION says, and pass over the rest of the form
+or comment that begins in it."
+  (let ((outline (line-outline condition)))
+    (begin-line-of session (line-beginning condition))
+    (if (lisp-p outline)
+        (skip-rest session outline 0)
+        (without-blocks session outline))))
+
 (defun read-next (session)
   "Return the next line of SESSION, or NIL at the end. One that is too long to be done is begun, so
-that its end is reported."
-  (handler-bind ((line-too-long (lambda (condition)
-                                  (begin-line-of session (line-beginning condition)))))
-    (read-input session (if (session-breaks session) "Break> " "Robot> "))))
+that its end is reported; but a comment is as good as an empty line."
+  (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
+    (line-too-long (condition)
+      (cond ((comment-p (line-outline condition)) "")
+            (t (begin-long-line session condition)
+               (error condition))))))
 
 (defun find-place (session)
   "Let SESSION command the robot that it is for, in a run that goes on, and listen to that."

@@ -8,9 +8,15 @@
 
 (defconstant +longest-line-typed+ 1000000 "How many bytes a line has at most.")
 
+;; What stands behind so much of one line may be taken for something else.
+(defconstant +longest-outline+ 50000000
+  "How many bytes of a line are looked at for parentheses and the like.")
+
 (define-condition line-too-long (bad-line)
-  ((beginning :initarg :beginning :reader line-beginning))
-  (:documentation "A line that was typed is too long. BEGINNING is how it begins."))
+  ((beginning :initarg :beginning :reader line-beginning)
+   (outline :initarg :outline :reader line-outline))
+  (:documentation "A line that was typed is too long. BEGINNING is how it begins, OUTLINE a text
+that has its beginning, parentheses, quotes and marks of comments."))
 
 (defvar *program-reads* nil
   "What is called before a program of the user, not the prompt, reads a line that is typed; NIL
@@ -36,27 +42,36 @@ is true if somebody types it, COUNT how many lines of it have been read."))
 (defmethod typed-by-hand-p ((stream stream))
   (interactive-stream-p stream))
 
+(defun outlining-p (char last)
+  "True if CHAR, which stands after LAST, shows how forms of Lisp go on."
+  (flet ((mark-p (char) (find char "()\"\\|;#")))
+    (or (mark-p char) (mark-p last) (char= char #\Newline))))
+
 (defun read-octets (octets)
-  "Return the characters of the stream OCTETS up to and with the next newline, not many more than a
-line has at most; and whether there were more."
+  "Return the characters of the stream OCTETS up to and with the next newline, but not many more
+than a line has at most, and no more than its outline behind those; and whether there were more."
   (let* ((count 0)
          (line (with-output-to-string (out)
                  (handler-case
-                     (loop for char = (read-char octets nil)
+                     (loop for last = #\Newline then char
+                           for char = (read-char octets nil)
                            while char
-                           do (when (<= count +longest-line-typed+) (write-char char out))
+                           do (when (or (<= count +longest-line-typed+)
+                                        (and (<= count +longest-outline+) (outlining-p char last)))
+                                (write-char char out))
                               (incf count)
                            until (char= char #\Newline))
                    (stream-error () nil)))))
     (values line (< (1+ +longest-line-typed+) count))))
 
 (defun reject-length (octets)
-  "Signal LINE-TOO-LONG of a line that begins with OCTETS."
-  (error 'line-too-long
-         :beginning (cut (decoded octets) 60)
-         :text (format nil "The line is longer than ~D bytes. Put what is in it into a file, and ~
-                            (load \"FILE\")."
-                       +longest-line-typed+)))
+  "Signal LINE-TOO-LONG of a line whose outline is OCTETS."
+  (let ((outline (string-right-trim '(#\Newline) (decoded octets))))
+    (error 'line-too-long
+           :beginning (cut outline 60) :outline outline
+           :text (format nil "The line is longer than ~D bytes. Put what is in it into a file, and ~
+                              (load \"FILE\")."
+                         +longest-line-typed+))))
 
 (defgeneric next-typed-line (stream)
   (:documentation "Return the next line that is typed into STREAM, with the newline at its end, if

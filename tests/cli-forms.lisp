@@ -1,0 +1,45 @@
+;;;; cli-forms.lisp -- forms and comments over several lines, some of which cannot be read.
+
+(in-package :ars-magna.tests)
+
+(in-suite cli-scripts)
+
+(defun ends-of-lines (text)
+  "Return the numbers of lines with a done in a script of TEXT, a list, negative if not ok."
+  (loop for object in (objects-of-script text)
+        when (search "\"type\":\"done\"" object)
+          collect (let ((line (parse-integer object :start (+ 7 (search "\"line\":" object))
+                                                    :junk-allowed t)))
+                    (if (search "\"ok\":true" object) line (- line)))))
+
+(defun text-of-bytes (count)
+  (make-string count :initial-element #\x))
+
+(defparameter *too-many* (1+ cli::+longest-line-typed+) "How many bytes no line has.")
+
+(test forms.that-cannot-be-read-are-passed-over-to-their-end
+  "No line of the rest is a command."
+  (dolist (form '("(list foo:bar~%turn 1~%)" "(list #<x>~%turn 1~%)" "(list 1 . 2 3~%turn 1~%)"
+                  "(list~%foo:bar ; )~%\"a)\\\")~%\" #\\) |)~%)|~%#| #| ) |# )~%|# #\\(~%turn 1)"
+                  "(list foo:bar) (list~%1~%)" "(list #.(error \"no\")~%(turn~%1))"))
+    (let ((text (format nil form)))
+      (is (equal (list -1 (+ 2 (count #\Newline text)))
+                 (ends-of-lines (format nil "~A~%turn 2~%" text)))
+          "~A" form))))
+
+(test forms.that-cannot-be-read-and-do-not-end-are-one-error
+  (is (equal '(-1) (ends-of-lines (format nil "(list foo:bar~%turn 1~%"))))
+  (is (equal '(-1 2) (ends-of-lines (format nil "(list foo:bar))~%turn 1~%"))))
+  (is (equal '(-1 2) (ends-of-lines (format nil "#<x>~%turn 1~%")))))
+
+(test forms.with-a-line-that-is-too-long-are-passed-over-to-their-end
+  (let ((long (text-of-bytes *too-many*)))
+    (is (equal '(-1 5) (ends-of-lines (format nil "(list~%~A~%turn 1~%)~%turn 2~%" long))))
+    (is (equal '(-1 4) (ends-of-lines (format nil "(list ~A~%turn 1~%)~%turn 2~%" long))))
+    (is (equal '(-1 3) (ends-of-lines (format nil "(list~%\"~A\")~%turn 2~%" long))))
+    (is (equal '(4) (ends-of-lines (format nil "#|~%~A~%turn 1|#~%turn 2~%" long))))
+    (is (equal '(-1 2) (ends-of-lines (format nil "~A~%turn 2~%" long))))))
+
+(test comments.may-be-of-any-length
+  (let ((long (text-of-bytes *too-many*)))
+    (is (equal '(2 4) (ends-of-lines (format nil "; ~A~%turn 1~%# ~:*~A~%turn 2~%" long))))))
