@@ -34,7 +34,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:import-from :ars-magna.rpl-robot
                 #:rpl-init-robot #:rpl-robot #:rpl-runner
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
-                #:call-with-plans-in-use #:*robot-to-drive*)
+                #:call-with-plans-in-use #:*robot-to-drive* #:note-robot-commanded)
   (:import-from :ars-magna.rpl-robot #:*trace-plans*)
   (:import-from :ars-magna.rpl.language #:all-constructs)
   (:import-from :ars-magna.nisp #:readtable-name)

@@ -69,6 +69,16 @@
                                                 "robot gofer" turn)))
                             "one robot of a run at a time, now MARVIN" "end-plan")))))
 
+(test robots.that-are-commanded-again-are-driven-by-plans-again
+  "Whatever RPL-INIT-ROBOT has said before, also of the robot that was commanded meanwhile."
+  (with-names ("MARVIN" "GOFER")
+    (is (equal '("#<GOFER>" "#<MARVIN>" ":SUCCEEDED")
+               (type-to 'ars-worlds:marvin "(rpl-init-robot gofer)" "robot gofer" "robot marvin"
+                        "(run-plan (interp-lambda () (rpl-robot)))")))
+    (is (equal '("#<GOFER>" "#<MARVIN>" ":SUCCEEDED")
+               (type-to 'ars-worlds:marvin "(rpl-init-robot gofer)" "robot marvin"
+                        "(run-plan (interp-lambda () (rpl-robot)))")))))
+
 (test robots.that-run-live-are-known
   (with-names ("DOT")
     (unwind-protect (run:simulator 'ars-worlds:dot :rate :free :display nil)

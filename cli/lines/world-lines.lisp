@@ -75,5 +75,6 @@ those of others."
     (cond ((null name) (list-robots))
           ((member name (robots-here))
            (call-by-name (robots-here))
-           (setf *prompt-robot* name))
+           (setf *prompt-robot* name)
+           (note-robot-commanded))
           (t (reject-elsewhere name)))))

@@ -24,7 +24,9 @@ SAVE-PLAN-TIMELINE.")
   (:fixed
    (robot nil (or null robot) "the robot that plans drive")
    (simulation nil t "the simulation that the robot is in")
-   (commanded nil (or null robot) "the robot that a prompt commanded when this was made, or NIL")
+   (commanded nil (or null robot (eql :none))
+              "the robot that a prompt commanded when this was made, or NIL; :NONE if the prompt has
+been told since which robot it commands")
    (valve (make-valve "robot") valve "the valve of the robot, for plans that want to have it"))
   (:state
    (runner nil (or null plan-runner) "what runs the plans")

@@ -96,6 +96,7 @@
            #:interface-wishes #:holding-p #:call-with-plans #:wish #:wish-task #:wish-interface
            #:serve-wish #:add-wish #:forget-wish #:grant-wish #:wishes-in-tick #:fork-at-rest
            #:unwanted-wish-p #:call-apart #:ensure-interface #:*robot-to-drive* #:begin-in
+           #:note-robot-commanded
            #:pass-until #:how-over)
   ;; seeing
   (:export #:plan-ending-p #:call-with-plans-in-use #:print-plans #:step-plan))

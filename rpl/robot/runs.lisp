@@ -17,9 +17,15 @@ only one, or that of the prompt. Signals MISUSE if that could be several."
                          (length robots)
                          (and robots (robot-name (first robots))))))))
 
+(defun note-robot-commanded ()
+  "Note that the prompt in which this thread is has been told which robot it commands from now on:
+plans that begin later drive that one, whatever RPL-INIT-ROBOT has said before."
+  (let ((interface (usable-interface)))
+    (when interface (setf (interface-commanded interface) :none))))
+
 (defun robot-commanded-since (interface)
-  "Return the robot that the prompt commands if it did not yet when INTERFACE was made, and plans
-drive another; or NIL."
+  "Return the robot that the prompt commands if it did not yet when INTERFACE was made, or has been
+told since to command it, and plans drive another; or NIL."
   (let ((robot (and (interface-commanded interface) (commanded-robot))))
     (and robot
          (not (eq robot (interface-commanded interface)))
