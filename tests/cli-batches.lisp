@@ -269,6 +269,20 @@ output."
         (run:stop-simulator)))
     (get-output-stream-string out)))
 
+(test sessions.lines-that-come-at-once-wait-for-each-other-where-no-line-is-edited
+  (let ((out (make-string-output-stream)))
+    (unwind-protect
+         (progn (run:simulator 'ars-worlds:dot :rate 50 :display nil)
+                (cli:run-session
+                 (cli:make-session
+                  :input (make-instance 'cli::typed-text
+                                        :octets (make-string-input-stream
+                                                 (format nil "turn 1~%turn 0.5~%(+ 20 22)~%"))
+                                        :by-hand-p t)
+                  :output out)))
+      (run:stop-simulator))
+    (is (not (search "interrupted" (get-output-stream-string out))))))
+
 (test sessions.lines-pasted-together-wait-for-each-other
   "As piped ones do."
   (let ((told (told-of-pasted "turn 1" :enter "turn 0.5" :enter "(+ 20 22)")))

@@ -57,8 +57,9 @@ that is not NIL.")
         (amend-entry (edited-history input) (concatenate 'string before '(#\Newline) line))
         (add-entry (edited-history input) line))))
 
-;;; A terminal may paste without saying so. What comes all at once, with more than a line, is
-;;; counted as pasted, too: nobody types as fast, but while nothing was read.
+;;; A terminal may paste without saying so, as those do that edit lines themselves. What comes all
+;;; at once, with more than a line, is counted as pasted, too: nobody types as fast, but while
+;;; nothing was read.
 
 (defgeneric pasted-lines-left-p (input)
   (:documentation "True if lines that were pasted into INPUT, with the one read last, wait to be
@@ -66,6 +67,10 @@ read.")
   (:method (input)
     (declare (ignore input))
     nil)
+  (:method ((input typed-text))
+    (and (typed-by-hand-p input)
+         (typed-followed-p input)
+         (more-at-once-p (typed-octets input))))
   (:method ((input edited-text))
     (and (or (edited-lines input) (whole-line-p (edited-ahead input))) t)))
 

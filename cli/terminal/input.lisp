@@ -28,9 +28,16 @@ while the prompt reads.")
    ;; What is left of the line that is being read, and where that begins.
    (rest :initform "" :accessor typed-line)
    (position :initform 0 :accessor typed-position)
-   (count :initform 0 :accessor typed-count))
+   (count :initform 0 :accessor typed-count)
+   (followed-p :initform nil :accessor typed-followed-p))
   (:documentation "The text in UTF-8 that the characters of the stream OCTETS stand for. BY-HAND-P
-is true if somebody types it, COUNT how many lines of it have been read."))
+is true if somebody types it, COUNT how many lines of it have been read; FOLLOWED-P is true if there
+was more when the last of them was."))
+
+(defun more-at-once-p (stream)
+  "True if STREAM, of octets, has more without waiting."
+  (handler-case (listen stream)
+    (stream-error () nil)))
 
 (defgeneric lines-typed (stream)
   (:documentation "Return how many lines have been read of STREAM, by the prompt or a program.")
@@ -89,7 +96,8 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
     (setf (typed-position stream) 0
           (typed-line stream) "")
     (incf (typed-count stream))
-    (setf (typed-line stream) (next-typed-line stream))))
+    (setf (typed-line stream) (next-typed-line stream)
+          (typed-followed-p stream) (more-at-once-p (typed-octets stream)))))
 
 (defun line-left-p (stream)
   "True if STREAM has something left of a line that was typed."
