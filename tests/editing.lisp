@@ -168,6 +168,18 @@ name in *KEY-CODES*."
            :paste (format nil "rn 1~%Robot> go 1~%on") :pasted :enter)
   (types-p ("turn 1" "33") :paste (format nil "turn 1~%33") :pasted :enter))
 
+(test editing.says-how-many-lines-after-the-last-prompt-it-leaves-out
+  (is (equal '(0 0 2 1 0)
+             (mapcar (lambda (text) (cli::answers-at-end (format nil text)))
+                     '("turn 1~%33" "Robot> turn 1~%33~%Robot> "
+                       "Robot> (list :p)~%(:p)~%(list 2)~%" "Robot> (list~%1)~%(1)"
+                       "33~%Robot> (list~%     > 1)~%~%"))))
+  (multiple-value-bind (console out) (terminal-console)
+    (read-line (typed-text-for (keyboard-for (list :paste (format nil "Robot> 1~%1~%2") :pasted
+                                                   :enter))
+                               console))
+    (is-true (search "2 lines after the last prompt" (get-output-stream-string out)))))
+
 (test editing.keeps-all-lines-of-a-form-that-is-pasted-with-prompts
   "Pages show a form of several lines below one prompt."
   (types-p ("(list 1" "  (+ 1" "     1))" "go 1")

@@ -240,10 +240,19 @@ for it.")
     (change-to stream text (length text))
     text))
 
+(defun tell-of-answers (stream count)
+  "Tell who types into STREAM that COUNT lines at the end of what he has pasted are left out."
+  (when (plusp count)
+    (write-fresh (format nil "~D line~:P after the last prompt that was pasted ~:*~[~;is~:;are~] ~
+                              left out, as answers.~%" count)
+                 (edited-console stream))))
+
 (defun press-given (stream kind text)
   "Take TEXT as what KIND says: it was pasted, or it is a line that has been chosen elsewhere."
   (ecase kind
-    (:paste (insert-typed stream (without-answers text)) nil)
+    (:paste (tell-of-answers stream (answers-at-end text))
+     (insert-typed stream (without-answers text))
+     nil)
     (:entry (enter-given stream text))))
 
 (defun press (stream key)

@@ -81,6 +81,14 @@ has any."
   "Return the lines of TEXT, at least one."
   (or (uiop:split-string text :separator '(#\Newline)) (list "")))
 
+(defun answers-at-end (text)
+  "Return how many lines of TEXT, as pasted, below the last with a prompt are left out as answers."
+  (let* ((lines (lines-in text))
+         (start (position-if #'after-label lines :from-end t))
+         (last (and start (nthcdr start lines))))
+    (count-if-not (lambda (line) (or (after-label line) (going-on-p line) (comment-p line)))
+                  (set-difference last (and last (typed-by-label last)) :test #'eq))))
+
 (defun without-answers (text)
   "Return TEXT, as pasted, without the answers to what was typed in it."
   (format nil "~{~A~^~%~}" (typed-lines (lines-in text))))
