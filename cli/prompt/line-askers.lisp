@@ -36,17 +36,18 @@ TYPED-P is true of a line that is no Lisp."
 
 (defun note-plan-of-line (account plan)
   "Note that the line under way of ACCOUNT, or NIL, has begun PLAN, a task."
-  (when account (push (cons (asker-note plan) (account-line account)) (account-plans account))))
+  (when account (push (cons (asker-note plan) (line-under-way account)) (account-plans account))))
 
 (defun line-of-message (account message)
   "Return the number of the line of ACCOUNT, or NIL, that has asked for what MESSAGE tells of; the
 line under way if that is not known."
   (when account
-    (let ((asker (message-asker message)))
+    (let* ((asker (message-asker message))
+           (plan (assoc asker (account-plans account) :test #'equal)))
       (destructuring-bind (&optional whose line typed-p) (gethash asker *askers*)
         (declare (ignore typed-p))
         (cond ((eq whose account) line)
-              ((rest (assoc asker (account-plans account) :test #'equal)))
+              (plan (rest plan))
               (t (line-under-way account)))))))
 
 (defun others-error-p (account message)
