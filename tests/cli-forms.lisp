@@ -43,3 +43,16 @@
 (test comments.may-be-of-any-length
   (let ((long (text-of-bytes *too-many*)))
     (is (equal '(2 4) (ends-of-lines (format nil "; ~A~%turn 1~%# ~:*~A~%turn 2~%" long))))))
+
+(test comments.may-touch-what-is-before-them
+  (is (= 0 (nth-value 1 (type-batch "status; c" "turn 90 deg; c" "turn 1; c" "turn pi/2;c"))))
+  (is (equal '(1 2) (ends-of-lines (format nil "go 1 m; c~%status;c~%")))))
+
+(test arguments.that-no-attribute-has-are-told-with-what-it-can-have
+  "As in Lisp."
+  (is-true (has-words-p (complaint "obj-desig 1 non-local ((:color raed))")
+                        "not (:color raed), as the values are" "did you mean red? OBJ-DESIG")))
+
+(test json.has-no-line-for-what-a-plan-of-an-option-does
+  (let ((message (first (objects-of-script "" "--plan" "stroll 1"))))
+    (is-true (has-words-p message "Robot turned" "\"line\":null"))))

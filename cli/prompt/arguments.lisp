@@ -85,13 +85,18 @@ method, DATUM is the argument.")
         position
         (length text))))
 
+(defun word-end (text start)
+  "Return where the word ends that begins in TEXT at START: at a blank, or a comment after ;."
+  (or (position-if (lambda (char) (or (blank-p char) (char= #\; char))) text :start start)
+      (length text)))
+
 (defun token-end (text start)
   "Return where the token that begins in TEXT at START ends; one in double quotes may hold blanks,
 and goes on to the end of TEXT if there is no second one."
   (if (char= (char text start) #\")
       (let ((quote (position #\" text :start (1+ start))))
         (if quote (1+ quote) (length text)))
-      (or (position-if #'blank-p text :start start) (length text))))
+      (word-end text start)))
 
 (defun without-quotes (token)
   "Return TOKEN without the double quotes around it, if any."
@@ -148,7 +153,10 @@ that a quote before it says nothing."
 
 (defun check-read (value slot line)
   (unless (argument-of-type-p value (slot-type slot))
-    (reject-line "~A cannot be ~S. ~A" (slot-name slot) value (takes line))))
+    (let ((trouble (trouble-with value (slot-type slot))))
+      (reject-line "~A cannot be ~S~@[: ~A~]~:[.~;~] ~A" (slot-name slot) value trouble
+                   (and trouble (eql #\? (char trouble (1- (length trouble)))))
+                   (takes line)))))
 
 (deftype rest-type ()
   "The types of arguments that are all that is left of a line."

@@ -97,7 +97,7 @@ quantity."
   "Return the unit, a list, that stands in TEXT from POSITION on, after blanks, and where it ends;
 NIL if there is none."
   (let* ((start (or (position-if-not #'blank-p text :start position) (length text)))
-         (end (or (position-if #'blank-p text :start start) (length text)))
+         (end (word-end text start))
          (unit (find-unit (subseq text start end))))
     (and unit (values unit end))))
 

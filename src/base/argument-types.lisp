@@ -23,13 +23,17 @@ function that returns in words what is wrong with a value, or NIL for no more th
   "True if VALUE can be an argument of TYPE, an argument type or the name of one."
   (funcall (argument-type-predicate (find-argument-type type)) value))
 
+(defun trouble-with (value type)
+  "Return in words what is wrong with VALUE as an argument of TYPE, an argument type or the name of
+one; NIL if there is no more to say than what such arguments are."
+  (let ((trouble (argument-type-trouble (find-argument-type type))))
+    (and trouble (funcall trouble value))))
+
 (defun argument-type-text (type &optional (value nil value-p))
   "Return in words what an argument of TYPE, an argument type or the name of one, is, and what is
 wrong with VALUE."
-  (let* ((type (find-argument-type type))
-         (trouble (and value-p (argument-type-trouble type)
-                       (funcall (argument-type-trouble type) value))))
-    (format nil "~A~@[: ~A~]" (argument-type-words type) trouble)))
+  (format nil "~A~@[: ~A~]" (argument-type-words (find-argument-type type))
+          (and value-p (trouble-with value type))))
 
 (defun check-of-type (operator name value type)
   "Signal WRONG-ARGUMENT, by OPERATOR and of its argument NAME, unless VALUE is of TYPE."
