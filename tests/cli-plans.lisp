@@ -63,6 +63,29 @@
   (is (equal "No plan is under way. PLAN lists the plans that there are."
              (first (last (type-batch "plan mope" "plans"))))))
 
+(test plan.a-deadlock-in-a-line-has-advice
+  "As that of RUN-PLAN has."
+  (type-batch "(def-interp-proc linger () (rpl-robot-turn 1) (wait-for robot-stopped*)
+                 (wait-for robot-stopped*))"
+              "(defvar *sluice* (make-valve 'sluice))"
+              "(def-interp-proc keep () (with-valve (*sluice*) (wait-for (create-fluent 'f nil))))"
+              "(def-interp-proc want () (with-valve (*sluice*) 1))")
+  (is-true (has-words-p (joined (type-batch "plan linger")) "is in a deadlock"
+                        "changes when a command" "The last one of linger was rpl-robot-turn"))
+  (is-true (has-words-p (joined (type-batch "(begin-plan 'keep)" "plan want")) "sluice" "keep has"))
+  (is-true (has-words-p (complaint "plan mope") "Only SET-VALUE and PULSE change godot")))
+
+(defun type-batch-in-hex (&rest lines)
+  (let ((*print-base* 16)) (apply #'type-batch lines)))
+
+(test plan.messages-have-ticks-in-decimal
+  "Whatever *PRINT-BASE* is."
+  (let ((told (joined (type-batch-in-hex "step 20" "plan stumble :ice :ticks 20" "plans"
+                                         "(run-plan 'mope)"))))
+    (is (search "at tick 41" told) "~A" told)
+    (is (search "since tick 41" told) "~A" told)
+    (is-false (search "tick 29" told) "~A" told)))
+
 (test plan.what-makes-no-sense-is-an-error-in-a-line
   (is-true (has-words-p (complaint "plan dwadle 3") "no plan DWADLE" "mean DAWDLE?"))
   (is-true (has-words-p (complaint "plan dawdle") "DAWDLE ticks [answer]" "arguments"))

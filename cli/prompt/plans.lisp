@@ -11,7 +11,8 @@
 
 (defstruct (plan-errand (:include errand) (:copier nil)
                         (:constructor make-plan-errand (plan session simulation)))
-  "A plan that the prompt has started. STUCK says what keeps it from ever going on, or is NIL."
+  "A plan that the prompt has started. STUCK says what keeps it from ever going on, and what could
+be done, a list of two texts, or is NIL."
   (plan nil :type symbol :read-only t)
   (session nil :type session :read-only t)
   (simulation nil :read-only t)
@@ -20,9 +21,9 @@
   (task nil)
   ;; Nothing is to be told of its end, as the run has been rewound.
   (let-go-p nil)
-  (stuck nil :type (or null string))
+  (stuck nil :type list)
   ;; What has been told last of that.
-  (told-stuck nil :type (or null string))
+  (told-stuck nil :type list)
   (over (make-semaphore "plan over") :read-only t)
   (told (make-semaphore "plan's end told") :read-only t))
 
@@ -62,12 +63,16 @@
 
 ;;; What is told.
 
-(defun user-text (function object)
-  "Return the string that FUNCTION makes of OBJECT, as users would read it, on a line."
+(defun in-user-words (function)
+  "Return the string that FUNCTION makes, with names and numbers as users would read them."
   (let ((*package* (user-package))
         (*read-default-float-format* 'double-float)
         (*print-pretty* nil))
-    (cut (one-line (printing-words () (funcall function object))) 300)))
+    (printing-words () (funcall function))))
+
+(defun user-text (function object)
+  "Return the string that FUNCTION makes of OBJECT, as users would read it, on a line."
+  (cut (one-line (in-user-words (lambda () (funcall function object)))) 300))
 
 (defun reason-text (failure)
   "Return in words why a plan failed."
@@ -137,14 +142,15 @@ that a plan, GO-TO or a program gives that is told of them are its own."
         (t (message-set (verdict-of errand "was stopped.")))))))
 
 (defun tell-stuck (errand)
-  "Queue a message that says what the plan of ERRAND waits for in vain."
+  "Queue a message that says what the plan of ERRAND waits for in vain, and what could be done."
   (with-messages-to (errand)
-    (let ((stuck (plan-errand-stuck errand)))
+    (destructuring-bind (waits advice) (plan-errand-stuck errand)
       (if (session-patient-p (plan-errand-session errand))
-          (error-set (verdict-of errand "is in a deadlock: it ~A, which nothing can bring about; ~
-                                         it was stopped." stuck))
+          (error-set (verdict-of errand "is in a deadlock: it ~A, which nothing will bring about; ~
+                                         it was stopped.~@[ ~A~]" waits advice))
           (warning-set (verdict-of errand "~A, which neither the robot nor time will bring about, ~
-                                           but you may. STOP-PLAN ends it." stuck))))))
+                                           but you may. STOP-PLAN ends it.~@[ ~A~]"
+                                 waits advice))))))
 
 (defun close-errand (errand)
   "Count ERRAND, whose end has been told, as done."
@@ -157,23 +163,23 @@ that a plan, GO-TO or a program gives that is told of them are its own."
 
 ;;; Deadlocks.
 
-(defun awaited-by (task)
-  "Return a list of what TASK and its parts wait for, in words."
-  (remove-duplicates (if (task-children task)
-                         (mapcan #'awaited-by (task-children task))
-                         (remove nil (list (task-awaits task))))
-                     :test #'string= :from-end t))
+(defun advice-text (tasks)
+  "Return on a line what could be done about it that nothing wakes TASKS, or NIL."
+  (let ((advice (one-line (in-user-words (lambda () (advice-on-stillness tasks))))))
+    (and (string/= "" advice) (cut advice 1000))))
 
-(defun stuck-text (runner task)
-  "Return in words what TASK of RUNNER waits for, if no plan of RUNNER can ever go on; else NIL. To
-be called while no plan reacts."
+(defun stuck-texts (runner task)
+  "Return in words what TASK of RUNNER waits for, and what could be done, if no plan of RUNNER can
+ever go on; else NIL. To be called while no plan reacts."
   (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
-    (user-text (lambda (awaited)
-                 (format nil "waits for ~{~A~^, ~}" awaited))
-               (awaited-by task))))
+    (let ((tasks (waiting-parts task)))
+      (list (user-text (lambda (tasks)
+                         (format nil "waits for ~A" (or (text-of-waits tasks) "what cannot come")))
+                       tasks)
+            (advice-text tasks)))))
 
 (defun note-if-stuck (errand runner)
-  (setf (plan-errand-stuck errand) (stuck-text runner (plan-errand-task errand))))
+  (setf (plan-errand-stuck errand) (stuck-texts runner (plan-errand-task errand))))
 
 ;;; Live.
 

@@ -225,7 +225,7 @@ is free from FROM on. Return from where on it is free then."
 
 ;; Also of failures that are handled where they happen.
 (defun draw-failure (canvas span y scale)
-  (with-subject (canvas (format nil "failed at tick ~A: ~A" (span-start span)
+  (with-subject (canvas (format nil "failed at tick ~D: ~A" (span-start span)
                                 (cut (one-line (span-text span)) 200)))
     (let ((half (if in-color* 2 4)))
       (look-box canvas :failure (- (place (span-start span) scale) half) y (* 2 half) (* 3 half)))))

@@ -26,7 +26,7 @@
           (fold-mark-folded-p mark) (fold-mark-serial mark)))
 
 (defmethod subject-title ((image task-image))
-  (format nil "Task ~D ~A: ~A~@[, waits for ~A since tick ~A~]" (task-image-serial image)
+  (format nil "Task ~D ~A: ~A~@[, waits for ~A since tick ~D~]" (task-image-serial image)
           (or (task-image-name image) (task-image-form image))
           (task-image-state image) (task-image-awaits image) (task-image-since image)))
 
@@ -73,7 +73,7 @@ to be seen."
 (defun task-plight (image)
   "Return what the task of IMAGE waits for, or how else it is, if that is to be said; or NIL."
   (cond ((task-image-awaits image)
-         (format nil "waits for ~A since tick ~A~:[, ~A~;~]" (task-image-awaits image)
+         (format nil "waits for ~A since tick ~D~:[, ~A~;~]" (task-image-awaits image)
                  (task-image-since image)
                  (string= "waiting" (task-image-state image)) (task-image-state image)))
         ((member (task-image-look image) '(:waiting :running)) nil)
@@ -120,7 +120,7 @@ to be seen."
 ;;; The whole.
 
 (defun tree-title (image)
-  (format nil "~D plan~:P, ~D task~:P; as of tick ~A" (tree-image-plans image)
+  (format nil "~D plan~:P, ~D task~:P; as of tick ~D" (tree-image-plans image)
           (tree-image-tasks image) (tree-image-tick image)))
 
 (defun unseen-text (image)

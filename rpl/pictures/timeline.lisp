@@ -135,7 +135,7 @@ MOST."
 
 (defun title-lines (canvas page title width)
   "Return TITLE, or if it is NIL from when to when the ticks of PAGE are, as lines of WIDTH pixels."
-  (lines-within (or title (format nil "Plans from tick ~A to ~A" (page-start page) (page-end page)))
+  (lines-within (or title (format nil "Plans from tick ~D to ~D" (page-start page) (page-end page)))
                 width (character-width canvas +title-size+)))
 
 (defun draw-timeline-title (canvas lines)

@@ -32,7 +32,7 @@ step."))
 (defun write-break (break stream)
   "Write to STREAM what BREAK is, the expressions under way, and the variables."
   (let ((task (plan-break-task break)))
-    (format stream "~A~%  in task ~{~A~^ > ~}, at tick ~A"
+    (format stream "~A~%  in task ~{~A~^ > ~}, at tick ~D"
             (plan-break-text break) (task-path task) (runner-tick (task-runner task)))
     (loop for form in (plan-backtrace task (plan-break-frame break))
           repeat *longest-stack*

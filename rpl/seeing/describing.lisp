@@ -23,7 +23,7 @@
                "Path" (format nil "~{~A~^ > ~}" (task-path task))
                "Level" (and (plusp (task-level task)) (task-level task))
                "Waits for" (and (task-awaits task)
-                                (format nil "~A, since tick ~A" (task-awaits task)
+                                (format nil "~A, since tick ~D" (task-awaits task)
                                         (task-since task)))
                "Result" (outcome-text task))
   (unless (task-over-p task)

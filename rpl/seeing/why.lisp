@@ -48,7 +48,7 @@
 
 (defun issue-words (issue trace)
   (let ((entry (find issue trace :key #'trace-entry-subject)))
-    (format nil "~A, which task ~D issued~@[ at tick ~A~]"
+    (format nil "~A, which task ~D issued~@[ at tick ~D~]"
             (quoted (cons (issue-name issue) (issue-arguments issue)))
             (issue-task issue) (and entry (trace-entry-tick entry)))))
 
@@ -101,7 +101,7 @@
 (defun wake-reason (entry index trace)
   (let ((subject (trace-entry-subject entry)))
     (cond ((null subject) (part-reason (trace-entry-task entry) index trace))
-          ((realp subject) (format nil "tick ~A had come" subject))
+          ((realp subject) (format nil "tick ~D had come" subject))
           ((fluent-p subject) (fluent-reason subject index trace))
           ((equal "" subject) "what it had to come after was over")
           (t (format nil "it was given ~A by ~A" (trace-entry-detail entry)
@@ -165,7 +165,7 @@ NUMBER that succeeded or failed, or NIL."
 number END, if by no wake-up; or NIL."
   (let ((part (deciding-part (trace-entry-task entry) start end trace)))
     (and part
-         (format nil "At tick ~A it was done with ~A, because ~A." (trace-entry-tick part)
+         (format nil "At tick ~D it was done with ~A, because ~A." (trace-entry-tick part)
                  (quoted (trace-entry-form entry)) (part-words part trace)))))
 
 (defun own-sentences (number trace)
@@ -178,7 +178,7 @@ number END, if by no wake-up; or NIL."
           when words
             do (when (and parts-wait (not (member event '(:wake :evaporate :block :unblock))))
                  (push (decision-sentence parts-wait since index trace) sentences))
-               (push (format nil "At tick ~A it ~A." (trace-entry-tick entry) words) sentences)
+               (push (format nil "At tick ~D it ~A." (trace-entry-tick entry) words) sentences)
                (unless (member event '(:block :unblock))
                  (setf parts-wait (and (eq :wait event) (null (trace-entry-subject entry)) entry)
                        since index)))
@@ -188,10 +188,10 @@ number END, if by no wake-up; or NIL."
   (let* ((start (start-of number trace))
          (parent (trace-entry-value start)))
     (if parent
-        (format nil "Task ~D, ~A, was started at tick ~A as a part of task ~D, ~A."
+        (format nil "Task ~D, ~A, was started at tick ~D as a part of task ~D, ~A."
                 number (task-words number trace) (trace-entry-tick start) parent
                 (task-words parent trace))
-        (format nil "Task ~D is the plan ~A, started at tick ~A by ~A."
+        (format nil "Task ~D is the plan ~A, started at tick ~D by ~A."
                 number (task-words number trace) (trace-entry-tick start)
                 (agent-words (trace-entry-agent start) trace)))))
 

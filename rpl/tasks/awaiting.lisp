@@ -8,7 +8,7 @@
   (:method ((fluent fluent)) (fluent-text fluent))
   (:method ((watcher watcher)) (fluent-text (watcher-fluent watcher)))
   (:method ((timer timer))
-    (format nil "tick ~A" (timer-due timer))))
+    (format nil "tick ~D" (timer-due timer))))
 
 (defgeneric traced-subject (awaited)
   (:documentation "Return what a trace keeps of AWAITED, that a task waits for: no task.")

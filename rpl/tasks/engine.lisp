@@ -36,7 +36,7 @@ that ends; by default it reports failures. CLIENT, any object, is on whose behal
 
 (defmethod print-object ((runner plan-runner) stream)
   (print-unreadable-object (runner stream :type t)
-    (format stream "tick ~A, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
+    (format stream "tick ~D, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
 
 (defconstant +start+ 100
   "How many steps of a reaction it counts as to start a plan: what starts plans without end is to

@@ -97,7 +97,7 @@ plans nor a simulator.")
   (:export #:find-task #:task-place #:task-source)
   ;; stillness
   (:export #:report-deadlock #:report-stillness #:+no-fluent+ #:warn-of-no-fluent #:doubt-awaited
-           #:waiting-parts #:text-of-plans
+           #:waiting-parts #:text-of-plans #:text-of-waits
            #:advice-on-stillness #:endless-advice #:fluents-awaited)
   ;; alone
   (:export #:run-plan-alone)

@@ -29,7 +29,7 @@ waits for its own parts."
 
 (defun write-task-line (task depth stream)
   "Write on a line to STREAM which task TASK is, how it is, and what it waits for and since when."
-  (format stream "~V@T~D ~A: ~:[~;~:*~(~A~) ~]~A~@[ waits for ~A~]~@[ since tick ~A~]~%"
+  (format stream "~V@T~D ~A: ~:[~;~:*~(~A~) ~]~A~@[ waits for ~A~]~@[ since tick ~D~]~%"
           (* 2 depth) (task-serial task) (task-state-text task)
           (and (task-name task) (task-label task)) (form-text (task-form task)) (task-awaits task)
           (and (task-awaits task) (task-since task))))
@@ -63,7 +63,7 @@ waits for its own parts."
                (form-text (failure-passed-on-by failure)))))
 
 (defun write-failure-report (failure stream)
-  (format stream "~A~%  at tick ~A in ~A~%  task: ~A~%"
+  (format stream "~A~%  at tick ~D in ~A~%  task: ~A~%"
           (brief-failure-text failure) (failure-tick failure) (form-text (failure-form failure))
           (cut (format nil "~{~A~^ > ~}" (failure-task-path failure)) 500))
   (format stream "  plan:~%")
@@ -78,7 +78,7 @@ waits for its own parts."
 
 (defun failure-story (failure)
   "Return in a line what FAILURE is, when and where it happened, and after what."
-  (format nil "~A~@[ at tick ~A~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]~
+  (format nil "~A~@[ at tick ~D~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]~
                ~@[; ~A~]"
           (one-line (brief-failure-text failure))
           (failure-tick failure)

@@ -164,13 +164,14 @@ and which nobody means to wait for."
 
 (defun report-stillness (runner)
   "Queue a warning that says that the tasks of RUNNER wait for what only somebody outside of them
-and of the simulator can bring about."
-  (let ((advice (endless-advice (mapcan #'waiting-parts (plan-runner-tasks runner)))))
+and of the simulator can bring about, and what could be done. Somebody waits for one of them."
+  (let ((tasks (mapcan #'waiting-parts (plan-runner-tasks runner))))
     (queue-message (make-message :warning
                                  (list "At tick " (runner-tick runner) " all plans wait for what "
                                        "neither the robot nor time will bring about, but somebody "
-                                       "may, by SET-VALUE or WAKE-UP:" t
-                                       (tree-text runner) (or advice ""))
+                                       "may, by SET-VALUE or WAKE-UP. Control-C ends this wait."
+                                       (advice-on-stillness tasks) t
+                                       (tree-text runner))
                                  :notable-p t)
                    *message-queue*)))
 

@@ -79,7 +79,7 @@ part of; the number of the task that a task is part of when it starts."
 (defun subject-text (subject)
   "Return in words what a task waits for whose trace entry has SUBJECT."
   (cond ((null subject) nil)
-        ((realp subject) (format nil "tick ~A" subject))
+        ((realp subject) (format nil "tick ~D" subject))
         (t (awaited-text subject))))
 
 (addition trace-entry-detail)
@@ -98,7 +98,7 @@ value a fluent was given and by whom, which command was issued or answered, and 
 
 (defmethod print-object ((entry trace-entry) stream)
   (print-unreadable-object (entry stream)
-    (format stream "tick ~A, task ~D: ~(~A~)~@[ ~A~]" (trace-entry-tick entry)
+    (format stream "tick ~D, task ~D: ~(~A~)~@[ ~A~]" (trace-entry-tick entry)
             (trace-entry-task entry) (trace-entry-event entry) (trace-entry-detail entry))))
 
 ;;; While plans run, an entry is four to six elements of a vector, which costs less than an object
