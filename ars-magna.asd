@@ -4,7 +4,7 @@
   :description "An abstract robot simulator for people who build reactive planners."
   :version "1.9.0"
   :license "MIT"
-  :depends-on ("alexandria" "bordeaux-threads" "closer-mop" "lparallel"
+  :depends-on ("alexandria" "bordeaux-threads" "chipz" "closer-mop" "lparallel"
                "named-readtables" "sb-cltl2" "sb-introspect" "sb-posix")
   :serial t
   :components
@@ -72,8 +72,10 @@
                  (:file "pencil") (:file "ways")))
    (:module "src/floors" :serial t
     :components ((:file "package") (:file "trouble") (:file "decimals") (:file "yaml")
-                 (:file "description") (:file "pgm") (:file "occupancy") (:file "runs")
-                 (:file "lines") (:file "frames") (:file "importing") (:file "exporting")))
+                 (:file "description") (:file "images") (:file "pgm") (:file "inflating")
+                 (:file "png-chunks") (:file "png-rows") (:file "png")
+                 (:file "reading-images") (:file "occupancy") (:file "runs") (:file "lines")
+                 (:file "frames") (:file "importing") (:file "exporting")))
    (:module "src/time" :serial t
     :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
                  (:file "interruptions") (:file "custody") (:file "phases") (:file "timeline")
@@ -378,7 +380,8 @@
                  (:file "nisp") (:file "world") (:file "world-caches") (:file "world-places")
                  (:file "world-things") (:file "world-kickers") (:file "world-large") (:file "ways")
                  (:file "ways-users") (:file "floors") (:file "floors-uses")
-                 (:file "floors-hostile") (:file "time") (:file "robot")
+                 (:file "floors-hostile") (:file "floors-png")
+                 (:file "floors-png-hostile") (:file "time") (:file "robot")
                  (:file "moving") (:file "random-driver") (:file "random-restarts")
                  (:file "determinism") (:file "lisps-dice") (:file "journals") (:file "journals-forged")
                  (:file "journals-definitions") (:file "worlds") (:file "worlds-moving")

@@ -95,6 +95,7 @@
                                    (named-readtables "named-readtables")
                                    (lparallel "lparallel")
                                    (closer-mop "closer-mop")
+                                   (chipz "chipz")
                                    (trivial-gray-streams "trivial-gray-streams"))
         for files = (files-mentioning words '("src/" "rpl/" "cli/" "worlds/"))
         do (is (<= (length files) 1) "~A is named in ~S" library files))

@@ -128,7 +128,8 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
 (defun check-description-file (file)
   "Signal UNUSABLE-FLOOR if FILE can be no description of a floor, by its size and beginning."
   (check-readable file)
-  (when (member (first-octets file 2) '("P2" "P5") :test #'string=)
+  (when (member (first-octets file 2) '("P2" "P5" #.(map 'string #'code-char '(137 80)))
+                :test #'string=)
     (reject-floor file nil "this is an image; give the .yaml file that names it"))
   (let ((advice (file-advice file :floor)))
     (when advice (reject-floor file nil "~A" advice)))

@@ -43,8 +43,10 @@ that is not known."
           (t +unknown+))))
 
 (defun state-table (description white)
-  "Return a vector of the states of pixels, by their values from 0 to WHITE."
-  (let ((table (make-cells (1+ white) 1)))
+  "Return a vector of the states of pixels, by their values from 0 to WHITE; what is one more than
+that is unknown."
+  (let ((table (make-cells (+ 2 white) 1)))
+    (setf (aref table (1+ white)) +unknown+)
     (dotimes (sample (1+ white) table)
       (setf (aref table sample) (state-of description sample white)))))
 

@@ -1,8 +1,9 @@
 ;;;; package.lisp -- the floors layer: maps from elsewhere, and ours for others.
 
 (defpackage :ars-magna.floors
-  (:documentation "Occupancy grids as ROS's map_server keeps them, a flat YAML file and a PGM image:
-read as maps, written from maps, and the way between their metres and our cells.")
+  (:documentation "Occupancy grids as ROS's map_server keeps them, a flat YAML file and an image,
+PGM or PNG: read as maps, written from maps, and the way between their metres and our cells. Names
+chipz.")
   (:use :cl :ars-magna.base)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-frame

@@ -7,26 +7,6 @@
 ;;; P5 one blank ends the head, and a value takes two bytes, the higher first, if 256 or more can
 ;;; be. (netpbm.sourceforge.net/doc/pgm.html)
 
-(deftype octets () '(simple-array (unsigned-byte 8) (*)))
-(deftype samples () '(simple-array (unsigned-byte 16) (*)))
-
-(defstruct (image (:constructor make-image (width height white samples)) (:copier nil))
-  "An image in grey of WIDTH by HEIGHT pixels, whose SAMPLES, row by row from the top, go from 0,
-black, to WHITE."
-  (width 1 :type (integer 1) :read-only t)
-  (height 1 :type (integer 1) :read-only t)
-  (white 255 :type (integer 1 65535) :read-only t)
-  (samples (make-array 0 :element-type '(unsigned-byte 16)) :type samples :read-only t))
-
-(defstruct (tape (:constructor make-tape (file octets)) (:copier nil))
-  "The OCTETS of FILE, read up to POSITION."
-  (file nil :type pathname :read-only t)
-  (octets (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t)
-  (position 0 :type fixnum))
-
-(defun reject-image (tape control &rest arguments)
-  (reject-floor (tape-file tape) nil "~?" control arguments))
-
 ;;; Words of the head, and of what is written in text.
 
 (declaim (inline white-octet-p))
@@ -65,25 +45,6 @@ black, to WHITE."
     number))
 
 ;;; The head.
-
-(defun image-kind (tape)
-  "Return 2 or 5, of P2 and P5. Signals UNUSABLE-FLOOR if TAPE begins as no such image does."
-  (let ((octets (tape-octets tape)))
-    (setf (tape-position tape) 2)
-    (cond ((and (< 2 (length octets)) (= 80 (aref octets 0))
-                (find (aref octets 1) #(50 53)))
-           (- (aref octets 1) 48))
-          (t (reject-image tape "the image is no PGM file, P2 or P5, by its first bytes; save it ~
-                                 as one, as with: convert floor.png -colorspace gray -depth 8 ~
-                                 floor.pgm")))))
-
-(defun check-pixels (tape width height limit)
-  (unless (and (plusp width) (plusp height))
-    (reject-image tape "the image has ~D by ~D pixels; save one that has some" width height))
-  (when (< limit (* width height))
-    (reject-image tape "the image has ~D by ~D pixels, and the limit is ~D; cut out what you need, ~
-                        or give IMPORT-MAP a higher :limit"
-                  width height limit)))
 
 (defun white-level (tape)
   (let ((white (next-number tape "the greatest value")))
@@ -141,26 +102,19 @@ black, to WHITE."
         (when high (check-sample tape high white)))
       samples)))
 
-(defun read-octets (file limit)
-  "Return what FILE holds. Signals UNUSABLE-FLOOR if that is too much for LIMIT pixels."
-  (with-open-file (in file :element-type '(unsigned-byte 8))
-    (when (< (+ +most-octets+ (* 8 limit)) (file-length in))
-      (reject-floor file nil "the image has ~D bytes, too many for the limit of ~D pixels; cut out ~
-                              what you need, or give IMPORT-MAP a higher :limit"
-                    (file-length in) limit))
-    (let ((octets (make-array (file-length in) :element-type '(unsigned-byte 8))))
-      (read-sequence octets in)
-      octets)))
+(defun pgm-kind (tape)
+  "Return 2 or 5, of P2 and P5, if TAPE begins as such an image does; else NIL."
+  (let ((octets (tape-octets tape)))
+    (and (< 2 (length octets)) (= 80 (aref octets 0)) (find (aref octets 1) #(50 53))
+         (- (aref octets 1) 48))))
 
-(defun read-image (file limit)
-  "Return the image in FILE, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
-  (let* ((tape (make-tape file (read-octets file limit)))
-         (kind (image-kind tape))
-         (width (next-number tape "the width"))
-         (height (next-number tape "the height")))
+(defun read-pgm (tape limit)
+  "Return the PGM image in TAPE, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  (setf (tape-position tape) 2)
+  (let ((width (next-number tape "the width")) (height (next-number tape "the height")))
     (check-pixels tape width height limit)
     (let ((white (white-level tape)) (count (* width height)))
       (make-image width height white
-                  (if (= 2 kind)
+                  (if (= 2 (pgm-kind tape))
                       (read-text-samples tape count white)
                       (read-binary-samples tape count white))))))

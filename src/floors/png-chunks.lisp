@@ -1,0 +1,184 @@
+;;;; png-chunks.lisp -- PNG files: the chunks that they are made of.
+
+(in-package :ars-magna.floors)
+
+;;; A PNG file is a signature of eight octets and then chunks: the number of the octets of content,
+;;; a name of four letters, the content, a check sum of name and content. Numbers have the high
+;;; octet first. IHDR, the first, is the head; PLTE the palette, if there is one; tRNS says what is
+;;; transparent; the contents of all IDAT are the pixels, compressed by zlib; IEND ends the file.
+;;; Others may be left out if their name begins with a small letter. (www.w3.org/TR/png-3)
+
+(define-constant +png-signature+ (coerce #(137 80 78 71 13 10 26 10) 'octets) :test 'equalp
+  :documentation "The octets that each PNG file begins with.")
+
+(defstruct (png (:copier nil))
+  "A PNG file, as its chunks have it: WIDTH by HEIGHT pixels with DEPTH bits to each of their
+CHANNELS. PALETTE-P says that the only channel is a place in PALETTE, which has three octets for
+each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed."
+  (tape nil :type tape :read-only t)
+  (width 1 :type (integer 1) :read-only t)
+  (height 1 :type (integer 1) :read-only t)
+  (depth 8 :type (integer 1 16) :read-only t)
+  (channels 1 :type (integer 1 4) :read-only t)
+  (palette-p nil :type boolean :read-only t)
+  (palette nil :type (or null octets))
+  (transparency nil :type (or null octets))
+  (pixels (make-array 0 :element-type '(unsigned-byte 8)) :type octets))
+
+(defun png-begins-p (tape)
+  "True if TAPE begins as each PNG file does."
+  (let ((octets (tape-octets tape)))
+    (and (< 8 (length octets)) (equalp +png-signature+ (subseq octets 0 8)))))
+
+(defun reject-png (tape control &rest arguments)
+  "Signal UNUSABLE-FLOOR about the PNG file TAPE, which has to be converted."
+  (reject-image tape "~?; convert the image, as with: ~A, and name that in the .yaml file"
+                control arguments *conversion*))
+
+(defun reject-damaged (tape control &rest arguments)
+  "Signal UNUSABLE-FLOOR about the PNG file TAPE, which is not as it was."
+  (reject-image tape "the image is damaged: ~?; copy or save it anew" control arguments))
+
+;;; Numbers and check sums.
+
+(defun number-at (octets start &optional (count 4))
+  "Return the number that the COUNT OCTETS from START are, the high one first."
+  (declare (type octets octets))
+  (loop with number = 0
+        for index from start below (+ start count)
+        do (setf number (logior (ash number 8) (aref octets index)))
+        finally (return number)))
+
+(defun crc-of-octet (octet)
+  (loop repeat 8
+        do (setf octet (if (oddp octet) (logxor #xEDB88320 (ash octet -1)) (ash octet -1)))
+        finally (return octet)))
+
+(declaim (type (simple-array (unsigned-byte 32) (256)) *crc-table*))
+(define-global *crc-table*
+  (coerce (loop for octet below 256 collect (crc-of-octet octet))
+          '(simple-array (unsigned-byte 32) (256)))
+  "What each octet adds to a CRC-32.")
+
+(defun crc-32 (octets start end)
+  "Return the check sum of OCTETS from START to before END: the CRC-32 of ISO 3309."
+  (declare (type octets octets) (type fixnum start end) #.*hot*)
+  (let ((crc #xFFFFFFFF) (table *crc-table*))
+    (declare (type (unsigned-byte 32) crc))
+    (loop for index of-type fixnum from start below end
+          do (setf crc (logxor (aref table (logand 255 (logxor crc (aref octets index))))
+                               (ash crc -8))))
+    (logxor crc #xFFFFFFFF)))
+
+;;; Chunks.
+
+(defun chunk-name (octets start)
+  "Return the name of a chunk that is at START of OCTETS; NIL if these are no letters."
+  (let ((name (map 'string #'code-char (subseq octets start (+ start 4)))))
+    (and (every (lambda (char) (or (char<= #\A char #\Z) (char<= #\a char #\z))) name)
+         name)))
+
+(defun check-chunk (tape name start end)
+  "Signal UNUSABLE-FLOOR if the chunk of TAPE with the content from START to END is damaged."
+  (let ((octets (tape-octets tape)))
+    (unless (and name (= (number-at octets end) (crc-32 octets (- start 4) end)))
+      (reject-damaged tape "the chunk at byte ~D has a wrong name or check sum" (- start 8)))))
+
+(defun next-chunk (tape)
+  "Return name, start and end of the content of the chunk that comes next in TAPE."
+  (let* ((octets (tape-octets tape)) (start (+ 8 (tape-position tape)))
+         (end (and (<= start (length octets)) (+ start (number-at octets (- start 8))))))
+    (unless (and end (<= (+ end 4) (length octets)))
+      (reject-damaged tape "it has ~D bytes, and ends before its last chunk, IEND"
+                      (length octets)))
+    (let ((name (chunk-name octets (- start 4))))
+      (check-chunk tape name start end)
+      (setf (tape-position tape) (+ end 4))
+      (values name start end))))
+
+;;; The head.
+
+(define-constant +png-colours+ '((0 1 1 2 4 8 16) (2 3 8 16) (3 1 1 2 4 8) (4 2 8 16) (6 4 8 16))
+  :test 'equal
+  :documentation "For each type of colour, how many channels it has, and what depths. 0 and 4 are
+grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is alpha.")
+
+(defun check-manner (tape compression filter interlace)
+  "Signal UNUSABLE-FLOOR if pixels are kept in a manner that is not read here."
+  (when (= 1 interlace)
+    (reject-png tape "the image is interlaced (Adam7), which is not read here"))
+  (unless (= 0 compression filter interlace)
+    (reject-damaged tape "compression, filter and interlace, ~D, ~D and ~D, are none that PNG has"
+                    compression filter interlace)))
+
+(defun png-of-head (tape octets limit)
+  "Return a PNG as OCTETS, the content of IHDR, say, of at most LIMIT pixels."
+  (let ((width (number-at octets 0)) (height (number-at octets 4)))
+    (check-pixels tape width height limit)
+    (destructuring-bind (depth colour . manner) (coerce (subseq octets 8) 'list)
+      (apply #'check-manner tape manner)
+      (destructuring-bind (&optional channels &rest depths) (rest (assoc colour +png-colours+))
+        (unless (member depth depths)
+          (reject-damaged tape "there are no PNG images of colour type ~D with ~D bits"
+                          colour depth))
+        (make-png :tape tape :width width :height height :depth depth :channels channels
+                  :palette-p (= 3 colour))))))
+
+(defun read-head (tape limit)
+  "Return a PNG as the first chunk of TAPE says, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  (multiple-value-bind (name start end) (next-chunk tape)
+    (unless (and (string= "IHDR" name) (= 13 (- end start)))
+      (reject-damaged tape "its first chunk is ~A with ~D bytes, not IHDR with 13"
+                      name (- end start)))
+    (png-of-head tape (subseq (tape-octets tape) start end) limit)))
+
+;;; The other chunks.
+
+(defun check-palette (png content)
+  (unless (and (null (png-palette png)) (zerop (mod (length content) 3))
+               (<= 1 (floor (length content) 3) 256))
+    (reject-damaged (png-tape png) "a palette has 3 to 768 bytes, 3 for each colour, and this has ~
+                                    ~D, or is the second one" (length content))))
+
+(defun check-transparency (png content)
+  (when (= 3 (png-channels png))
+    (reject-png (png-tape png) "one of the image's colours stands for transparent (tRNS), which is ~
+                                read here of grey and of palettes only"))
+  (unless (or (png-palette-p png) (= 2 (length content)))
+    (reject-damaged (png-tape png) "the chunk tRNS has ~D bytes, not 2" (length content))))
+
+(defun keep-chunk (png name content)
+  "Let PNG have the CONTENT of the chunk called NAME. Signals UNUSABLE-FLOOR if it is not known, but
+needed."
+  (cond ((and (string= "PLTE" name) (png-palette-p png))
+         (check-palette png content)
+         (setf (png-palette png) content))
+        ((and (string= "tRNS" name) (oddp (png-channels png)))
+         (check-transparency png content)
+         (setf (png-transparency png) content))
+        ((and (upper-case-p (char name 0)) (string/= "PLTE" name))
+         (reject-png (png-tape png) "the image has a chunk ~A, which is not known here or out of ~
+                                     place" name))))
+
+(defun join-pieces (octets pieces)
+  "Return the octets of OCTETS that PIECES, conses of start and end, the last one first, have."
+  (let* ((size (loop for (start . end) in pieces sum (- end start)))
+         (joined (make-array size :element-type '(unsigned-byte 8))) (place size))
+    (loop for (start . end) in pieces
+          do (decf place (- end start))
+             (replace joined octets :start1 place :start2 start :end2 end))
+    joined))
+
+(defun read-chunks (tape limit)
+  "Return the PNG that TAPE holds, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  (setf (tape-position tape) 8)
+  (let ((png (read-head tape limit)) (octets (tape-octets tape)) (pieces '()))
+    (loop
+      (multiple-value-bind (name start end) (next-chunk tape)
+        (cond ((string= "IDAT" name) (push (cons start end) pieces))
+              ((string= "IEND" name) (return))
+              (t (keep-chunk png name (subseq octets start end))))))
+    (when (and (png-palette-p png) (null (png-palette png)))
+      (reject-damaged tape "its palette, PLTE, is missing"))
+    (setf (png-pixels png) (join-pieces octets pieces))
+    png))
