@@ -28,7 +28,8 @@
                  ("the chunk at byte 8 has a wrong name or check sum; copy or save it anew"
                   ,(damaged-at 20 good))
                  ("the chunk at byte 33 has a wrong name or check sum" ,(damaged-at 50 good))
-                 ("the chunk at byte 33 has a wrong name" ,(png-of-chunks head (png-chunk "I AT" "")))
+                 ("the chunk at byte 33 has a wrong name"
+                  ,(png-of-chunks head (png-chunk "I AT" "")))
                  ("ends before its last chunk, IEND" ,(subseq good 0 (- (length good) 1)))
                  ("ends before its last chunk, IEND" ,(subseq good 0 (- (length good) 12)))
                  ("it has 9 bytes, and ends before its last chunk" ,(subseq good 0 9))
@@ -91,7 +92,8 @@
                  ("its pixels cannot be decompressed" ,(png-of-data (octets-as-string '(#x78 1 7))))
                  ("its pixels end before the last row" ,(png-of-data (octets-as-string '(#x78 1))))
                  ("0 bytes of compressed data are too few for that" ,(png-of-data ""))
-                 ("0 bytes of compressed data are too few" ,(png-of-chunks (png-head-chunk 3 1 8 0)))
+                 ("0 bytes of compressed data are too few"
+                  ,(png-of-chunks (png-head-chunk 3 1 8 0)))
                  ("row 2 has the filter 5, and there are 0 to 4"
                   ,(png-file 3 0 '((0 1 2 3) (5 1 2 3)))))
           do (check-complaint words (complaint-of-image image)))))

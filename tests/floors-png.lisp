@@ -153,7 +153,8 @@ of no account."
                                                                   (octets-as-string '(0 254)))))
                         "mode: scale"))))
   (is (string= "#u." (states-of-png (png-file 3 0 '((0 0 254 255))
-                                              :chunks (png-chunk "tRNS" (octets-as-string '(0 254))))
+                                              :chunks (png-chunk "tRNS"
+                                                                 (octets-as-string '(0 254))))
                                     "mode: scale"))))
 
 (test png.filters-are-undone
@@ -171,13 +172,14 @@ of no account."
                (is (equal expected (second (imported-rows yaml))) "~S" second)))))
 
 (defparameter *compressed-png*
-  (format nil "89504e470d0a1a0a0000000d4948445200000028000000140800000000da2d20670000000467414d410000~
-               0001fc2250db000000c24944415478da8d91610ec3200885d91bd97d76aa1da23f8c07ec850c2103ecaa33~
-               b5edab122414fc84e8a61eb4eefe3b2cf4280fa0216fa6277d86bc9c8ef232dfabe75a43ba8bf4483f98ae~
-               de294cdf574f60aeef5761fef3a03398f1da3398b1c0f564e86232e320e69311ae0d85cd1377ed102624c4~
-               76f077f3fb3702ea5c2dea6b83292cf155109497d5b66da678a9c281e730c2609088b92aea3f708956ec9d~
-               d8670587c98a440b033909678b198c66012c8c0d6c81c1b40742ac1640e7d317b25ba4f67cd840df000000~
-               0049454e44ae426082")
+  (format nil "89504e470d0a1a0a0000000d4948445200000028000000140800000000da2d20670000000467~
+               414d4100000001fc2250db000000c24944415478da8d91610ec3200885d91bd97d76aa1da23f~
+               8c07ec850c2103ecaa33b5edab122414fc84e8a61eb4eefe3b2cf4280fa0216fa6277d86bc9c~
+               8ef232dfabe75a43ba8bf4483f98aede294cdf574f60aeef5761fef3a03398f1da3398b1c0f5~
+               64e86232e320e69311ae0d85cd1377ed102624c476f077f3fb3702ea5c2dea6b83292cf15510~
+               9497d5b66da678a9c281e730c2609088b92aea3f708956ec9dd8670587c98a440b033909678b~
+               198c66012c8c0d6c81c1b40742ac1640e7d317b25ba4f67cd840df0000000049454e44ae4260~
+               82")
   "A PNG file of 40 by 20 pixels of grey in hexadecimal, that zlib has compressed, with a dynamic
 table. Its rows have the filters 0 to 4 in turn.")
 

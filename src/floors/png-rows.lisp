@@ -22,7 +22,7 @@
 
 (declaim (inline likeliest-of))
 (defun likeliest-of (left above corner)
-  "Return that of LEFT, ABOVE and CORNER, above the left, to which left + above - corner is nearest."
+  "Return LEFT, ABOVE or CORNER, which is above LEFT: that nearest to LEFT + ABOVE - CORNER."
   (declare (type (unsigned-byte 8) left above corner))
   (let ((from-left (abs (- above corner))) (from-above (abs (- left corner)))
         (from-corner (abs (- (+ left above) (* 2 corner)))))

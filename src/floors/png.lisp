@@ -21,7 +21,7 @@
 
 (declaim (inline shade-of-colour))
 (defun shade-of-colour (red green blue alpha rule)
-  "Return the sample for a pixel of these channels, each from 0 to 255, if alpha counts as RULE says."
+  "Return the sample for a pixel of these channels, 0 to 255 each, if alpha counts as RULE says."
   (declare (type (unsigned-byte 8) red green blue alpha))
   (case rule
     (:averaged (+ red green blue alpha))
