@@ -398,7 +398,7 @@
                  (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-control")
                  (:file "rpl-orders") (:file "rpl-valves") (:file "rpl-alone")
-                 (:file "rpl-stress")
+                 (:file "rpl-stress") (:file "rpl-valve-stress")
                  (:file "rpl-constructs") (:file "rpl-fairness") (:file "rpl-care")
                  (:file "rpl-telling") (:file "rpl-kills") (:file "rpl-hostile")
                  (:file "rpl-views") (:file "rpl-named-policies") (:file "rpl-goals")

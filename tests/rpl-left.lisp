@@ -135,6 +135,21 @@ after that."
       (is (eq :succeeded (nth-value 1 (driver:run-plan plan 2))))
       (is (equal '((:begin 1) (:end 1) (:begin 2) (:end 2)) (reverse log))))))
 
+(test rpl-robot-valve.who-has-lost-it-does-not-run
+  "An errand loses the robot, of which a part that is to begin anew has been given it."
+  (with-fitter (:clean t)
+    (let ((log '()))
+      (driver:run-plan
+       (rpl:interp-lambda ()
+         (rpl:par (rpl:with-valve ((driver:rpl-robot-valve))
+                    (rpl:par (rpl:n-times 4 (rpl:wait-time 1) (push :errand log))
+                             (rpl:retry-after-suspension
+                               (rpl:with-valve ((driver:rpl-robot-valve)) (rpl:wait-time 2)))))
+                  (rpl:seq (rpl:wait-time 1)
+                           (rpl:with-valve ((driver:rpl-robot-valve) :priority 1)
+                             (push :begin log) (rpl:wait-time 9) (push :end log))))))
+      (is (eql 1 (- (position :begin log) (position :end log)))))))
+
 ;;; What is told.
 
 (defun told-by (function)

@@ -234,6 +234,76 @@
     (is-true (has-words-p (base:message-text (first (base:take-messages)))
                           "the valve hand that left has" "right"))))
 
+;;; An owner that begins something anew gives up what a part of it has of the valve it loses.
+
+(defmacro while-taken (form)
+  "Return what FORM notes, and when, and who runs beside it that takes its valve, HAND, at 1 until
+7. It can note by NOTE; the valve EYE is free."
+  `(let ((hand (rpl:make-valve 'hand)) (eye (rpl:make-valve 'eye)))
+     (declare (ignorable eye))
+     (prog1 (with-log (note)
+              (plan-value (rpl:par ,form
+                                   (rpl:seq (rpl:wait-time 1)
+                                            (rpl:with-valve (hand :priority 1)
+                                              (note :taken) (rpl:wait-time 6) (note :back))))))
+       (is (null (rpl:valve-owner hand)))
+       (is (null (rpl:valve-losers hand))))))
+
+(test with-valve.an-owner-whose-part-begins-anew-does-not-run
+  (is (equal '((:taken 1) (:back 7) (:beside 7) (:beside 9))
+             (while-taken (rpl:with-valve (hand)
+                            (rpl:par (rpl:n-times 2 (rpl:wait-time 2) (note :beside))
+                                     (rpl:retry-after-suspension
+                                       (rpl:with-valve (hand) (rpl:wait-time 2)))))))))
+
+(test with-valve.an-owner-whose-part-begins-anew-does-not-go-on
+  (is (equal '((:taken 1) (:back 7) (:after 7))
+             (while-taken (rpl:with-valve (hand)
+                            (rpl:pursue (rpl:wait-time 3)
+                                        (rpl:retry-after-suspension
+                                          (rpl:with-valve (hand) (rpl:wait-time 9))))
+                            (note :after)))))
+  (is (equal '((:taken 1) (:back 7) (:late 7))
+             (while-taken (rpl:with-valve (hand)
+                            (rpl:handle-failure ((rpl:deadline-missed () (note :late) (return)))
+                              (rpl:with-deadline (3)
+                                (rpl:retry-after-suspension
+                                  (rpl:with-valve (hand) (rpl:wait-time 9))))))))))
+
+(test with-valves.an-owner-whose-part-begins-anew-does-not-go-on
+  (is (equal '((:taken 1) (:back 7) (:after 7))
+             (while-taken (rpl:with-valves (eye hand)
+                            (rpl:pursue (rpl:wait-time 3)
+                                        (rpl:retry-after-suspension
+                                          (rpl:with-valves (hand eye) (rpl:wait-time 9))))
+                            (note :after))))))
+
+(test with-valve.a-whole-loses-what-parts-took-from-each-other
+  "Of three parts one has taken the valve from another when somebody else takes it from all."
+  (is (equal '((:part 0) (:taken 1) (:back 7) (:beside 7) (:part-ends 8) (:other-ends 8))
+             (while-taken (rpl:with-valve (hand)
+                            (rpl:par (rpl:with-valve (hand :priority -1)
+                                       (rpl:wait-time 2) (note :other-ends))
+                                     (rpl:with-valve (hand)
+                                       (note :part) (rpl:wait-time 8) (note :part-ends))
+                                     (rpl:seq (rpl:wait-time 3) (note :beside))))))))
+
+(test with-valves.who-has-lost-one-takes-none
+  "A part that waits for two, while its whole has lost one of them, takes that from nobody."
+  (let ((hand (rpl:make-valve 'hand)) (eye (rpl:make-valve 'eye)))
+    (is (equal '((:taken 2) (:back 12) (:part 12) (:beside 12))
+               (with-log (note)
+                 (plan-value
+                   (rpl:par (rpl:with-valve (eye :priority 9) (rpl:wait-time 4))
+                            (rpl:with-valve (hand)
+                              (rpl:par (rpl:seq (rpl:wait-time 1)
+                                                (rpl:with-valves (hand eye :priority 5)
+                                                  (note :part)))
+                                       (rpl:seq (rpl:wait-time 8) (note :beside))))
+                            (rpl:seq (rpl:wait-time 2)
+                                     (rpl:with-valve (hand :priority 1)
+                                       (note :taken) (rpl:wait-time 10) (note :back))))))))))
+
 ;;; Many.
 
 (defun calls-of (name function)

@@ -4,8 +4,9 @@
 
 ;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted,
 ;;; the newest first. A part of a task that holds a valve may hold it as well, one part at a time.
-;;; So HOLDERS of a valve are the first claim, its owner's, and those after it of tasks that this is
-;;; part of. Any other claim was preempted: it has LOST the valve, and its task does not run.
+;;; So HOLDERS of a valve are the first claim, its owner's, and those of tasks that this is part of;
+;;; between them may be such as parts have lost to parts. Any other claim was preempted: it has LOST
+;;; the valve, and its task does not run.
 ;;; The claims that wait for a valve queue by priority, by level, then first in first out, in a LINE
 ;;; for each priority and level; one that wants several can be overtaken by such as can have what
 ;;; they want. To queue, to leave, and to be next take the same time however many wait in a line,
@@ -99,14 +100,19 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 (defun holders (valve)
   "Return the claims that hold VALVE: that of its owner, and those of tasks that this is part of,
 innermost first."
-  (loop for (claim next) on (valve-claims valve)
-        collect claim
-        while (and next (part-of-p (claim-task claim) (claim-task next)))))
+  (let ((claims (valve-claims valve)))
+    (and claims
+         (remove-if-not (lambda (claim) (part-of-p (claim-task (first claims)) (claim-task claim)))
+                        claims))))
+
+(defun lost-claims (valve)
+  "Return the claims that have lost VALVE, that which is to have it next first."
+  (let ((holders (holders valve)))
+    (remove-if (lambda (claim) (member claim holders)) (valve-claims valve))))
 
 (defun valve-losers (valve)
   "Return the tasks from which VALVE was taken and which are to have it back, the next first."
-  (let ((valve (here valve)))
-    (mapcar #'claim-task (nthcdr (length (holders valve)) (valve-claims valve)))))
+  (mapcar #'claim-task (lost-claims (here valve))))
 
 (defun valve-text (valve)
   "Return the name of VALVE as text."
@@ -128,34 +134,41 @@ innermost first."
   "Return the claims that hold VALVE and are of tasks that TASK is no part of, innermost first."
   (remove-if (lambda (claim) (part-of-p task (claim-task claim))) (holders valve)))
 
+(defun stronger-p (claim rival)
+  "True if CLAIM may take from RIVAL what that holds: one that evaporates keeps it."
+  (and (> (claim-priority claim) (claim-priority rival))
+       (not (evaporating-p (claim-task rival)))))
+
+;; Who does not run as it has lost a valve takes none: it might be from who has that.
 (defun available-p (valve claim)
-  "True if CLAIM may take VALVE, from its rivals if need be: one that evaporates keeps it."
-  (every (lambda (rival)
-           (and (> (claim-priority claim) (claim-priority rival))
-                (not (evaporating-p (claim-task rival)))))
-         (rivals valve (claim-task claim))))
+  "True if CLAIM may take VALVE, from its rivals if need be."
+  (let ((rivals (rivals valve (claim-task claim))))
+    (or (null rivals)
+        (and (every (lambda (rival) (stronger-p claim rival)) rivals)
+             (null (those-who-took-from (claim-task claim)))))))
 
 (defun grantable-p (claim)
   (every (lambda (valve) (available-p valve claim)) (claim-valves claim)))
 
 (defun lose (valve claim)
-  "Take VALVE from CLAIM, and keep its task from running."
-  (unless (member valve (claim-lost claim))
+  "Take VALVE from CLAIM, if it still has that, and keep its task from running."
+  (when (and (member valve (claim-taken claim)) (not (member valve (claim-lost claim))))
     (push valve (claim-lost claim))
     (block-task (claim-task claim) t)))
 
-(defun regain (valve claim)
-  (when (member valve (claim-lost claim))
-    (setf (claim-lost claim) (remove valve (claim-lost claim)))
-    (unblock-task (claim-task claim) t)))
+(defun take (valve claim)
+  "Let CLAIM have VALVE. Return those who lose it by that, the outermost first, each as a list: of
+VALVE and the rival."
+  (let ((rivals (rivals valve (claim-task claim))))
+    (push claim (valve-claims valve))
+    (push valve (claim-taken claim))
+    (mapcar (lambda (rival) (list valve rival)) (reverse rivals))))
 
+;; What a rival does about it may give valves back: those that CLAIM has already by then.
 (defun grant (claim)
   "Let CLAIM have its valves."
-  (dolist (valve (claim-valves claim))
-    (dolist (rival (reverse (rivals valve (claim-task claim))))
-      (lose valve rival))
-    (push claim (valve-claims valve))
-    (push valve (claim-taken claim))))
+  (loop for (valve rival) in (mapcan (lambda (valve) (take valve claim)) (claim-valves claim))
+        do (lose valve rival)))
 
 ;;; Queueing.
 
@@ -245,15 +258,31 @@ innermost first."
         while turn
         when (grantable-p (turn-claim turn)) return (turn-claim turn)))
 
+(defun admit (claim)
+  "Grant CLAIM, for which its task waits."
+  (leave-queues claim)
+  (grant claim)
+  (when (eq claim (task-awaiting (claim-task claim))) (wake (claim-task claim) nil)))
+
+(defun admit-parts (task)
+  "Grant what TASK and its parts wait for, as far as they can take it now that TASK goes on."
+  (let ((awaited (task-awaiting task)))
+    (when (and (claim-p awaited) (grantable-p awaited)) (admit awaited)))
+  (mapc #'admit-parts (task-children task)))
+
+(defun regain (valve claim)
+  "Let CLAIM have VALVE, which it holds, again if it had lost it."
+  (when (member valve (claim-lost claim))
+    (setf (claim-lost claim) (remove valve (claim-lost claim)))
+    (unblock-task (claim-task claim) t)
+    (unless (claim-lost claim) (admit-parts (claim-task claim)))))
+
 ;; The one who has it now has no parts yet, and no less priority than those behind: no other can.
 (defun grant-waiting (valve)
   "Grant the first of the claims that wait for VALVE and can be granted, or else give it back to
 those who lost it last."
   (let ((claim (some-line #'next-in-line (valve-lines valve))))
-    (when claim
-      (leave-queues claim)
-      (grant claim)
-      (wake (claim-task claim) nil)))
+    (when claim (admit claim)))
   (dolist (holder (holders valve))
     (regain valve holder)))
 

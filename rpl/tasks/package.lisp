@@ -85,7 +85,7 @@ plans nor a simulator.")
   ;; blocking
   (:export #:block-task #:check-together #:make-heed #:suspend #:unblock-task #:wake-up)
   ;; circles
-  (:export #:hinderers #:hindrance-text #:report-circle #:taken-from)
+  (:export #:hinderers #:hindrance-text #:report-circle #:taken-from #:those-who-took-from)
   ;; care
   (:export #:leave-plan)
   ;; gate
