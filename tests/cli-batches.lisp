@@ -146,6 +146,26 @@ resume" "--rate" "free")))
     (is-true (has-words-p (third lines) "Robot turned 1.00"))
     (is-true (has-words-p (first (last lines)) "Robot turned 2.00"))))
 
+(test scripts.do-not-let-lisp-wait-while-time-stands-still
+  "Not for a plan, nor for what Lisp has asked for; nor if a plan pauses the run that it is in."
+  (let ((lines (run-script "pause
+(run-plan (interp-lambda () (wait-time 2) :ok))
+(progn (robot-turn dot 1) (await-idle))
+(list (plans) (await-idle (current-simulation) 0))
+resume
+(run-plan (interp-lambda () (seq (pause) (wait-time 2))))
+resume
+(run-plan (interp-lambda () (seq (wait-time 2) :ok)))" "--rate" "free")))
+    (loop for words in '(("paused") ("line 2: run-plan: the run is paused" "(resume)")
+                         ("line 3: await-idle: the run is paused" "(resume)")
+                         ("(NIL NIL)")
+                         ("robot-turn: Robot turned 1.00")
+                         ("line 6: run-plan: the run is paused")
+                         (":OK") (":SUCCEEDED"))
+          for line in lines
+          do (is-true (apply #'has-words-p line words) "~A" lines))
+    (is (= 8 (length lines)))))
+
 (defun run-script-apart (text &rest options)
   "Run a script of TEXT in a process of its own, with OPTIONS. Return its error output, status and
 output."

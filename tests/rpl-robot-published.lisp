@@ -125,3 +125,22 @@ that breaks is stopped there until the semaphore is signalled."
           (funcall go-on simulation)
           (awaiting (rpl:task-over-p task))
           (is (eq :fine (rpl:task-result task))))))))
+
+;;; A run that is paused.
+
+(test run-plan.of-a-paused-run-says-what-lets-it-go-on
+  "Once in a run; who reads that can resume."
+  (live (simulation)
+    (let ((said 0) (plan (rpl:interp-lambda () (rpl:wait-time 2) :ok)))
+      (host:wrap-function 'world:warn-once
+                          (lambda (function &rest arguments)
+                            (when (apply function arguments) (incf said))
+                            (time:resume simulation))
+                          'test)
+      (unwind-protect (loop repeat 2
+                            do (time:pause simulation)
+                               (is (eq :ok (driver:run-plan plan))))
+        (host:unwrap-function 'world:warn-once 'test))
+      (is (= 1 said))
+      (is-true (has-words-p (format nil "~{~A~}" (mapcar #'base:message-text (base:take-messages)))
+                            "run-plan waits, as the run is paused" "(resume)")))))

@@ -54,9 +54,6 @@ and says itself how it has ended. RESOURCE is what carries out a single command,
 
 ;;; Waiting.
 
-(defvar *waits-while-paused-p* t
-  "True if somebody sits where this thread waits, and may let a run go on that is paused.")
-
 (defun held-up-p (simulation)
   "True if SIMULATION, which is live, is paused, and nobody is there to let it go on."
   (and (not *waits-while-paused-p*) (stands-still-p simulation)))

@@ -14,7 +14,7 @@
                 #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
-                #:robot-meant #:simulation-over
+                #:robot-meant #:simulation-over #:doubt-wait
                 #:simulation-seed #:simulation-plans-dice-p #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:simulation-observers
                 #:simulation-world #:simulation-messages #:robot-simulation

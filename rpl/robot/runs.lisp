@@ -146,6 +146,7 @@ but somebody outside can let plans go on, say so, once."
                           (deadlocked-p interface))
                      (setf told t)
                      (with-plans (interface) (report-stillness (interface-runner interface)))))
+              (doubt-wait 'run-plan simulation)
               (wait-a-while over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))
 
@@ -154,7 +155,8 @@ but somebody outside can let plans go on, say so, once."
   (when (holding-p interface)
     (reject-use "run-plan: a plan is at work here. Let it call the other plan instead."))
   (when (eq (current-thread) (simulation-thread (interface-simulation interface)))
-    (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here.")))
+    (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here."))
+  (doubt-wait 'run-plan (interface-simulation interface)))
 
 ;;; What did not end.
 

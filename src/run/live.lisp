@@ -113,7 +113,20 @@ says that it may be so; plans come to rest without a word. Signals MISUSE if SIM
         do (check-not-failed simulation)
         thereis (all-still-p simulation)
         while (and (< (seconds-now) due) (live-p simulation))
-        do (wait-patiently idle (min 0.02 (max 0 (- due (seconds-now)))))))
+        do (doubt-wait 'await-idle simulation)
+           (wait-patiently idle (min 0.02 (max 0 (- due (seconds-now)))))))
+
+(defun doubt-wait (operator simulation)
+  "Let OPERATOR not wait in vain for the live SIMULATION, if that is paused. Signal MISUSE if nobody
+is there who can let it go on; else queue a warning, once in a run."
+  (when (stands-still-p simulation)
+    (unless *waits-while-paused-p*
+      (reject-use "~(~A~): the run is paused, so nothing that this would wait for can happen. ~
+                   (resume) first." operator))
+    (let ((*message-queue* (simulation-messages simulation)))
+      (warn-once '(:waits-while-paused) (simulation-world simulation)
+                 (format nil "~(~A~) waits, as the run is paused; (resume), in another thread, ~
+                              lets it go on. Control-C ends the wait." operator)))))
 
 (defun check-not-failed (simulation)
   "Signal MISUSE if the live SIMULATION has failed and is paused for that."

@@ -73,6 +73,9 @@ what users' code the thread is in."
   (let ((pacing (timeline-pacing (timeline-of simulation))))
     (and pacing (pacing-paused-p pacing))))
 
+(defvar *waits-while-paused-p* t
+  "True if somebody sits where this thread waits, and may let a run go on that is paused.")
+
 (defun clock-trouble (simulation)
   "Return in words what the live SIMULATION has failed by, if it is paused for that; else NIL."
   (let ((pacing (timeline-pacing (timeline-of simulation))))

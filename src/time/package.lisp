@@ -43,7 +43,7 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   ;; pacing, stopping, clock
   (:export #:answer-meanwhile)
   (:export #:timeline-thread #:pacer-p #:check-rate #:live-p #:paused-p #:clock-trouble #:pause
-           #:stands-still-p #:resume
+           #:stands-still-p #:*waits-while-paused-p* #:resume
            #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds*
            #:hog-seconds
            #:seconds-now #:users-code-under-way #:users-code-broken-p #:abort-hog #:stop-pacing
