@@ -200,6 +200,58 @@ output."
   (is (= 124 (nth-value 1 (run-endless-script "--time-limit" "0.5" "--rate" "free"))))
   (signals cli::usage-error (cli::parse-options '("--time-limit" "-1"))))
 
+;;; Control C.
+
+(defun patience-of-script (form &rest options)
+  "Run a script of FORM, text, which says BEGUN by ~A in it and never returns, in a process of its
+own, with OPTIONS. Let control C come from then on until the process ends, half a second after the
+last. Return its status, and its error output."
+  (uiop:with-temporary-file (:pathname path :stream stream :type "ars")
+    (format stream form "(progn (write-line \"BEGUN\") (finish-output))")
+    :close-stream
+    (let ((process (uiop:launch-program (list* (base:native-name (project-file "cli/ars-magna"))
+                                               (base:native-name path) "--world" "tiny" options)
+                                        :output :stream :error-output :stream))
+          (patience (base:make-semaphore "patience")))
+      (loop for line = (read-line (uiop:process-info-output process) nil)
+            until (or (null line) (search "BEGUN" line)))
+      (loop repeat 10
+            while (uiop:process-alive-p process)
+            do (sb-posix:kill (uiop:process-info-pid process) sb-posix:sigint)
+               (base:wait-on-semaphore patience 0.5))
+      (when (uiop:process-alive-p process)
+        (uiop:terminate-process process :urgent t))
+      (values (uiop:wait-process process)
+              (uiop:slurp-stream-string (uiop:process-info-error-output process))))))
+
+(test interrupts.end-a-batch-that-does-not-let-itself-be-ended
+  "One that takes the interrupt for an error of its own, and one that lets none in."
+  (dolist (form '("(loop (handler-case (progn ~A (loop)) (t () nil)))"
+                  "(ars-magna.host:call-holding-interrupts (lambda () ~A (loop)))"
+                  "(unwind-protect (progn ~A (loop)) (loop))"))
+    (multiple-value-bind (status errors) (patience-of-script form)
+      (is (= 130 status) "~A: ~A ~A" form status errors)
+      (is-true (has-words-p errors "line 1: stopped: control C has come again") "~A" errors))))
+
+(test interrupts.end-at-once-what-did-not-end
+  "The third does so anyway; the second if the first has begun nothing, and is not half of it."
+  (flet ((at-once-p (ending now &rest times)
+           (let ((cli::*interrupts-while-ending* ending))
+             (and (cli::ends-at-once-p now times) t))))
+    (is (equal '(nil t nil nil t)
+               (list (at-once-p nil 10) (at-once-p nil 10 9) (at-once-p nil 10 9.9d0)
+                     (at-once-p 0 10 9) (at-once-p 0 10 9 8))))))
+
+(test scripts.say-so-when-a-time-limit-ends-what-lets-no-interrupt-in
+  (multiple-value-bind (errors status)
+      (run-script-apart "(robot-turn dot 1 (lambda (&rest results)
+                         (list results)
+                         (ars-magna.host:call-holding-interrupts (lambda () (loop)))))"
+                        "--time-limit" "0.5")
+    (is (= 124 status))
+    (is-true (has-words-p errors "line 1: stopped in the continuation of robot-turn"
+                          "the time limit of 0.5 s is over"))))
+
 (command:define-command probe-sink (operation (probe probe)) ()
     ((:family :handling) (:delay 30) (:report () "The probe has sunk"))
     "Succeed after 30 ticks."

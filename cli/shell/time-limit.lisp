@@ -38,21 +38,32 @@ signalled. What is seen four times on end, a third of *HOG-PATIENCE* apart, has 
              (unless (eql count seen) (setf seen count looks 0))
              (when (and whose (= 4 (incf looks))) (say-who-stays session whose)))))
 
-(defun leave-at-limit (session seconds whose)
-  "Say that SESSION has gone on for SECONDS, in code of WHOSE at last, or NIL, and leave it."
-  (say-where session (format nil "stopped~@[ in ~A~]: the time limit of ~A s is over."
-                             whose (amount-text seconds)))
-  (throw 'leave +time-over+))
+(defun say-stopped (session whose reason)
+  "Say that SESSION is stopped, in code of WHOSE at last, or NIL, for REASON."
+  (say-where session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
 
 (defun end-at-limit (session calls thread seconds ended)
   "End SESSION, which THREAD is at, after SECONDS, unless the semaphore ENDED is signalled before.
 If it does not let itself be ended, end this process."
   (unless (wait-on-semaphore ended seconds)
-    (let ((whose (call-under-way session calls)))
-      (interrupt-thread thread (lambda ()
-                                 (allowing-interrupts
-                                   (leave-at-limit session seconds whose))))
-      (unless (wait-on-semaphore ended *grace*) (end-process +time-over+)))))
+    (let ((whose (call-under-way session calls)) (said nil))
+      (flet ((say ()
+               (unless (shiftf said t)
+                 (say-stopped session whose (format nil "the time limit of ~A s is over"
+                                                    (amount-text seconds))))))
+        (interrupt-thread thread (lambda ()
+                                   (allowing-interrupts
+                                     (say)
+                                     (throw 'leave +time-over+))))
+        (unless (wait-on-semaphore ended *grace*)
+          (say)
+          (end-process +time-over+))))))
+
+(defun tell-at-once (session calls)
+  "Let control C say whose code SESSION is in, of which CALLS tells, before it ends that at once."
+  (setf *before-ending-at-once*
+        (lambda ()
+          (say-stopped session (call-under-way session calls) "control C has come again"))))
 
 (defun call-with-watchers (session options function)
   "Call FUNCTION, which runs SESSION. If nobody sits there, code that does not return is named. The
@@ -61,6 +72,7 @@ time limit of OPTIONS, if any, ends FUNCTION."
          (ended (make-semaphore "session ended"))
          (thread (current-thread)) (seconds (option-value :time-limit options)))
     (unless (terminal-p session)
+      (tell-at-once session calls)
       (start-thread (lambda () (watch-for-calls session calls ended)) "watcher of the batch"))
     (when seconds
       (start-thread (lambda () (end-at-limit session calls thread seconds ended)) "time limit"))

@@ -74,7 +74,37 @@ values of THEN, another function, which is not interrupted."
             (funcall function)))
       (user-interrupt () (funcall then)))))
 
+;; Users' code may take what is signalled here for an error of its own, or let no interrupt in. What
+;; counts how often control C comes is called in any thread, and lets no code be called but ours.
+
+(defvar *before-ending-at-once* nil
+  "A function of no arguments to call before control C ends this process at once; NIL where somebody
+sits, who may press it as often as he likes.")
+
+(defvar *interrupt-times* '() "When control C came, in seconds, newest first.")
+
+(defparameter *interrupt-span* 5
+  "Within how many seconds control C has to come again to end this process at once.")
+
+(defun ends-at-once-p (now times)
+  "True if control C, which comes at NOW and has come at TIMES, is to end this process at once: the
+third time, or, unless it came twice for once, the second if the first has had no effect."
+  (and times
+       (or (rest times)
+           (and (null *interrupts-while-ending*) (< 1/3 (- now (first times)))))))
+
+(defun note-interrupt ()
+  "Note that control C has come. End this process if it has done so too often."
+  (let* ((now (seconds-now))
+         (times (remove-if (lambda (time) (< time (- now *interrupt-span*))) *interrupt-times*)))
+    (setf *interrupt-times* (cons now times))
+    (when (and *before-ending-at-once* (ends-at-once-p now times))
+      (funcall *before-ending-at-once*)
+      (end-process 130))))
+
 (defun mind-interrupts ()
   "Let control C interrupt this thread, which is the process's first."
   (let ((thread (current-thread)))
-    (call-on-interrupt (lambda () (interrupt-thread thread #'take-interrupt)))))
+    (call-on-interrupt (lambda ()
+                         (note-interrupt)
+                         (interrupt-thread thread #'take-interrupt)))))
