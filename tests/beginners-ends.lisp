@@ -240,3 +240,12 @@
                             (command:hand-ungrasp (robot:robot-hand (symbol-value 'rover) 0) nil)
                             (run:run-ticks 20)))
                         "*ERROR* -> hand-ungrasp: Hand 0 is not holding anything")))
+
+(test plans.without-a-list-of-parameters-are-doubted
+  (flet ((warnings-of-plan (&rest body)
+           (prog1 (warnings-of (lambda () (eval `(rpl:def-interp-proc no-list ,@body))))
+             (fmakunbound 'no-list))))
+    (is-true (has-words-p (first (warnings-of-plan '(driver:rpl-robot-stop) '(rpl:wait-time 1)))
+                          "called like the function rpl-robot-stop" "() if there are none"))
+    (is (null (warnings-of-plan '() '(driver:rpl-robot-stop) '(rpl:wait-time 1))))
+    (is (null (warnings-of-plan '(rpl-thing) '(rpl:wait-time rpl-thing))))))

@@ -48,6 +48,19 @@ variables in ENVIRONMENT."
        (known-function-p (first parameters) environment)
        "The list of parameters stands before the body; write () if there are none"))
 
+(defun doubt-parameters (parameters definition environment)
+  "Warn if one of PARAMETERS, of DEFINITION, is called like a function by which plans command the
+robot: then they may be the first form of a body, with no list of parameters before it."
+  (let ((name (find-if (lambda (name)
+                         (and (starts-with-subseq "RPL-" (string name))
+                              (known-function-p name environment)))
+                       (lambda-list-variables parameters))))
+    (when name
+      (doubt-definition "~A: a parameter is called like the function ~(~A~). If (~1@*~(~A~)) is ~
+                         the first form of the body, write the list of parameters before it: () ~
+                         if there are none."
+                        definition name))))
+
 (defun plain-parameters (parameters form environment &optional (definition (author)))
   "Return PARAMETERS, of FORM in DEFINITION, without types. Signals MALFORMED-DEFINITION unless they
 are a lambda list."
@@ -60,6 +73,7 @@ are a lambda list."
     (let* ((plain (untyped-lambda-list parameters definition))
            (trouble (parameters-trouble plain environment)))
       (when trouble (reject trouble))
+      (doubt-parameters plain definition environment)
       plain)))
 
 ;;; Forms that bind, also where they are Lisp's to run.
