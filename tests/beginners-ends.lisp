@@ -249,3 +249,15 @@
                           "called like the function rpl-robot-stop" "() if there are none"))
     (is (null (warnings-of-plan '() '(driver:rpl-robot-stop) '(rpl:wait-time 1))))
     (is (null (warnings-of-plan '(rpl-thing) '(rpl:wait-time rpl-thing))))))
+
+(test plans.with-steps-after-a-whenever-are-doubted
+  (flet ((warnings-of-steps (&rest steps)
+           (prog1 (warnings-of (lambda () (eval `(rpl:def-interp-proc after-whenever (f) ,@steps))))
+             (fmakunbound 'after-whenever))))
+    (is-true (has-words-p (first (warnings-of-steps '(rpl:whenever f (print 1))
+                                                    '(driver:rpl-robot-turn 1)
+                                                    '(rpl:wait-for driver:robot-stopped*)))
+                          "what stands after whenever is never done" "with-policy"))
+    (is (null (warnings-of-steps '(rpl:whenever f (when (print 1) (return)))
+                                 '(rpl:wait-time 1))))
+    (is (null (warnings-of-steps '(rpl:wait-time 1) '(rpl:whenever f (print 1)))))))

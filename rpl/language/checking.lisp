@@ -250,6 +250,37 @@ not in what is called later."
   (let ((wait (and *definition* (find-call #'vain-wait-p (list form)))))
     (when wait (call-at-place wait (lambda () (doubt-vain-wait wait))))))
 
+;;; What comes after what goes on for ever.
+
+(defun may-return-p (form)
+  "True if FORM leaves a block, or may stand for one that does."
+  (or (operator-in-p form '("RETURN" "RETURN-FROM" "GO"))
+      (let ((operator (first form)))
+        (and (symbolp operator)
+             (symbol-package operator)
+             (macro-function operator)
+             (let ((home (package-name (symbol-package operator))))
+               (not (or (string= "COMMON-LISP" home)
+                        (and (starts-with-subseq "ARS-MAGNA." home)
+                             (eq :external (nth-value 1 (find-symbol (string operator)
+                                                                     home)))))))))))
+
+(defun check-after-whenever (forms)
+  "Warn if one of FORMS, which are done one after the other, is a WHENEVER that never ends, and not
+the last."
+  (let ((form (find-if (lambda (form)
+                         (and (consp form)
+                              (operator-in-p form '("WHENEVER"))
+                              (null (find-call #'may-return-p (rest form)))))
+                       (butlast forms))))
+    (when (and form *definition*)
+      (call-at-place form
+                     (lambda ()
+                       (warn-of-call #'doubt-definition form
+                                     "what stands after whenever is never done, as that goes on ~
+                                      until something in it calls (return). Put both into (par ~
+                                      ...), or use (with-policy (whenever ...) body...)."))))))
+
 ;;; Variables.
 
 (defun check-use (variables where form)

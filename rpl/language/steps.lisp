@@ -33,6 +33,7 @@
 
 (defun body-code (forms scope)
   "Return code for FORMS as the steps of a body, of which the last one gives the values."
+  (check-after-whenever forms)
   (cond
     ((null forms) '+nothing+)
     ((null (rest forms)) (plan-code (first forms) scope))
