@@ -31,18 +31,23 @@
         (node-form (svref (steps-parts node) (1- i)))
         (node-form node))))
 
+(defun steps-code (forms scope)
+  "Return code for FORMS, two or more, which run in order."
+  (let ((single (single-scope scope)))
+    (naming-code `(make-steps :form '(seq ,@forms)
+                              :parts (vector ,@(loop for (form . more) on forms
+                                                     for inner = (if more single scope)
+                                                     collect (plan-code form inner))))
+                 scope)))
+
 (defun body-code (forms scope)
   "Return code for FORMS as the steps of a body, of which the last one gives the values."
-  (check-after-whenever forms)
   (cond
     ((null forms) '+nothing+)
     ((null (rest forms)) (plan-code (first forms) scope))
-    (t (let ((single (single-scope scope)))
-         (naming-code `(make-steps :form '(seq ,@forms)
-                                   :parts (vector ,@(loop for (form . more) on forms
-                                                          for inner = (if more single scope)
-                                                          collect (plan-code form inner))))
-                      scope)))))
+    ;; What is wrong with the forms themselves comes first.
+    (t (prog1 (steps-code forms scope)
+         (check-after-whenever forms)))))
 
 (defun binding-body-code (forms scope)
   "Return code for FORMS, a body that may start with declarations; these are for the reader only."
