@@ -46,7 +46,8 @@
    (:module "src/statistics" :serial t
     :components ((:file "package") (:file "arguments") (:file "fractions") (:file "gamma")
                  (:file "normal") (:file "beta") (:file "samples") (:file "proportions")
-                 (:file "means") (:file "bootstrap") (:file "pairs") (:file "permutation")
+                 (:file "means") (:file "bootstrap") (:file "pairs") (:file "rare-signs")
+                 (:file "permutation")
                  (:file "several") (:file "survival") (:file "sequential")))
    (:module "src/nisp" :serial t
     :components ((:file "package") (:file "control") (:file "typed-lists") (:file "binding")

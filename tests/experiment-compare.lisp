@@ -213,3 +213,41 @@
       (is (mentions-p (first-verdict :all) "told: p = .062 as one of 2 tests (.031 alone), 100 %"))
       (is (mentions-p (first-verdict :all) "where 2 are tested, one that leaves out 0 is no proof"))
       (is (mentions-p (first-verdict 'b) "than b: p = .031, 100 % against")))))
+
+;;; Many tests, few seeds.
+
+(defun measured-differences (count shift trials)
+  "Return the differences of COUNT measures over TRIALS, the first of them by SHIFT, adjusted."
+  (let ((dice (ars-magna.base:make-dice 600)))
+    (flet ((noise () (loop repeat trials collect (ars-magna.base:roll-between 0 1 dice))))
+      (let ((differences (loop for number below count
+                               collect (ars-magna.experiment::mean-difference
+                                        "way"
+                                        (mapcar (lambda (x) (+ x (if (zerop number) shift 0)))
+                                                (noise))
+                                        (noise)))))
+        (ars-magna.experiment::adjust-for-all differences)
+        differences))))
+
+(test compare.tells-a-plain-difference-among-hundreds-of-tests
+  (let ((differences (measured-differences 600 1000 22)))
+    (is (< (experiment:paired-adjusted-p (first differences)) .001))
+    (is (notany #'ars-magna.experiment::told-difference-p (rest differences)))))
+
+(defun doubts-of (count trials)
+  (ars-magna.experiment::doubt-words (first (measured-differences count 1000 trials))))
+
+(test compare.says-how-many-seeds-so-many-tests-need
+  (is (mentions-p (doubts-of 60 8) (format nil "over 8 seeds p cannot be below .008, too much for ~
+                                                60 tests: run 12 or more, or compare fewer")))
+  (is (mentions-p (doubts-of 1 5) "over 5 seeds p cannot be below .063: run 6 or more")))
+
+(test compare.explains-a-p-above-the-level-beside-an-interval-without-0
+  (is (mentions-p (doubts-of 1 5)
+                  "the interval leaves out 0, but it is an approximation, and p is above .05")))
+
+(test compare.calls-no-bound-certain
+  (with-made-up (results (patrol-and-spiral))
+    (is (mentions-p (third (experiment:comparison-verdicts
+                            (experiment:compare-conditions results 1 2 :stream nil)))
+                    "at most 0.14. This bound is right about 95 times in 100."))))

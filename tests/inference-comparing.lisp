@@ -115,6 +115,30 @@ from 0 as it is."
   (signals-wrong-argument stats:permutation-test (stats:permutation-test '(1 2) :resamples 3))
   (signals-wrong-argument stats:permutation-test (stats:permutation-test '(1 2) :seed :lucky)))
 
+(test permutation.weighs-rare-sums-instead-of-waiting-for-them
+  "All on one side are 2 of 2^n; sizes that are nearly equal, or some of which outweigh all others,
+are nearly as McNemar counts."
+  (flet ((rare (numbers) (stats:permutation-test numbers :rare-too t :resamples 2000)))
+    (let ((apart (loop for i below 40 collect (+ 1000 (/ (sin (float i 1d0)) 2)))))
+      (multiple-value-bind (p exact) (rare apart)
+        (is (null exact))
+        (is (relatively-near p (expt 2d0 -39) .01))))
+    ;; Five are negative, and all are nearly 1.
+    (let ((ones (loop for i below 40 collect (* (if (< i 5) -1 1) (+ 1 (* 1d-7 (sin (* i i))))))))
+      (is (<= (/ (stats:mcnemar-test 35 4) 20) (rare ones) (stats:mcnemar-test 35 5))))
+    ;; A few numbers that are far larger than the others.
+    (let ((mixed (append (loop for i below 12 collect (+ 1d6 (* 7 (sin (float i 1d0)))))
+                         (loop for i below 60 collect (sin (* 1d0 i i))))))
+      (is (<= (expt 2d0 -12) (rare mixed) (expt 2d0 -11))))))
+
+(test permutation.rare-sums-are-near-their-normal-law
+  (loop with dice = (base:make-dice 12)
+        for mean in '(.06d0 .07d0 .08d0)
+        for numbers = (loop repeat 3000 collect (base:roll-gaussian mean 1 dice))
+        for z = (/ (reduce #'+ numbers) (sqrt (reduce #'+ (mapcar (lambda (x) (* x x)) numbers))))
+        for p = (stats:permutation-test numbers :rare-too t :resamples 2000)
+        do (is (relatively-near p (* 2 (stats::normal-probability (- z))) .15) "~A ~A" z p)))
+
 ;;; Several tests.
 
 (test holm.as-in-examples

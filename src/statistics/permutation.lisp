@@ -69,15 +69,28 @@ one of them, so that it is never 0 (Phipson and Smyth 2010)."
                        count (>= (abs (signed-sum sizes dice)) (- sum grain)))))
      (1+ resamples)))
 
+(defconstant +seldom+ .05d0
+  "What is no more likely than this is drawn anew with tilted signs, if that is wanted.")
+
+(defun share-by-draws (sizes sum grain resamples seed rare-too)
+  "Return what DRAWN-SHARE says; or RARE-SHARE if that is little and RARE-TOO is true."
+  (let ((share (drawn-share sizes sum grain resamples (make-dice seed "permutation"))))
+    (if (and rare-too (<= share +seldom+))
+        (rare-share sizes sum grain resamples (make-dice seed "rare signs"))
+        share)))
+
 (addition permutation-test)
-(defun permutation-test (differences &key (resamples 10000) (seed 0))
+(defun permutation-test (differences &key (resamples 10000) (seed 0) rare-too)
   "Return how likely it is that DIFFERENCES, a list or vector of numbers, have a mean as far from 0
 as this if each might as well have had the other sign: the paired permutation test (Fisher 1935,
 The Design of Experiments, 21). The second value is true if it is exact, by going through all signs
 (Pagano and Tritchler 1983), which is so for up to 19 numbers, and for more if many are equal or
-whole; else it is by RESAMPLES draws with the dice for SEED, an integer, the same each time. Sums
-that differ by rounding only are equal. It is 1 of none, and if all are 0. Signals WRONG-ARGUMENT
-unless DIFFERENCES are from -1e15 to 1e15, and RESAMPLES from 100 to 1e7."
+whole; else it is by RESAMPLES draws with the dice for SEED, an integer, the same each time. Draws
+never say less than 1/(RESAMPLES + 1). With RARE-TOO, what they find in 1 of 20 at most is drawn
+again so that rare sums come often, and counts by its weight (importance sampling, Harrison 2012):
+give this if the test is one of many. Sums that differ by rounding only are equal. It is 1 of none,
+and if all are 0; of N numbers it is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are
+from -1e15 to 1e15, and RESAMPLES from 100 to 1e7."
   (check-argument permutation-test resamples (whole-p resamples 100 #.(expt 10 7))
                   "an integer from 100 to 1e7")
   (check-argument permutation-test seed (integerp seed) "an integer")
@@ -88,4 +101,4 @@ unless DIFFERENCES are from -1e15 to 1e15, and RESAMPLES from 100 to 1e7."
          (exact (exact-share sizes sum grain)))
     (if exact
         (values (min 1d0 exact) t)
-        (values (drawn-share sizes sum grain resamples (make-dice seed "permutation")) nil))))
+        (values (share-by-draws sizes sum grain resamples seed rare-too) nil))))

@@ -76,7 +76,8 @@ of booleans, are true."
 ;;; Means.
 
 (defun draws-for (trials)
-  "Return how many draws the test of so many TRIALS is worth: with many, fewer will do."
+  "Return how many draws the test of so many TRIALS is worth: with many, fewer will do. How small p
+can be does not depend on it."
   (max 1000 (min 10000 (floor 200000000 (max 1 trials)))))
 
 ;; Who adds the same numbers in another order gets another last digit: that is no difference.
@@ -99,7 +100,8 @@ of booleans, are true."
                            (values (permutation-test (mapcar (lambda (a b)
                                                                (- (rational a) (rational b)))
                                                              firsts seconds)
-                                                     :resamples (draws-for trials))))))))
+                                                     :resamples (draws-for trials)
+                                                     :rare-too t)))))))
 
 ;;; Several.
 
@@ -110,6 +112,10 @@ of booleans, are true."
           for adjusted in (holm-adjusted (mapcar #'paired-p tested))
           do (setf (paired-adjusted-p difference) adjusted
                    (paired-tests difference) (length tested)))))
+
+(defun least-p (seeds)
+  "Return the least p of a test over so many SEEDS: all differences on one side."
+  (expt 2 (- 1 (max 1 seeds))))
 
 (defun told-difference-p (difference)
   "True if DIFFERENCE is more than chance, as far as that can be told with 95 % confidence."

@@ -27,13 +27,16 @@
       (let ((decimals (decimals-known (paired-low difference) (paired-high difference))))
         (lambda (value) (decimals-text value decimals)))))
 
+(defun p-figure (p)
+  "Return the probability P as people write it: .032, .15."
+  (string-left-trim "0" (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
+
 (defun p-text (p)
   "Return the probability P as people write it after a p: = .032, < .001."
   (cond ((null p) "-")
         ((< p .001d0) "< .001")
         ((> p .995d0) "= 1")
-        (t (let ((text (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
-             (format nil "= ~A" (string-left-trim "0" text))))))
+        (t (format nil "= ~A" (p-figure p)))))
 
 (defun bare-p (p)
   (string-left-trim "= " (p-text p)))
@@ -94,15 +97,38 @@
 (defun leaves-out-zero-p (difference)
   (not (<= (paired-low difference) 0 (paired-high difference))))
 
+(defun seeds-needed (tests)
+  "Return over how many seeds the smallest p, as one of so many TESTS, is at most .05."
+  (loop for seeds from 1
+        when (<= (* tests (least-p seeds)) 1/20) return seeds))
+
+(defun few-seeds-words (difference)
+  "Return in words that over the seeds of DIFFERENCE no p can be small enough; NIL if one can."
+  (let ((seeds (paired-trials difference)) (tests (paired-tests difference)))
+    (when (< seeds (seeds-needed tests))
+      (format nil "; over ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
+                   ~D or more~@[, or compare fewer measures~]"
+              seeds (p-figure (least-p seeds)) tests (seeds-needed tests) (< 1 tests)))))
+
+(defun zero-words (difference)
+  "Return why DIFFERENCE is none, although its interval leaves out 0."
+  (let ((tests (paired-tests difference)))
+    (if (< 1 tests)
+        (format nil "the interval is of this difference alone: where ~D are tested, one that ~
+                     leaves out 0 is no proof" tests)
+        "the interval leaves out 0, but it is an approximation, and p is above .05: p decides")))
+
+(defun bound-words (difference)
+  "Return how large DIFFERENCE can be if there is one."
+  (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"
+          (amount-words difference (max (abs (paired-low difference))
+                                        (abs (paired-high difference))))))
+
 (defun doubt-words (difference)
   "Return how large DIFFERENCE can be if there is one; or why it is none in spite of its interval."
-  (if (and (leaves-out-zero-p difference) (< 1 (paired-tests difference)))
-      (format nil "the interval is of this difference alone: where ~D are tested, one that leaves ~
-                   out 0 is no proof"
-              (paired-tests difference))
-      (format nil "if there is one, it is at most ~A"
-              (amount-words difference (max (abs (paired-low difference))
-                                            (abs (paired-high difference)))))))
+  (if (leaves-out-zero-p difference)
+      (format nil "~A~@[~A~]" (zero-words difference) (few-seeds-words difference))
+      (bound-words difference)))
 
 (defun verdict (difference contrast)
   "Return in words what DIFFERENCE, of CONTRAST, tells."
@@ -160,8 +186,10 @@ the same runs, else NIL."
 better or worse and how many trials are the same to the last bit; and then, over all where there are
 several conditions, and for each pair of these, which succeeds more often, takes more ticks and so
 on, with p, both rates or means, and the difference with its 95 % interval. A difference is called
-one if p, as it counts among all tests of COMPARISON (Holm), is at most .05; else it is said how
-large it can be. What is said over all counts apart. Intervals are of one difference alone."
+one if p, as it counts among all tests of COMPARISON (Holm), is at most .05. Else it is said how
+large it can be, as surely as the interval holds; or, if that leaves out 0, why p decides, and how
+many seeds so many tests need. What is said over all counts apart. Intervals are of one difference
+alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
   (let ((all (loop for contrast in (append (comparison-overall comparison)
                                            (comparison-contrasts comparison))
