@@ -123,6 +123,55 @@
                                              (make-hash-table)))))
     (setf (base:global-value '*question-cache*) nil)))
 
+;;; Tables and structures.
+
+(defstruct question-record "A user's structure." (size 1) (names '()))
+
+(defun question-table (&rest entries)
+  "Return a hash table of ENTRIES, keys and values by turns."
+  (let ((table (make-hash-table :test 'equal)))
+    (loop for (key value) on entries by #'cddr do (setf (gethash key table) value))
+    table))
+
+(defmacro with-question-data ((value) &body body)
+  "Run BODY with VALUE in *QUESTION-DATA*, which the experiment QUESTION can reach."
+  `(let ((old *question-data*))
+     (define-reaching (identity *question-data*))
+     (unwind-protect (progn (setf (base:global-value '*question-data*) ,value) ,@body)
+       (setf (base:global-value '*question-data*) old))))
+
+(test data.in-tables-and-structures-are-noticed
+  (with-question-data ((question-table "a" 1 :b (list 2 (question-table 'c 3))))
+    (is-true (noticed-p (lambda () (setf (gethash "a" *question-data*) 2))))
+    (is-true (noticed-p (lambda () (remhash "a" *question-data*))))
+    (is-true (noticed-p (lambda ()
+                          (setf (gethash 'c (second (gethash :b *question-data*))) 4)))))
+  (with-question-data ((vector 0 (make-question-record)))
+    (is-true (noticed-p (lambda () (setf (question-record-size (aref *question-data* 1)) 2))))
+    (is-true (noticed-p (lambda ()
+                          (push "x" (question-record-names (aref *question-data* 1))))))))
+
+(test data.in-tables-have-no-order
+  (with-question-data ((question-table 1 2 3 4 "five" 6))
+    (is-false (noticed-p (lambda ()
+                           (setf (base:global-value '*question-data*)
+                                 (question-table "five" 6 3 4 1 2)))))))
+
+(test plans.named-in-tables-are-noticed
+  (eval '(rpl:def-interp-proc question-plan () (rpl:wait-time 1)))
+  (with-question-data ((question-table :first 'question-plan))
+    (is-true (changes (rpl:def-interp-proc question-plan () (rpl:wait-time 2))))))
+
+(test tables.that-trials-fill-are-noticed
+  "What one trial leaves in a global table another finds: the rows are not those of seeds."
+  (with-question-data ((make-hash-table))
+    (define-reaching (setf (gethash (hash-table-count *question-data*) *question-data*) t))
+    (handler-case (progn (experiment:run-experiment 'question :trials 3 :workers 1 :stream nil)
+                         (fail "it was not"))
+      (base:misuse (condition)
+        (is (search "*question-data*" (princ-to-string condition)))
+        (is (search "give each its own" (princ-to-string condition)))))))
+
 (test values.of-conditions-have-packages
   (flet ((fingerprint (symbol)
            (eval `(experiment:defexperiment question (:robots ars-worlds:dot)

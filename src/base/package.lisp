@@ -33,7 +33,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:memory-barrier)
   ;; classes, code, packages
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
-           #:class-slot-types
+           #:class-slot-types #:weak-table-p
            #:code-references #:method-code #:methods-on-class
            #:lambda-list-of #:callable-with-p #:function-file #:files-besides-functions
            #:call-as-from-file #:date-of-file

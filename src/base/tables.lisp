@@ -13,3 +13,7 @@ that returns equal integers, not negative, for what TEST holds equal."
                    :size (max 7 (hash-table-count table))
                    :weakness (sb-ext:hash-table-weakness table)
                    :synchronized (sb-ext:hash-table-synchronized-p table)))
+
+(defun weak-table-p (table)
+  "True if the hash TABLE loses entries when nothing else holds them."
+  (and (sb-ext:hash-table-weakness table) t))

@@ -16,9 +16,9 @@
   "Return the bounds, low and high, of the interval for the mean of what NUMBERS, a list or vector,
 are a sample of (Student 1908). It holds the true mean as often as CONFIDENCE says if that is
 normal. Of skewed numbers it holds it less often: of exponential ones, with .95, in 89 of 100
-samples of 5, 93 of 30, and 94 of 50. BOOTSTRAP-INTERVAL is no better there. Of numbers that are all equal,
-both bounds are that number; of fewer than two, both are NIL. Signals WRONG-ARGUMENT unless NUMBERS
-are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
+samples of 5, 93 of 30, and 94 of 50. BOOTSTRAP-INTERVAL is no better there. Of numbers that are all
+equal, both bounds are that number; of fewer than two, both are NIL. Signals WRONG-ARGUMENT unless
+NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
   (let ((confidence (check-share student-interval confidence)))
     (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
 

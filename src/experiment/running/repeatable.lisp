@@ -24,8 +24,8 @@ there."
     (unless (equal texts again)
       (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently now: ~
                    ~{its ~A is ~A, and ~A in the row~}. Either the row has been changed, or ~
-                   something that is not in the fingerprint decides the trial, such as a structure ~
-                   that trials change, the clock, a file, or a function of SBCL's that ~
+                   something that is not in the fingerprint decides the trial, such as an object ~
+                   or closure that trials change, the clock, a file, or a function of SBCL's that ~
                    another version of it has otherwise. Mend that, and begin in another ~
                    directory."
                   trial (condition-name condition) (differing-column columns texts again)))))
@@ -45,6 +45,19 @@ least one is tried, and others as long as less than SECONDS have passed."
   "Return PART, of a fingerprint, without its number."
   (format nil "~(~A~) ~A" (first part) (second part)))
 
+(defun parts-changed (before now)
+  (set-exclusive-or before now :test #'equal))
+
+(defun changed-names (before now)
+  (remove-duplicates (mapcar #'part-name (parts-changed before now)) :test #'string=))
+
+(defun shared-variable-advice (before now)
+  "Return what to do if trials changed in place what a variable holds, or NIL."
+  (let ((changed (find :variable (parts-changed before now) :key #'first)))
+    (and changed
+         (format nil "If trials change what ~A holds, give each its own: ~
+                      (:run (let ((~:*~A ...)) ...))." (second changed)))))
+
 (defun check-unchanged (experiment parts directory)
   "Signal MISUSE if the fingerprints of EXPERIMENT, of PARTS, are no longer what they were."
   (loop for condition in (experiment-conditions experiment)
@@ -52,11 +65,9 @@ least one is tried, and others as long as less than SECONDS have passed."
         for now = (prepare-condition experiment condition)
         unless (equal before now)
           do (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The ~
-                          rows in ~A may be of either. Begin in another directory."
-                         (remove-duplicates
-                          (mapcar #'part-name (set-exclusive-or before now :test #'equal))
-                          :test #'string=)
-                         (native-name directory))))
+                          rows in ~A may be of either. ~@[~A ~]Begin in another directory."
+                         (changed-names before now) (native-name directory)
+                         (shared-variable-advice before now))))
 
 (defun check-run-again (store parts seconds)
   "Signal MISUSE if what was kept in STORE, in so many SECONDS, cannot be had again: if its

@@ -5,8 +5,8 @@
 ;;; From a function one reaches what its compiled code refers to; from a symbol the function, macro
 ;;; and value that it names, and whatever definitions are called so; from a plan the words of its
 ;;; text. What belongs to the simulator and to Lisp is known by its locked package and left alone.
-;;; What is looked up in other ways, by a name put together from pieces or in a table, is not
-;;; reached.
+;;; What is looked up in other ways, by a name put together from pieces, or as a function in a table
+;;; or structure, is not reached.
 
 (defstruct (reach (:constructor make-reach ()) (:copier nil))
   "What has been reached: definitions, lists (kind name number); the files that it is from; special
@@ -63,13 +63,14 @@ variables."
   (ignore-errors (global-value symbol) t))
 
 (defun visit-variable (symbol reach)
-  "Visit the special variable SYMBOL and its value, which is a part if it is data. NIL counts as no
-data, since it often stands where a table or structure is to be."
+  "Visit the special variable SYMBOL and its value, which is a part if it is data. NIL and an empty
+table count as no data, since they often stand where a table or structure is filled later."
   (push symbol (reach-variables reach))
-  (let ((value (global-value symbol)))
-    (when (and value (data-p value))
+  (let* ((value (global-value symbol)) (data-p (data-p value)))
+    (when (and data-p (not (no-data-p value)))
       (note-part :variable (qualified symbol) (data-number value) reach))
     (cond ((functionp value) (visit-function value symbol reach))
+          (data-p (visit (written value) reach))
           ((tree-p value) (visit value reach)))))
 
 ;; What an experiment varies, and how often it is tried, decides no trial.
