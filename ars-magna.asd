@@ -208,8 +208,8 @@
     :components ((:file "row") (:file "checking") (:file "lines") (:file "directory")
                  (:file "origin") (:file "description") (:file "results") (:file "merging") (:file "shards")))
    (:module "src/experiment/running" :serial t
-    :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
-                 (:file "stopping") (:file "repeatable") (:file "running")))
+    :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "guarding")
+                 (:file "rounds") (:file "stopping") (:file "repeatable") (:file "running")))
    (:module "src/experiment/report" :serial t
     :components ((:file "estimates") (:file "summary") (:file "text-table") (:file "texts")
                  (:file "remarks") (:file "report")))
@@ -472,7 +472,8 @@
                  (:file "libraries") (:file "our-manual") (:file "examples")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "lisp-errors")
-                 (:file "experiments-tables") (:file "experiments-files") (:file "experiments-fingerprints")
+                 (:file "experiments-tables") (:file "experiments-files")
+                 (:file "experiments-hanging") (:file "experiments-fingerprints")
                  (:file "thinking-experiments")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")

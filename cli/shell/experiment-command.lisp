@@ -51,7 +51,8 @@
 
 (defparameter *experiment-options*
   '(("--trials" :trials parse-count) ("--workers" :workers parse-count) ("--out" :out parse-path)
-    ("--until" :until parse-width) ("--plot" :plot nil) ("--quiet" :quiet nil)
+    ("--until" :until parse-width) ("--time-limit" :time-limit parse-seconds)
+    ("--plot" :plot nil) ("--quiet" :quiet nil)
     ("--shard" :shard parse-shard) ("--parallel" :parallel identity :optional)
     ("--slurm" :slurm identity :optional) ("--shards" :shards parse-shards)
     ("--missing" :missing nil) ("--save-executable" :save-executable parse-path))
@@ -65,7 +66,8 @@
 
 (defparameter *options-that-exclude-others*
   '((:shard :parallel :slurm :missing :save-executable) (:until :shard) (:until :parallel)
-    (:until :slurm) (:until :missing))
+    (:until :slurm) (:until :missing) (:time-limit :parallel) (:time-limit :slurm)
+    (:time-limit :missing))
   "Lists of keys of options of which there may be one at most.")
 
 (defun option-called (key)
@@ -94,13 +96,15 @@
   "Run what OPTIONS want of EXPERIMENT in this process. Return the results."
   (let ((directory (directory-for-rows options)))
     (when directory (ensure-results-directory directory))
-    (run-experiment experiment
-                    :trials (option-value :trials options)
-                    :workers (option-value :workers options (processors))
-                    :until (option-value :until options)
-                    :shard (option-value :shard options)
-                    :directory directory
-                    :stream (and (not (option-value :quiet options)) *error-output*))))
+    (apply #'run-experiment experiment
+           :trials (option-value :trials options)
+           :workers (option-value :workers options (processors))
+           :until (option-value :until options)
+           :shard (option-value :shard options)
+           :directory directory
+           :stream (and (not (option-value :quiet options)) *error-output*)
+           (let ((seconds (option-value :time-limit options)))
+             (and seconds (list :time-limit seconds))))))
 
 (defun run-here (experiment options)
   "Run what OPTIONS want of EXPERIMENT in this process, and say what came of it."

@@ -31,9 +31,9 @@
         (verdict (check-successes check) (length (check-results check)) (check-trials check)
                  (check-at-least check) (check-level check))))
 
-(defun try (check trial)
+(defun try (check trial stopping-p)
   (call-in-silence
-   (lambda () (run-trial (check-experiment check) (check-condition check) trial))))
+   (lambda () (run-guarded (check-experiment check) (check-condition check) trial stopping-p))))
 
 ;; Which trials count is decided in their order, whoever runs them.
 (defun try-some (check first last)
@@ -42,14 +42,15 @@
     (call-by-workers (lambda (worker)
                        (loop for trial from (+ first worker -1) to last by workers
                              until stopped
-                             do (setf (aref results (- trial first)) (try check trial))))
+                             do (setf (aref results (- trial first))
+                                         (try check trial (lambda () stopped)))))
                      workers :stop (lambda () (setf stopped t)))
     (coerce results 'list)))
 
 (defun some-more (check first)
   "Return what comes of some trials of CHECK from FIRST on, in order."
   (if (= 1 (check-workers check))
-      (list (try check first))
+      (list (try check first (constantly t)))
       (try-some check first (min (check-trials check)
                                  (+ first (max first (* 8 (check-workers check))))))))
 

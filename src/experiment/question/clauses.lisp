@@ -12,6 +12,7 @@
     (:trials "(:trials n), an integer from 1 to 1e9")
     (:seed "(:seed n), an integer")
     (:limit "(:limit n), a number of ticks from 1 to 1e9")
+    (:time-limit "(:time-limit n), a number of seconds above 0")
     (:run "(:run form...)")
     (:until "(:until form)")
     (:success "(:success form)")
@@ -195,9 +196,13 @@ true of; or about CLAUSE if there is none at all."
       (dolist (name (varied-names clauses)) (check name name))
       (dolist (measure (clause-called :measure clauses)) (check (first measure) measure)))))
 
-(defun check-integer-clause (definition clause test)
+(defun check-number-clause (definition clause test)
   (unless (and (= 2 (length clause)) (funcall test (second clause)))
     (reject definition clause)))
+
+(defun seconds-p (value)
+  "True if VALUE is how many seconds something may take."
+  (and (quantity-p value) (<= 1/1000 value +largest+)))
 
 (defun check-clause (definition clause)
   "Signal MALFORMED-DEFINITION unless CLAUSE has the right shape."
@@ -219,9 +224,10 @@ true of; or about CLAUSE if there is none at all."
      (check-names definition clause (mapcar #'first (rest clause)))
      (check-same-factors definition (rest clause)))
     ((:trials :limit)
-     (check-integer-clause definition clause
-                           (lambda (n) (and (integerp n) (<= 1 n +largest+)))))
-    (:seed (check-integer-clause definition clause #'integerp))
+     (check-number-clause definition clause
+                          (lambda (n) (and (integerp n) (<= 1 n +largest+)))))
+    (:time-limit (check-number-clause definition clause #'seconds-p))
+    (:seed (check-number-clause definition clause #'integerp))
     (:run (unless (rest clause) (reject definition clause))
      (check-runs definition clause))
     ((:thinking :until :success) (unless (= 2 (length clause)) (reject definition clause)))

@@ -71,7 +71,7 @@ none."
      :thinking ,(thinking-form clauses)
      :factors ,(factors-form clauses)
      :cases ,(cases-form clauses)
-     ,@(loop for key in '(:trials :seed :limit)
+     ,@(loop for key in '(:trials :seed :limit :time-limit)
              for value = (first (clause-called key clauses))
              when value append (list key value))
      :variables ',(varied-variables clauses)
@@ -97,6 +97,7 @@ The CLAUSES are:
   (:trials n)                how many of each condition, 100 unless given here or there
   (:seed n)                  0 unless given; trial T has the seed N + T, under all conditions
   (:limit n)                 for how many ticks a trial may go on, 100000 unless given
+  (:time-limit n)            for how many seconds by the clock, any unless given here or there
   (:parameters (p form)...)  parameters other than the manual's; what is set outside is not seen
   (:clean)                   no noise, but where :parameters and what varies say so. (With noise in
                              perception give NO-SENSOR-ERROR* the value NIL.)
@@ -178,8 +179,8 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
 
 (defun experiment-from (name definition
                         &key documentation robots parameters clean (thinking :free) factors cases
-                          (trials 100) (seed 0) (limit 100000) variables run until success
-                          measures form deciding)
+                          (trials 100) (seed 0) (limit 100000) time-limit variables
+                          run until success measures form deciding)
   "Return an experiment called NAME; DEFINITION is what errors in it are said to be in."
   (let ((experiment (%make-experiment name)))
     (check-robots definition (list* :robots robots) robots)
@@ -195,6 +196,7 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
           (experiment-trials experiment) trials
           (experiment-seed experiment) seed
           (experiment-limit experiment) limit
+          (experiment-time-limit experiment) time-limit
           (experiment-variables experiment) variables
           (experiment-run experiment) run
           (experiment-until experiment) until

@@ -15,6 +15,8 @@
   (trials 100 :type (integer 1))
   (seed 0 :type integer)
   (limit 100000 :type (integer 1))
+  ;; How many seconds a trial may take, or NIL.
+  (time-limit nil :type (or null real))
   ;; Functions of the variables' values, or NIL.
   (run nil :type (or null function))
   (until nil :type (or null function))

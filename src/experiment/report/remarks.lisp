@@ -73,6 +73,7 @@ see one of each."
                   (let ((outcome (aref (sample-outcomes sample) index))
                         (reason (aref (sample-reasons sample) index)))
                     (cond ((string= "limit" outcome) "limit of ticks")
+                          ((string= "timeout" outcome) "limit of time")
                           ((failed-p outcome) (if (string= "" reason) "no reason given" reason))))))
    (rest (results-samples results)) stream))
 

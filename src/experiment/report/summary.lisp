@@ -13,6 +13,7 @@
   (failures 0 :type integer :read-only t)
   (limits 0 :type integer :read-only t)
   (errors 0 :type integer :read-only t)
+  (timeouts 0 :type integer :read-only t)
   (confidence .95d0 :type double-float :read-only t)
   (success nil :type estimate :read-only t)
   (ticks nil :type estimate :read-only t)
@@ -73,7 +74,7 @@ TEST."
      :condition (sample-condition sample) :texts (sample-texts sample)
      :trials trials
      :failures (count-outcomes "failure" sample) :limits (count-outcomes "limit" sample)
-     :errors (count-outcomes "error" sample)
+     :errors (count-outcomes "error" sample) :timeouts (count-outcomes "timeout" sample)
      :confidence confidence
      :success (rate-estimate "success" (count-outcomes "success" sample) trials confidence)
      :ticks (median-estimate "ticks" (values-where #'success-p sample (sample-ticks sample))

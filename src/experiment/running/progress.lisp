@@ -13,9 +13,9 @@
   (terminal-p nil :read-only t)
   (total 0 :type integer)
   (done 0 :type atomic-count)
-  ;; By worker: what it is at, a list (condition trial moment), or NIL.
+  ;; By worker: what it is at, a list (condition trial moment seed), or NIL.
   (under-way #() :type simple-vector :read-only t)
-  (begun (moment) :read-only t)
+  (begun (moment) :type integer)
   (told (moment) :type integer))
 
 (defun duration-text (seconds)
@@ -37,16 +37,31 @@
             (and (plusp rate) (< done total) (duration-text (/ (- total done) rate))))))
 
 (defconstant +long+ 10 "After how many seconds a trial is named that is not over.")
+(defconstant +longer+ 5 "How many times as long as those before it a trial must take to be named.")
+
+(defun trials-under-way (progress)
+  "Return what the workers of PROGRESS are at, lists (condition trial moment seed), oldest first."
+  (sort (remove nil (coerce (progress-under-way progress) 'list)) #'< :key #'third))
+
+(defun usual-seconds (progress)
+  "Return how long the trials of PROGRESS that are over have taken on average, in seconds."
+  (let ((workers (1- (length (progress-under-way progress))))
+        (spent (reduce #'+ (trials-under-way progress)
+                       :key (lambda (trial) (seconds-since (third trial))))))
+    (if (zerop (progress-done progress))
+        0
+        (/ (max 0 (- (* workers (seconds-since (progress-begun progress))) spent))
+           (progress-done progress)))))
 
 (defun longest-under-way (progress)
-  "Return in words which trial of PROGRESS has been under way longest, if that is long; or NIL."
-  (let ((oldest (first (sort (remove nil (coerce (progress-under-way progress) 'list)) #'<
-                             :key #'third))))
+  "Return in words which trial of PROGRESS has been under way longest, if that is long, and much
+longer than others took; or NIL."
+  (let ((oldest (first (trials-under-way progress))))
     (when oldest
-      (destructuring-bind (condition trial moment) oldest
-        (when (> (seconds-since moment) +long+)
-          (format nil "trial ~D of ~A has been under way for ~A" trial (condition-name condition)
-                  (duration-text (seconds-since moment))))))))
+      (destructuring-bind (condition trial moment &optional seed) oldest
+        (when (> (seconds-since moment) (max +long+ (* +longer+ (usual-seconds progress))))
+          (format nil "trial ~D of ~A~@[, seed ~D,~] has been under way for ~A" trial
+                  (condition-name condition) seed (duration-text (seconds-since moment))))))))
 
 (defvar *progress* nil "How far the experiment that runs in this thread has come, or NIL.")
 

@@ -13,14 +13,26 @@ there."
         for other in others
         unless (string= text other) return (list column other text)))
 
+(defun run-by-worker (experiment condition trial)
+  "Return what comes of TRIAL of CONDITION of EXPERIMENT in a thread of its own, as before."
+  (let ((result nil) (stopped-p nil))
+    (flet ((run (worker)
+             (declare (ignore worker))
+             (call-in-silence
+              (lambda ()
+                (call-plainly
+                 (lambda ()
+                   (setf result (run-guarded experiment condition trial
+                                             (lambda () stopped-p)))))))))
+      (call-by-workers #'run 1 :stop (lambda () (setf stopped-p t))))
+    result))
+
 (defun check-repeatable (experiment texts)
   "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS comes out otherwise now."
   (let* ((condition (condition-of-texts experiment texts))
          (columns (columns experiment))
          (trial (parse-integer (nth (1+ (seed-column columns)) texts)))
-         (again (result-texts experiment
-                              (call-in-silence
-                               (lambda () (run-trial experiment condition trial))))))
+         (again (result-texts experiment (run-by-worker experiment condition trial))))
     (unless (equal texts again)
       (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently now: ~
                    ~{its ~A is ~A, and ~A in the row~}. Either the row has been changed, or ~

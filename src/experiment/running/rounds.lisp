@@ -6,13 +6,17 @@
 ;;; many of each. Workers take one after the other from the queue. A shard (index . count) has the
 ;;; trials whose numbers leave INDEX when divided by COUNT.
 
-(defstruct (queue (:constructor make-queue (conditions first last presence shard)) (:copier nil))
+(defstruct (queue (:constructor make-queue
+                      (conditions first last presence shard &optional time-limit))
+                  (:copier nil))
   "The trials from FIRST to LAST of CONDITIONS that PRESENCE lacks, of SHARD if there is one."
   (conditions '() :type list :read-only t)
   (first 1 :type integer :read-only t)
   (last 0 :type integer :read-only t)
   (presence nil :type presence :read-only t)
   (shard nil :type list :read-only t)
+  ;; How many seconds each may take, or NIL.
+  (time-limit nil :type (or null real) :read-only t)
   (lock (make-lock "trials") :read-only t)
   ;; What comes next.
   (trial 0 :type integer)
@@ -67,22 +71,24 @@
 
 ;;; Running them.
 
-(defun run-and-keep (experiment condition trial keep worker)
-  "Run TRIAL of CONDITION, and have KEEP, a function, keep what comes of it."
-  (let* ((begun (moment))
-         (result (run-trial experiment condition trial)))
-    (funcall keep result (milliseconds-since begun) worker)))
+(defun run-and-keep (experiment condition trial queue keep progress worker)
+  "Run TRIAL of CONDITION, which is of QUEUE, have KEEP, a function, keep what comes of it, and tell
+PROGRESS."
+  (let ((begun (moment)))
+    (setf (svref (progress-under-way progress) worker)
+          (list condition trial begun (trial-seed experiment trial)))
+    (let ((result (run-guarded experiment condition trial (lambda () (queue-closed-p queue))
+                               (queue-time-limit queue))))
+      (funcall keep result (milliseconds-since begun) worker))
+    (setf (svref (progress-under-way progress) worker) nil)
+    (atomic-incf (progress-done progress))))
 
 (defun work-off (experiment queue keep progress worker)
   "Run trials of QUEUE until there are none left."
   (flet ((work ()
            (loop (multiple-value-bind (condition trial) (next-trial queue)
                    (unless condition (return))
-                   (setf (svref (progress-under-way progress) worker)
-                         (list condition trial (moment)))
-                   (run-and-keep experiment condition trial keep worker)
-                   (setf (svref (progress-under-way progress) worker) nil)
-                   (atomic-incf (progress-done progress))))))
+                   (run-and-keep experiment condition trial queue keep progress worker)))))
     (call-in-silence
      (lambda ()
        (call-plainly (lambda () (call-with-own-lisps-dice #'work)))))))

@@ -12,12 +12,14 @@
   "Return the presence of rows of EXPERIMENT in DIRECTORY, and a list of the texts of one of each
 condition. PARTS are those of the fingerprints of its conditions. Signals MISUSE for rows of other
 code."
-  (let ((samples (make-hash-table :test 'eq)))
+  (let ((samples (make-hash-table :test 'eq)) (columns (columns experiment)))
     (values (present-rows experiment directory
                           (lambda (condition texts)
                             (declare (ignore texts))
                             (reject-foreign experiment condition parts directory))
-                          (lambda (condition texts) (setf (gethash condition samples) texts)))
+                          (lambda (condition texts)
+                            (unless (timed-out-p texts columns)
+                              (setf (gethash condition samples) texts))))
             (loop for condition in (experiment-conditions experiment)
                   for texts = (gethash condition samples)
                   when texts collect texts))))
@@ -51,9 +53,9 @@ code."
 
 ;;; Rounds.
 
-(defun run-round (experiment conditions last presence shard store workers stream)
+(defun run-round (experiment conditions last presence shard store workers time-limit stream)
   "Run the trials up to LAST of CONDITIONS that are not there."
-  (let* ((queue (make-queue conditions 1 last presence shard))
+  (let* ((queue (make-queue conditions 1 last presence shard time-limit))
          (missing (count-missing queue))
          (workers (min workers missing))
          (progress (make-progress stream (and stream (interactive-stream-p stream))
@@ -66,11 +68,11 @@ code."
                  progress workers)
       (tell-progress progress t))))
 
-(defun run-all (experiment trials presence shard store workers stream)
+(defun run-all (experiment trials presence shard store workers time-limit stream)
   (run-round experiment (experiment-conditions experiment) trials presence shard store workers
-             stream))
+             time-limit stream))
 
-(defun run-until-narrow (experiment width most directory store workers stream)
+(defun run-until-narrow (experiment width most directory store workers time-limit stream)
   "Run trials until each interval is at most WIDTH wide, or there are MOST of each condition."
   (loop with conditions = (experiment-conditions experiment)
         for look from 1
@@ -78,7 +80,7 @@ code."
         while (and conditions (<= trials most))
         do (run-round experiment conditions trials
                       (present-rows experiment directory (constantly nil))
-                      nil store workers stream)
+                      nil store workers time-limit stream)
            (setf conditions (wide-conditions experiment conditions look width directory))))
 
 ;;; The whole.
@@ -86,7 +88,7 @@ code."
 (defparameter *most-trials* 1000000
   "How many trials of a condition are run at most to make its interval narrow, unless one says.")
 
-(defun run-in (experiment directory trials until shard workers stream)
+(defun run-in (experiment directory trials until shard workers time-limit stream)
   "Run the trials of EXPERIMENT that DIRECTORY has no rows of, and put the table in order."
   (let ((parts (loop for condition in (experiment-conditions experiment)
                      collect (prepare-condition experiment condition))))
@@ -98,8 +100,9 @@ code."
        (lambda (store)
          (let ((begun (moment)))
            (if until
-               (run-until-narrow experiment until trials directory store workers stream)
-               (run-all experiment trials presence shard store workers stream))
+               (run-until-narrow experiment until trials directory store workers time-limit
+                                 stream)
+               (run-all experiment trials presence shard store workers time-limit stream))
            (check-run-again store parts (seconds-since begun))))
        experiment directory)
       (write-in-order (list (rows-file directory)) (rows-file directory)
@@ -110,7 +113,7 @@ code."
       (and (consp shard) (integerp (car shard)) (integerp (cdr shard))
            (< -1 (car shard) (cdr shard) (1+ +largest+)))))
 
-(defun check-run (trials workers directory until shard)
+(defun check-run (trials workers directory until shard time-limit)
   (check-argument run-experiment trials (and (integerp trials) (<= 1 trials +largest+))
                   "how many trials of each condition, from 1 to 1e9")
   (check-argument run-experiment workers (and (integerp workers) (<= 1 workers 1000))
@@ -119,22 +122,26 @@ code."
                   "the name of a directory, or NIL")
   (check-argument run-experiment until (or (null until) (and (realp until) (< 0 until 1)))
                   "how wide intervals may be, a number between 0 and 1")
+  (check-argument run-experiment time-limit (or (null time-limit) (seconds-p time-limit))
+                  "a number of seconds above 0, or NIL")
   (check-argument run-experiment shard (shard-p shard)
                   "(index . count), with an index from 0 to below count")
   (when (and until shard)
     (reject-use "A shard cannot know when intervals are narrow enough: give :until or :shard.")))
 
-(defun run-and-read (experiment directory trials until shard workers stream)
+(defun run-and-read (experiment directory trials until shard workers time-limit stream)
   (flet ((run ()
-           (run-in experiment directory trials until shard workers stream)
+           (run-in experiment directory trials until shard workers time-limit stream)
            (let ((results (results-in (rows-file directory))))
-             (setf (results-until results) until)
+             (setf (results-until results) until
+                   (results-conditions results)
+                   (mapcar #'condition-name (experiment-conditions experiment)))
              results)))
     (call-with-directory (lambda () (call-plainly #'run)) directory)))
 
 (addition run-experiment)
 (defun run-experiment (name &key trials (workers (processors)) directory until shard
-                              (stream *standard-output*))
+                              (time-limit nil time-limit-p) (stream *standard-output*))
   "Run the experiment NAME: TRIALS trials of each condition, or as many as it says, by WORKERS
 threads. Return the results; see PRINT-RESULTS, SAVE-RESULT-PICTURES and COMPARE-CONDITIONS.
 
@@ -147,14 +154,20 @@ nothing is kept but what is returned.
 With UNTIL, a width, trials are added until the interval of each condition's success is at most that
 wide: after 50, 100, 200 ... trials, at most TRIALS, or a million. SHARD (index . count) runs the
 trials whose numbers divided by COUNT leave INDEX only, to be put together by MERGE-RESULTS. STREAM,
-or NIL, is told how far it has come.
+or NIL, is told how far it has come, and which trial takes much longer than others.
+
+TIME-LIMIT is how many seconds by the clock a trial may take; what the experiment says unless given,
+and NIL for any time. A trial that takes longer is ended: its outcome is timeout, it did not
+succeed, and it is not run again. What lasts so long depends on the machine, so give far more than
+trials need. A trial that ends its own thread is an error of that trial.
 
 An error in a trial is a row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE and DAMAGED-TABLE."
   (let* ((experiment (find-experiment name))
-         (trials (or trials (if until *most-trials* (experiment-trials experiment)))))
-    (check-run trials workers directory until shard)
+         (trials (or trials (if until *most-trials* (experiment-trials experiment))))
+         (time-limit (if time-limit-p time-limit (experiment-time-limit experiment))))
+    (check-run trials workers directory until shard time-limit)
     (flet ((run (path)
-             (run-and-read experiment path trials until shard workers stream)))
+             (run-and-read experiment path trials until shard workers time-limit stream)))
       (setf (experiment-results experiment)
             (if directory
                 (let* ((path (ensure-store-directory directory)) (results (run path)))

@@ -58,7 +58,13 @@ DAMAGED-TABLE."
 
 ;;; Rows.
 
-(defparameter *outcomes* '("success" "failure" "limit" "error") "What a trial can have come to.")
+(defparameter *outcomes* '("success" "failure" "limit" "error" "timeout")
+  "What a trial can have come to.")
+
+(defun timed-out-p (texts columns)
+  "True if the row TEXTS, of a table with COLUMNS, is of a trial whose time was up: it cannot be had
+again."
+  (string= "timeout" (nth (position "outcome" columns :test #'string=) texts)))
 
 (defun hexadecimal-p (text)
   (declare (type simple-string text))

@@ -174,7 +174,8 @@ this returns."
         (write-table-line machine-line (store-machine store)
                           ;; What was quick is written together.
                           (if (> milliseconds 1) #'finish-output #'identity))
-        (unless (gethash condition (store-samples store))
+        (unless (or (gethash condition (store-samples store))
+                    (string= "timeout" (result-outcome result)))
           (setf (gethash condition (store-samples store)) texts))))))
 
 (defun machine-texts (result milliseconds worker)

@@ -30,7 +30,9 @@
   ;; Where the table is, or NIL if it has not been kept.
   (directory nil :type (or null pathname))
   ;; How wide intervals were to be, if trials were added until they were so narrow.
-  (until nil :type (or null real)))
+  (until nil :type (or null real))
+  ;; The names of the conditions that the experiment has now; NIL if that is not known.
+  (conditions '() :type list))
 
 (addition results-p results-samples results-directory
           sample-p sample-experiment sample-condition sample-texts sample-trials
@@ -44,7 +46,8 @@
   sample-condition "Return what the condition is called, a string."
   sample-texts "Return the values of what varies, strings as they stand in the table."
   sample-trials "Return a vector of the numbers of the trials; the other vectors are in its order."
-  sample-outcomes "Return a vector of \"success\", \"failure\", \"limit\" and \"error\"."
+  sample-outcomes "Return a vector of \"success\", \"failure\", \"limit\", \"error\" and
+\"timeout\"."
   sample-reasons "Return a vector of strings that say why trials failed."
   sample-ticks "Return a vector of the ticks that passed in each trial."
   sample-errors "Return a vector of what errors there were, strings; \"\" where there was none.")
@@ -196,5 +199,6 @@ MISUSE if there are none, and DAMAGED-TABLE."
   (let ((path (existing-table directory)))
     (let ((results (call-plainly (lambda () (results-in (rows-file path))))))
       (setf (results-directory results) path
-            (results-until results) (until-described path))
+            (results-until results) (until-described path)
+            (results-conditions results) (conditions-described path))
       results)))

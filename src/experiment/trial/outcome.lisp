@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.experiment)
 
-;;; An outcome is "success", "failure", "limit" (no more ticks were left) or "error" (the trial's
-;;; own code broke off). A failure has a reason, a word or two that others may share.
+;;; An outcome is "success", "failure", "limit" (no more ticks were left), "error" (the trial's
+;;; own code broke off) or "timeout" (it took too long by the clock). A failure has a reason, a word
+;;; or two that others may share.
 
 (defparameter *plan-states* '(:succeeded :failed :evaporated :deadlock :limit :stopped)
   "What RUN-PLAN returns as its second value.")

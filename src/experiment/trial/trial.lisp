@@ -22,7 +22,8 @@
 (document-functions
   result-trial "Return the number of the trial."
   result-seed "Return the seed of the trial."
-  result-outcome "Return \"success\", \"failure\", \"limit\" or \"error\"."
+  result-outcome "Return \"success\", \"failure\", \"limit\", \"error\" or
+\"timeout\"."
   result-reason "Return why the trial failed, a string."
   result-ticks "Return how many ticks passed."
   result-digest "Return the digest of the state at the end, or NIL."
