@@ -258,3 +258,23 @@ And more."
     (walk directory :trials 410)
     (let ((summary (first (experiment:summarize-results (experiment:read-results directory)))))
       (is (= .95d0 (experiment:summary-confidence summary))))))
+
+;;; Conditions that are gone.
+
+(test report.sets-apart-what-the-experiment-no-longer-has
+  (with-directories (directory)
+    (flet ((results (&rest ways)
+             (eval `(experiment:defexperiment question (:robots ars-worlds:dot) (:trials 2)
+                      (:vary (way ,@ways)) (:run way)))
+             (experiment:run-experiment 'question :directory directory :stream nil))
+           (text (results)
+             (with-output-to-string (out) (experiment:print-results results out))))
+      (is (null (search "no longer" (text (results 1 5 9)))))
+      (loop with now = (results 1 9)
+            for results in (list now (experiment:read-results directory))
+            for text = (text results)
+            do (is (search "question: 2 conditions, 2 trials each; and 1 that it no longer has"
+                           text))
+               (is (< (search "1  100 (" text) (search "9  100 (" text)
+                      (search "Conditions that the experiment no longer has:" text)
+                      (search "5  100 (" text)))))))

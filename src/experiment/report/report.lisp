@@ -111,6 +111,7 @@ name."
       (append (unless (= 1 (length (remove-duplicates trials))) (count-column "trials" trials))
               (list (estimates-column (all #'summary-success) trials))
               (count-column "limit" (all #'summary-limits))
+              (count-column "timeout" (all #'summary-timeouts))
               (count-column "errors" (all #'summary-errors))
               (list (estimates-column (all #'summary-ticks) trials))
               (apply #'mapcar (lambda (&rest estimates) (estimates-column estimates trials))
@@ -122,13 +123,39 @@ name."
         (format nil "~D trial~:P~:[~; each~]" (first counts) (rest counts))
         (format nil "~D to ~D trials each" (reduce #'min counts) (reduce #'max counts)))))
 
-(defun write-heading (results summaries stream)
+(defun write-heading (results summaries former stream)
   (let* ((name (sample-experiment (first (results-samples results))))
          (question (question-of name)))
-    (write-wrapped (format nil "~A: ~D condition~:P, ~A" name (length summaries)
-                           (trials-text summaries))
+    (write-wrapped (format nil "~A: ~D condition~:P, ~A~@[; and ~D that it no longer has~]" name
+                           (length summaries) (trials-text summaries)
+                           (and former (length former)))
                    stream)
     (when question (write-wrapped question stream))))
+
+(defun former-summaries (results summaries)
+  "Return those of SUMMARIES, of RESULTS, whose conditions the experiment no longer has, unless that
+is none of them."
+  (let ((former (remove-if (lambda (summary)
+                             (member (summary-condition summary) (results-conditions results)
+                                     :test #'string=))
+                           summaries)))
+    (and (set-difference summaries former) former)))
+
+(defun write-summaries (results summaries stream)
+  "Write the table of SUMMARIES, of RESULTS."
+  (terpri stream)
+  (write-text-table (key-columns (results-factors results) summaries)
+                    (value-columns summaries) stream))
+
+(defun write-tables (results summaries stream)
+  "Write the tables of SUMMARIES, of RESULTS: first of what the experiment has, and then the rest."
+  (let* ((former (former-summaries results summaries))
+         (present (remove-if (lambda (summary) (member summary former)) summaries)))
+    (write-heading results present former stream)
+    (write-summaries results present stream)
+    (when former
+      (format stream "~%Conditions that the experiment no longer has:~%")
+      (write-summaries results former stream))))
 
 (addition print-results)
 (defun print-results (results &optional (stream *standard-output*))
@@ -136,16 +163,14 @@ name."
 are: for each condition how often it succeeded, how often it came to the limit of ticks or broke off
 with an error if it did, how many ticks success took, and all that was measured, as
 SUMMARIZE-RESULTS says; below that why trials failed and what errors there were, with an example
-each, and which intervals these are. Return RESULTS."
+each, and which intervals these are. Rows of conditions that the experiment no longer has, as far as
+that is known, make a table of their own. Return RESULTS."
   (check-argument print-results results (results-p results) "results")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))
                   "an output stream")
   (let ((summaries (summarize-results results)))
     (cond (summaries
-           (write-heading results summaries stream)
-           (terpri stream)
-           (write-text-table (key-columns (results-factors results) summaries)
-                             (value-columns summaries) stream)
+           (write-tables results summaries stream)
            (write-reasons results stream)
            (write-errors results stream)
            (write-notes results summaries stream))
