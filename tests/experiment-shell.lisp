@@ -314,3 +314,18 @@ output, and what to the error output."
       (is-true (probe-file (base:native-path (placed "steps.svg"))))
       (is-true (has-words-p (said-by (lambda () (compared "1" "long" (placed "out"))))
                             "long is ambiguous: it could be" "way=long")))))
+
+(test trials.that-do-not-return-are-ended-at-a-shell
+  (in-place
+    (write-file "hang.lisp" "(defexperiment hang (:robots ars-worlds:dot) (:trials 2)
+                               (:vary (way :loop :go)) (:run (loop while (eq way :loop)) t))")
+    (multiple-value-bind (status text)
+        (shell "experiment" (placed "hang.lisp") "--quiet" "--time-limit" ".2" "--out"
+               (placed "out"))
+      (is (eql 0 status))
+      (is (search "timeout" text)))
+    (is (= 5 (lines-in "out/rows.csv")))
+    ;; Without a limit this returns, as their rows are there.
+    (is (eql 0 (shell "experiment" (placed "hang.lisp") "--quiet" "--out" (placed "out"))))
+    (signals cli::usage-error
+      (shell "experiment" (placed "hang.lisp") "--time-limit" "1" "--slurm" "--out" "x"))))

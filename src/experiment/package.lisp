@@ -30,7 +30,8 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:experiment-from #:experiment-package #:experiment-limit #:find-condition #:trial-values
            #:condition-name #:condition-parameters #:doubt-nested-run)
   ;; trial, workers, description, values
-  (:export #:run-trial #:run-guarded #:call-in-silence #:call-by-workers #:form-text #:experiment-file #:number-in
+  (:export #:run-trial #:run-guarded #:call-in-silence #:call-by-workers #:form-text
+           #:experiment-file #:number-in
            #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks
            #:result-digest #:result-error)
   ;; results

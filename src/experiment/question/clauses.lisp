@@ -12,7 +12,7 @@
     (:trials "(:trials n), an integer from 1 to 1e9")
     (:seed "(:seed n), an integer")
     (:limit "(:limit n), a number of ticks from 1 to 1e9")
-    (:time-limit "(:time-limit n), a number of seconds above 0")
+    (:time-limit "(:time-limit n), a number of seconds from .001 to 1e9")
     (:run "(:run form...)")
     (:until "(:until form)")
     (:success "(:success form)")

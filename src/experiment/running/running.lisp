@@ -123,7 +123,7 @@ code."
   (check-argument run-experiment until (or (null until) (and (realp until) (< 0 until 1)))
                   "how wide intervals may be, a number between 0 and 1")
   (check-argument run-experiment time-limit (or (null time-limit) (seconds-p time-limit))
-                  "a number of seconds above 0, or NIL")
+                  "a number of seconds from .001 to 1e9, or NIL")
   (check-argument run-experiment shard (shard-p shard)
                   "(index . count), with an index from 0 to below count")
   (when (and until shard)
