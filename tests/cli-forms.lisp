@@ -56,3 +56,10 @@
 (test json.has-no-line-for-what-a-plan-of-an-option-does
   (let ((message (first (objects-of-script "" "--plan" "stroll 1"))))
     (is-true (has-words-p message "Robot turned" "\"line\":null"))))
+
+(test json.of-a-command-that-a-later-line-interrupts-is-well
+  "As the exit status says."
+  (let ((text (format nil "~{~A~%~}" (objects-of-script (format nil "pause~%turn 1~%turn 2~%resume")
+                                                        "--rate" "free"))))
+    (is (search "\"text\":\"turn 1\",\"ok\":true" text) "~A" text)
+    (is (search "\"status\":0,\"errors\":0" text) "~A" text)))

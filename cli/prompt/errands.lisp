@@ -40,7 +40,7 @@ and says itself how it has ended. RESOURCE is what carries out a single command,
 
 (defun end-errand (errand error-code)
   "Let ERRAND be done, with ERROR-CODE, or NIL if it has succeeded."
-  (setf (errand-failed-p errand) (and error-code t)
+  (setf (errand-failed-p errand) (not (member error-code '(nil :interrupt)))
         (errand-done-p errand) t))
 
 (defun issue-errand (command resource arguments)
