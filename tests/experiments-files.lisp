@@ -13,6 +13,17 @@
              (is (equal (format nil "~A~%" line) (base:csv-line (list "1" text))) "~A" text)
              (is (equal (list "1" text) (base:csv-texts line)) "~A" text))))
 
+(test numbers-in-tables.are-told-without-making-names
+  (loop for (text . number-p) in '(("-1.5" . t) ("+7" . t) ("-1/2" . t) ("1e-7" . t) ("-1.5d0" . t)
+                                   (".5" . t) ("" . nil) ("-" . nil) ("--1" . nil) ("1-2" . nil)
+                                   ("1e" . nil) ("-1x2" . nil) ("1.2.3" . nil))
+        do (is (eq number-p (and (base:csv-number-p text) t)) "~A" text))
+  (let ((before (count-symbols)))
+    (dolist (text '("--17" "+18-19" "-20e21e22"))
+      (is (null (experiment:number-in text)))
+      (base:csv-line (list text)))
+    (is (= before (count-symbols)))))
+
 ;;; What is no file of bytes: reading a pipe would wait for ever, /dev/zero fill the memory.
 
 (defun make-odd-file (kind file)

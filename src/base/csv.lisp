@@ -23,16 +23,41 @@
   (let ((first (find #\' text :test #'char/=)))
     (and first (find first "=+-@") t)))
 
-(defun number-text-p (text)
-  "True if TEXT is a number as Lisp writes it."
+(defun digits-end (text start)
+  "Return where the digits end that TEXT has from START on."
   (declare (type simple-string text))
-  (and (find-if #'digit-char-p text)
-       (every (lambda (char) (find char "+-.0123456789/defsDEFS")) text)
-       (realp (let ((*read-eval* nil)) (ignore-errors (read-from-string text))))))
+  (or (position-if-not #'digit-char-p text :start start) (length text)))
+
+(defun sign-end (text start)
+  "Return where a sign, or nothing, ends that TEXT has at START."
+  (declare (type simple-string text))
+  (if (and (< start (length text)) (find (char text start) "+-")) (1+ start) start))
+
+(defun fraction-end (text start)
+  "Return where a point and digits end, or a slash and digits, or nothing, that TEXT has at START."
+  (declare (type simple-string text))
+  (if (and (< start (length text)) (find (char text start) "./"))
+      (digits-end text (1+ start))
+      start))
+
+(defun exponent-end (text start)
+  "Return where an exponent ends, or nothing, that TEXT has at START."
+  (declare (type simple-string text))
+  (if (and (< start (length text)) (find (char text start) "esfdESFD"))
+      (digits-end text (sign-end text (1+ start)))
+      start))
+
+(defun csv-number-p (text)
+  "True if TEXT is a number as Lisp writes it: no name would be made of it."
+  (declare (type simple-string text))
+  (and (plusp (length text))
+       (digit-char-p (char text (1- (length text))))
+       (= (length text)
+          (exponent-end text (fraction-end text (digits-end text (sign-end text 0)))))))
 
 (defun marked (text)
   "Return TEXT as a spreadsheet is to see it."
-  (if (and (formula-p text) (not (number-text-p text)))
+  (if (and (formula-p text) (not (csv-number-p text)))
       (concatenate 'string "'" text)
       text))
 

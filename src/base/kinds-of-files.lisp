@@ -2,19 +2,17 @@
 
 (in-package :ars-magna.base)
 
-(defparameter *file-beginnings*
-  '((:journal ";;;; A journal of ARS MAGNA"
-     "it is a journal; (replay FILE) and (load-journal FILE) read it")
-    (:run ";;;; A run of ARS MAGNA"
-     "it is a saved run; (load-simulation FILE) and (with-loaded-simulation (FILE) ...) read it")
-    (:table "experiment,fingerprint,condition,"
-     "it is the table of an experiment; (read-results DIRECTORY) reads the directory that it is in")
-    (:image "P2" "it is an image; (import-map FILE) reads the .yaml file that names it")
-    (:image "P5" "it is an image; (import-map FILE) reads the .yaml file that names it")
-    (:floor "image:" "it is the description of a map; (import-map FILE) reads it")
-    (:lisp "(in-package" "it is Lisp; (load FILE) reads it")
-    (:lisp "(def" "it is Lisp; (load FILE) reads it"))
-  "Lists (kind beginning advice) of files, as they are saved.")
+;;; The layer that writes or reads a kind of file notes how such files begin.
+
+(defvar *kinds-of-files* '() "Lists (kind beginning advice).")
+
+(defun note-kind-of-file (kind beginning advice)
+  "Note that files of KIND, a keyword, begin with the text BEGINNING; ADVICE says in words what such
+a file is, and what reads it."
+  (pushnew (list kind beginning advice) *kinds-of-files* :test #'equal))
+
+(dolist (beginning '("(in-package" "(def"))
+  (note-kind-of-file :lisp beginning "it is Lisp; (load FILE) reads it"))
 
 (defun beginning-of-file (path)
   "Return the first characters of the file PATH, or an empty text if it cannot be read."
@@ -27,9 +25,9 @@
 
 (defun known-beginning (path)
   "Return the list (kind beginning advice) of the file PATH, or NIL."
-  (find-if (lambda (beginning)
-             (starts-with-subseq beginning (beginning-of-file path)))
-           *file-beginnings* :key #'second))
+  (let ((text (beginning-of-file path)))
+    (find-if (lambda (beginning) (starts-with-subseq beginning text))
+             *kinds-of-files* :key #'second)))
 
 (defun file-advice (path kind)
   "Return in words what is in the file PATH, and what reads it, if that is another kind of file than

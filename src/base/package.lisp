@@ -47,7 +47,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:unusable-file-text #:shown-name
            #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
-           #:host-name #:process-number #:file-advice #:check-not-foreign
+           #:host-name #:process-number #:note-kind-of-file #:file-advice
+           #:check-not-foreign
            #:take-permissions #:prefix-of-mine #:remove-forsaken
            #:environment-value #:real-microseconds #:date-and-time #:run-command #:run-attached
            #:run-filter)
@@ -136,7 +137,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; places-in-text
   (:export #:reading-place)
   ;; csv
-  (:export #:csv-line #:csv-texts #:broken-line #:broken-line-text)
+  (:export #:csv-number-p #:csv-line #:csv-texts #:broken-line #:broken-line-text)
   ;; user-macros
   (:export #:define-user-macro #:advice-on-use #:strange-keyword #:test-advice
            #:user-macro-form #:call-blaming-form)

@@ -119,18 +119,15 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
        :mode (mode-in file (find-entry "mode" entries))
        :image (image-in file (entry "image"))))))
 
-(defun first-octets (file count)
-  "Return the first COUNT bytes of FILE as characters, fewer if there are no more."
-  (with-open-file (in file :external-format :latin-1)
-    (let ((text (make-string count)))
-      (subseq text 0 (read-sequence text in)))))
+(note-kind-of-file :floor "image:" "it is the description of a map; (import-map FILE) reads it")
+
+;; PGM in text and in octets, and PNG.
+(dolist (beginning '("P2" "P5" #.(map 'string #'code-char '(137 80))))
+  (note-kind-of-file :image beginning "this is an image; give the .yaml file that names it"))
 
 (defun check-description-file (file)
   "Signal UNUSABLE-FLOOR if FILE can be no description of a floor, by its size and beginning."
   (check-readable file)
-  (when (member (first-octets file 2) '("P2" "P5" #.(map 'string #'code-char '(137 80)))
-                :test #'string=)
-    (reject-floor file nil "this is an image; give the .yaml file that names it"))
   (let ((advice (file-advice file :floor)))
     (when advice (reject-floor file nil "~A" advice)))
   (let ((size (with-open-file (in file :element-type '(unsigned-byte 8)) (file-length in))))

@@ -7,6 +7,10 @@
 ;;; plain-data.lisp for what they look like.
 
 (defconstant +journal-version+ 2)
+(define-constant +journal-title+ ";;;; A journal of ARS MAGNA." :test #'string=
+  :documentation "The first line of a file that holds a journal.")
+(note-kind-of-file :journal +journal-title+
+                   "it is a journal; (replay FILE) and (load-journal FILE) read it")
 (defconstant +latest-end+ (expt 10 9) "The last tick that a journal on file can end at.")
 
 (addition damaged-journal)
@@ -60,7 +64,7 @@
 
 (defun write-data (data out)
   "Write DATA, a line for each, with check sums to OUT."
-  (format out ";;;; A journal of ARS MAGNA.~%")
+  (write-line +journal-title+ out)
   (let ((sum 0))
     (dolist (datum data) (setf sum (write-sealed (datum-text datum) sum out)))))
 

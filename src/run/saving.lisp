@@ -9,6 +9,9 @@
 (defconstant +saved-version+ 1)
 (define-constant +saved-title+ ";;;; A run of ARS MAGNA, saved." :test #'string=
   :documentation "The first line of files that hold saved runs.")
+(note-kind-of-file :run +saved-title+
+                   (format nil "it is a saved run; (load-simulation FILE) and ~
+                                (with-loaded-simulation (FILE) ...) read it"))
 
 ;;; What cannot be saved, and may be left out.
 

@@ -87,13 +87,11 @@ same in each run."
 
 (defun number-in (text)
   "Return the number that TEXT, of a table, is, or NIL."
-  (and (plusp (length text))
-       (find (char text 0) "-.0123456789")
-       (loop for char across (the simple-string text)
-             always (or (char<= #\0 char #\9) (find char "-+.eE")))
+  (and (csv-number-p text)
+       (notany (lambda (char) (find char "/dDfFsS")) text)
+       (char/= #\+ (char text 0))
        (let ((*read-default-float-format* 'double-float))
-         (ignore-errors (let ((number (read-from-string text)))
-                          (and (realp number) number))))))
+         (ignore-errors (values (read-from-string text))))))
 
 (defun text-before-p (a b)
   "True if the text A comes before B in a table: numbers by size, and before words."

@@ -178,6 +178,10 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
                            (conditions-described (uiop:pathname-directory-pathname file)))
            (results-in-order copy))))))
 
+(note-kind-of-file :table (format nil "~{~A,~}" *columns-before*)
+                   (format nil "it is the table of an experiment; (read-results DIRECTORY) reads ~
+                                the directory that it is in"))
+
 (defun existing-table (directory)
   "Return the path of DIRECTORY, in which there is a table. Signals MISUSE."
   (let ((path (directory-called directory)))
