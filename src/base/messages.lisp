@@ -50,8 +50,8 @@ that reports) after each message is queued. ERROR-POLICY says what becomes of er
 code: TROUBLES are the latest of them, the newest first, UNSIGNALLED is the first that is to be
 signalled, see troubles.lisp. SEEN is the end of NEWEST-FIRST that nobody needs to be shown. If
 ECHOED, a table, errors are shown as they come where nobody listens; the table counts them. READ-P
-is true once somebody has read messages. LOCK
-guards all lists, counts and tables; whether UNSIGNALLED is NIL may be asked without it."
+is true once somebody has read messages, or looked whether there are any. LOCK guards all lists,
+counts and tables; whether UNSIGNALLED is NIL may be asked without it."
   (lock (make-lock "messages") :read-only t)
   (newest-first '() :type list)
   (count 0 :type fixnum)

@@ -34,7 +34,9 @@ is no git, or DIRECTORY is in no tree of it."
 (defun origin-lines (experiment)
   "Return what a table of EXPERIMENT that is written now is made with, a list of lines."
   (let* ((file (experiment-file experiment))
-         (home (asdf:system-source-directory "ars-magna"))
+         ;; The program may have been carried to where there are no sources.
+         (system (asdf:registered-system "ars-magna"))
+         (home (and system (asdf:system-source-directory system)))
          (commits (list (and file (commit-text (uiop:pathname-directory-pathname file)))
                         (and home (probe-file home) (commit-text home)))))
     (remove nil
