@@ -21,14 +21,14 @@
 (test time-limit.ends-a-trial-that-does-not-return
   (define-hanging)
   (with-directories (one other)
-    (let ((rows (timed-outcomes one :workers 2 :time-limit 1/5)))
+    (let ((rows (timed-outcomes one :workers 2 :time-limit 1)))
       (is (equal '(("success" "" 3 "") ("timeout" "" 0 "")) rows))
       ;; It is not run again: this returns although it has no limit.
       (is (equal rows (timed-outcomes one)))
       (is (equal '("TRUE" "FALSE" "TRUE" "FALSE")
                  (mapcar (lambda (hang) (if (search hang (table-text one)) "TRUE" "FALSE"))
                          '("timeout,,0,,," "timeout,,0,10" "success,,3,10" "error,,"))))
-      (timed-outcomes other :workers 1 :time-limit 2/5)
+      (timed-outcomes other :workers 1 :time-limit 3/2)
       (is (string= (table-text one) (table-text other))))))
 
 (test time-limit.may-stand-in-the-experiment

@@ -144,3 +144,19 @@ that breaks is stopped there until the semaphore is signalled."
       (is (= 1 said))
       (is-true (has-words-p (format nil "~{~A~}" (mapcar #'base:message-text (base:take-messages)))
                             "run-plan waits, as the run is paused" "(resume)")))))
+
+(test threads-of-plans.that-leave-end-what-was-closed-meanwhile
+  "Who closes plans leaves that to their thread, if there is one: it may just be leaving."
+  (let ((driver::*interface* nil))
+    (run:call-with-simulation
+     (lambda ()
+       (driver:rpl-init-robot (symbol-value 'fitter))
+       (let ((interface driver::*interface*)
+             (task (driver:begin-plan (rpl:make-plan '(rpl:wait-time 50)))))
+         (setf (driver::interface-thread interface) (base:current-thread))
+         (driver::close-interface interface)
+         (is-false (rpl:task-over-p task) "it is left to the thread")
+         (driver::call-with-plans (lambda () (driver::leave-to-ticks interface)) interface)
+         (is-true (rpl:task-over-p task))
+         (is (null (driver::interface-thread interface)))))
+     '(fitter))))
