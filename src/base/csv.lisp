@@ -55,14 +55,14 @@
        (= (length text)
           (exponent-end text (fraction-end text (digits-end text (sign-end text 0)))))))
 
-(defun marked (text)
+(defun escaped (text)
   "Return TEXT as a spreadsheet is to see it."
   (if (and (formula-p text) (not (csv-number-p text)))
       (concatenate 'string "'" text)
       text))
 
-(defun unmarked (text)
-  "Return the text that MARKED made TEXT of."
+(defun unescaped (text)
+  "Return the text that ESCAPED made TEXT of."
   (declare (type simple-string text))
   (if (and (plusp (length text)) (char= #\' (char text 0)) (formula-p text))
       (subseq text 1)
@@ -87,7 +87,7 @@
 
 (defun csv-line (texts)
   "Return TEXTS, strings, as a line of a table, with its end."
-  (let* ((texts (mapcar (lambda (text) (quoted (marked text))) texts))
+  (let* ((texts (mapcar (lambda (text) (quoted (escaped text))) texts))
          (line (make-string (loop for text in texts sum (1+ (length (the string text))))))
          (place 0))
     (declare (type fixnum place))
@@ -149,4 +149,4 @@
   (let ((texts (if (find #\" (the simple-string line))
                    (texts-with-quotes line)
                    (texts-between-commas line))))
-    (if (find #\' (the simple-string line)) (mapcar #'unmarked texts) texts)))
+    (if (find #\' (the simple-string line)) (mapcar #'unescaped texts) texts)))

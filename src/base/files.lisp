@@ -48,8 +48,8 @@ as they are, with nothing to be filled in. Signals an error if the system refuse
   (sb-posix:rename (native-name by) (native-name file))
   (values))
 
-(defun take-permissions (file from)
-  "Let FILE be open to the same people as the file FROM, if there is one."
+(defun copy-permissions (file from)
+  "Give FILE the permissions of the file FROM, if there is one."
   (let ((status (ignore-errors (sb-posix:stat (native-name from)))))
     (when status
       (sb-posix:chmod (native-name file) (logand #o777 (sb-posix:stat-mode status))))))
@@ -156,25 +156,25 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
     (sb-posix:syscall-error (condition)
       (/= sb-posix:esrch (sb-posix:syscall-errno condition)))))
 
-;;; New files take the places of old ones when they are whole. Their names until then say who writes
-;;; them, so that those of processes that were killed can be told.
+;;; A file is written under a temporary name and renamed when it is complete. The temporary name has
+;;; the host and the process, so files of killed processes can be recognized.
 
-(defun unfinished-prefix ()
-  "Return how the names of unfinished files of processes of this machine begin."
+(defun host-file-prefix ()
+  "Return how the names of temporary files of this machine's processes begin."
   (format nil "ars-magna-~A-" (host-name)))
 
-(defun prefix-of-mine ()
-  "Return how the names of unfinished files of this process begin."
-  (format nil "~A~D-" (unfinished-prefix) (process-number)))
+(defun temporary-file-prefix ()
+  "Return how the names of temporary files of this process begin."
+  (format nil "~A~D-" (host-file-prefix) (process-number)))
 
-(defun forsaken-p (file)
-  "True if FILE is unfinished, and the process that was writing it has ended."
-  (let ((name (file-namestring file)) (prefix (unfinished-prefix)))
+(defun abandoned-file-p (file)
+  "True if FILE is a temporary file of a process that has ended."
+  (let ((name (file-namestring file)) (prefix (host-file-prefix)))
     (when (starts-with-subseq prefix name)
       (let ((number (parse-integer name :start (length prefix) :junk-allowed t)))
         (and number (not (process-running-p number)))))))
 
-(defun remove-forsaken (directory)
-  "Remove the files in DIRECTORY that were never finished."
+(defun remove-abandoned-files (directory)
+  "Remove from DIRECTORY the temporary files of processes that have ended."
   (dolist (file (uiop:directory-files directory))
-    (when (forsaken-p file) (ignore-errors (delete-file file)))))
+    (when (abandoned-file-p file) (ignore-errors (delete-file file)))))

@@ -49,7 +49,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number #:note-kind-of-file #:file-advice
            #:check-not-foreign
-           #:take-permissions #:prefix-of-mine #:remove-forsaken
+           #:copy-permissions #:temporary-file-prefix #:remove-abandoned-files
            #:environment-value #:real-microseconds #:date-and-time #:run-command #:run-attached
            #:run-filter)
   ;; writing

@@ -24,17 +24,17 @@ FILE keeps its permissions. What FUNCTION writes does not follow the printer's v
 EXTERNAL-FORMAT :LATIN-1 each character that is written is an octet. CHECK is called with the path
 of the new file when that is written; if it signals an error, FILE is as it was."
   (let* ((path (new-file-for file)) (directory (uiop:pathname-directory-pathname path)))
-    (remove-forsaken directory)
+    (remove-abandoned-files directory)
     ;; The new file's name is rolled for: whoever writes a file rolls on as if he had not.
     (call-with-own-lisps-dice
      (lambda ()
        (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
-                                  :directory directory :prefix (prefix-of-mine)
+                                  :directory directory :prefix (temporary-file-prefix)
                                   :type :unspecific)
          (printing-plainly () (funcall function out))
          :close-stream
          (funcall check new)
-         (take-permissions new path)
+         (copy-permissions new path)
          (replace-file path new))))
     (truename path)))
 

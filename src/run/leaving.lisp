@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.run)
 
-;;; A script that asks a live robot for something, and ends, never sees it done: nobody types on.
-;;; Where somebody may, as at a REPL, it is his own choice to leave.
+;;; A script that commands a live robot and then ends does not wait for the command. A warning says
+;;; so where there is no debugger; at a REPL leaving is the user's choice. The clock may still run:
+;;; what is read here are single slots and atomic lists, and an error in reading is ignored.
 
 (defun programs-request-p (request)
   "True if a program has asked for REQUEST itself, as no plan, continuation or prompt has."

@@ -60,15 +60,15 @@
 (defun write-words (words path)
   "Write WORDS to the file PATH, which is whole at every moment: it is a new file's name at last."
   (ensure-directories-exist path)
-  (remove-forsaken (uiop:pathname-directory-pathname path))
+  (remove-abandoned-files (uiop:pathname-directory-pathname path))
   (call-with-own-lisps-dice
    (lambda ()
      (uiop:with-temporary-file (:stream out :pathname new :element-type '(unsigned-byte 64)
                                 :directory (uiop:pathname-directory-pathname path)
-                                :prefix (prefix-of-mine) :type :unspecific)
+                                :prefix (temporary-file-prefix) :type :unspecific)
        (write-sequence words out)
        :close-stream
-       (take-permissions new path)
+       (copy-permissions new path)
        (replace-file path new)))))
 
 ;;; Reading.
