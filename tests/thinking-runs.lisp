@@ -183,21 +183,21 @@
 
 (test live-thinking.modes-change-while-plans-run
   (live-thinking (:charged)
-    (let* ((threads '())
+    (let* ((place nil)
            (stop nil)
            (task (driver:begin-plan (rpl:interp-lambda ()
                                       (loop until stop
-                                            (pushnew (base:current-thread) threads)
+                                            (setf place (base:current-thread))
                                             (rpl:wait-time 1))))))
-      (awaiting (= 1 (length threads)))
-      (run:set-thinking :real simulation)
-      (awaiting (= 2 (length threads)))
-      (run:set-thinking '(:charged :budget 5) simulation)
-      (awaiting (null (driver::interface-thread driver::*interface*)))
-      (setf threads '())
-      (awaiting (equal threads (list (run:simulation-thread simulation))))
-      (setf stop t)
-      (awaiting (rpl:task-over-p task)))))
+      (flet ((in-ticks-p () (eq place (run:simulation-thread simulation))))
+        (awaiting (in-ticks-p))
+        (run:set-thinking :real simulation)
+        (awaiting (not (in-ticks-p)))
+        (run:set-thinking '(:charged :budget 5) simulation)
+        (awaiting (null (driver::interface-thread driver::*interface*)))
+        (awaiting (in-ticks-p))
+        (setf stop t)
+        (awaiting (rpl:task-over-p task))))))
 
 (test live-thinking.kills-and-changes-from-outside-are-heard
   (live-thinking (:charged)
