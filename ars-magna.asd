@@ -48,7 +48,8 @@
                  (:file "normal") (:file "beta") (:file "samples") (:file "proportions")
                  (:file "means") (:file "bootstrap") (:file "pairs") (:file "rare-signs")
                  (:file "permutation")
-                 (:file "several") (:file "survival") (:file "sequential")))
+                 (:file "several") (:file "survival") (:file "sequential")
+                 (:file "sobol") (:file "designs")))
    (:module "src/nisp" :serial t
     :components ((:file "package") (:file "control") (:file "typed-lists") (:file "binding")
                  (:file "types") (:file "slots") (:file "values") (:file "matching")
@@ -199,7 +200,8 @@
    (:module "src/experiment" :serial t
     :components ((:file "package")))
    (:module "src/experiment/question" :serial t
-    :components ((:file "values") (:file "condition") (:file "experiment") (:file "clauses")
+    :components ((:file "values") (:file "condition") (:file "experiment") (:file "designs")
+                 (:file "clauses")
                  (:file "defexperiment") (:file "question") (:file "facts")))
    (:module "src/experiment/trial" :serial t
     :components ((:file "outcome") (:file "data") (:file "trial") (:file "version") (:file "reaching")
@@ -472,7 +474,7 @@
                  (:file "libraries") (:file "our-manual") (:file "examples")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "lisp-errors")
-                 (:file "experiments-tables") (:file "experiments-files")
+                 (:file "experiments-tables") (:file "designs") (:file "experiments-files")
                  (:file "experiments-hanging") (:file "experiments-fingerprints")
                  (:file "thinking-experiments")
                  (:file "experiments-report") (:file "experiment-compare")

@@ -84,7 +84,8 @@
       (is (search "simulator" text)))))
 
 (test values.stand-as-others-read-them
-  (is (equal '("TRUE" "FALSE" "" "7" "0.5" "0.1" "1.5e20" "-1.0e-7" "red" "a (b) \"c\"" "(1 a)")
+  (is (equal '("TRUE" "FALSE" "" "7" "0.5" "0.1" "1.5e20" "-1.0e-7" "red" "a (b) \"c\""
+               "[1, \"a\"]")
              (mapcar #'experiment::value-text
                      '(t nil :none 7 1/2 0.1 1.5d20 -1d-7 world:red "a (b)
  \"c\"" (1 a)))))

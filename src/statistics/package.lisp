@@ -21,4 +21,6 @@ and the like are for other layers only, since users have their own by those name
   ;; survival
   (:export #:survival-curve #:median-survival #:log-rank-test)
   ;; sequential
-  (:export #:sequential-level #:rate-evidence #:rate-verdict))
+  (:export #:sequential-level #:rate-evidence #:rate-verdict)
+  ;; sobol, designs
+  (:export #:+most-dimensions+ #:design-points))

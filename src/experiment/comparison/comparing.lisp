@@ -135,6 +135,7 @@ corrected for all tests together, those over all apart."
          (base (level-called (levels results place) against))
          (pairs (level-pairs results place nil base)))
     (unless pairs
-      (reject-use "There is nothing else than ~A=~A to be compared with it."
+      (reject-use "No condition differs from one with ~A=~A in that alone. (Designs, such as ~
+                   :sobol, let all that they sample vary together.)"
                   (nth place (results-factors results)) base))
     (comparison-of-conditions results pairs place names stream)))

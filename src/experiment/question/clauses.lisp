@@ -7,7 +7,8 @@
     (:parameters "(:parameters (parameter form)...)")
     (:clean "(:clean) or (:clean t)")
     (:thinking "(:thinking mode), as WITH-SIMULATION takes it")
-    (:vary "(:vary (what form...)...), or (what :in form) for the values in a list")
+    (:vary "(:vary (what form...)...), (what :in form) for the values in a list, or a design such ~
+            as (:sobol n (what low high)...)")
     (:conditions "(:conditions (name (what form)...)...)")
     (:trials "(:trials n), an integer from 1 to 1e9")
     (:seed "(:seed n), an integer")
@@ -20,7 +21,7 @@
   "The clauses, and how each looks.")
 
 (defun usage-of (key)
-  (second (assoc key *clauses*)))
+  (format nil (second (assoc key *clauses*))))
 
 (defun reject (definition clause &optional (expected (usage-of (first clause))))
   (reject-clause definition clause expected))
@@ -101,6 +102,26 @@ true of; or about CLAUSE if there is none at all."
                                   a value" (first part) list list))))
   (check-factor-name definition part))
 
+(defun check-range (definition range)
+  "Signal MALFORMED-DEFINITION unless RANGE can be one, of something whose values are numbers."
+  (unless (range-p range)
+    (reject-clause definition range "a range (what low high), perhaps with :integer or :log"))
+  (when (surrounding-p (first range))
+    (reject-clause definition range "a parameter, or a variable, whose values are numbers"))
+  (check-factor-name definition range))
+
+(defun check-design (definition part)
+  "Signal MALFORMED-DEFINITION unless PART is a design."
+  (let ((ranges (and (proper-list-p part) (> (length part) 2) (design-ranges part))))
+    (unless (and ranges (typep (second part) `(integer 1 ,+most-points+))
+                 (integerp (design-seed part)))
+      (reject-clause definition part (format nil *design-usage*)))
+    (dolist (range ranges) (check-range definition range))
+    (when (and (eq :sobol (first part)) (> (length ranges) +most-dimensions+))
+      (reject-clause definition part
+                     (format nil "~D ranges at most; :latin-hypercube and :random take more"
+                             +most-dimensions+)))))
+
 (defun check-case (definition case)
   (unless (and (proper-list-p case) (symbolp (first case)) (first case) (rest case)
                (every (lambda (part) (and (proper-list-p part) (= 2 (length part))))
@@ -125,7 +146,7 @@ true of; or about CLAUSE if there is none at all."
   "Return the names of what CLAUSES vary."
   (remove-duplicates (append (loop for case in (case-parts clauses)
                                    append (mapcar #'first (rest case)))
-                             (mapcar #'first (vary-parts clauses)))
+                             (loop for part in (vary-parts clauses) append (part-names part)))
                      :from-end t))
 
 (defun varied-variables (clauses)
@@ -217,8 +238,9 @@ true of; or about CLAUSE if there is none at all."
     (:clean (unless (member (rest clause) '(() (t) (nil)) :test #'equal)
               (reject definition clause)))
     (:vary (check-each definition clause #'consp)
-     (dolist (part (rest clause)) (check-factor definition part))
-     (check-names definition clause (mapcar #'first (rest clause))))
+     (dolist (part (rest clause))
+       (if (design-part-p part) (check-design definition part) (check-factor definition part)))
+     (check-names definition clause (loop for part in (rest clause) append (part-names part))))
     (:conditions (check-each definition clause #'consp)
      (dolist (case (rest clause)) (check-case definition case))
      (check-names definition clause (mapcar #'first (rest clause)))
@@ -248,8 +270,8 @@ true of; or about CLAUSE if there is none at all."
     (reject-clause definition (find :thinking clauses :key #'first)
                    "no such clause where :thinking varies"))
   (dolist (part (vary-parts clauses))
-    (when (find (first part) (case-parts clauses)
-                :test (lambda (name case) (assoc name (rest case))))
+    (when (find-if (lambda (case) (intersection (part-names part) (mapcar #'first (rest case))))
+                   (case-parts clauses))
       (reject-clause definition part "something that the :conditions do not vary already")))
   (check-column-names definition clauses)
   (doubt-measures clauses)

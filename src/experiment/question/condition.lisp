@@ -5,12 +5,12 @@
 ;;; What varies is a factor: a parameter, a variable of the experiment's forms, the thinking mode,
 ;;; or the robots, and with them the world. A condition gives each factor a value. Conditions are
 ;;; all combinations of the factors' values, or a list of named cases, or each case with each
-;;; combination.
+;;; combination. What a design samples varies together: its factors are one axis.
 
-(defstruct (factor (:constructor make-factor (name values)) (:copier nil))
-  "What varies: NAME, a symbol, and its VALUES."
-  (name nil :type symbol :read-only t)
-  (values '() :type list :read-only t))
+(defstruct (axis (:constructor make-axis (names choices)) (:copier nil))
+  "Factors that vary together: their NAMES, symbols, and CHOICES, lists of settings (name value)."
+  (names '() :type list :read-only t)
+  (choices '() :type list :read-only t))
 
 (defstruct (factor-case (:constructor make-case (name settings)) (:copier nil))
   "A named choice of values: SETTINGS, a list of lists (factor-name value)."
@@ -42,14 +42,13 @@
   (print-unreadable-object (condition stream)
     (format stream "condition ~A" (condition-name condition))))
 
-(defun combinations (factors)
-  "Return all lists of settings of FACTORS, the last one varying fastest."
-  (if (null factors)
+(defun combinations (axes)
+  "Return all lists of settings of AXES, the last one varying fastest."
+  (if (null axes)
       (list '())
-      (loop with rest = (combinations (rest factors))
-            for value in (factor-values (first factors))
-            append (loop for others in rest
-                         collect (cons (list (factor-name (first factors)) value) others)))))
+      (loop with rest = (combinations (rest axes))
+            for choice in (axis-choices (first axes))
+            append (loop for others in rest collect (append choice others)))))
 
 (defun setting-text (setting)
   (format nil "~(~A~)=~A" (first setting) (value-text (second setting))))

@@ -10,10 +10,11 @@ list needs no quote."
   (if (and (eq :thinking name) (thinking-mode-p form)) `',form form))
 
 (defun values-form (part)
-  "Return the form of the list of values in PART of :vary."
-  (if (eq :in (second part))
-      (third part)
-      `(list ,@(loop for form in (rest part) collect (value-form (first part) form)))))
+  "Return the form of the list of values in PART of :vary; of a design, of the bounds of ranges."
+  (cond ((design-part-p part)
+         `(list ,@(loop for (nil low high) in (design-ranges part) collect `(list ,low ,high))))
+        ((eq :in (second part)) (third part))
+        (t `(list ,@(loop for form in (rest part) collect (value-form (first part) form))))))
 
 (defun factors-form (clauses)
   `(list ,@(loop for part in (vary-parts clauses)
@@ -92,7 +93,10 @@ The CLAUSES are:
                              parameter, :ROBOTS (values are names or lists of names), :THINKING
                              (values are thinking modes), or a variable of the other forms; a
                              special variable is bound. (what :in form) takes the values from a
-                             list. Values are numbers, symbols, strings, or lists of such
+                             list. Values are numbers, symbols, strings, or lists of such.
+                             In place of all combinations (:sobol n (what low high)...) takes N
+                             points from ranges; so do :latin-hypercube and :random. Behind n may
+                             stand :seed and an integer, behind a range :integer or :log
   (:conditions (name (what form)...)...)  named conditions instead, or combined with :vary
   (:trials n)                how many of each condition, 100 unless given here or there
   (:seed n)                  0 unless given; trial T has the seed N + T, under all conditions
@@ -162,14 +166,32 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
       (reject-clause definition part
                      (format nil "robots of one map, not of ~{~(~A~)~^ and ~}" maps)))))
 
-(defun factor-from (definition part values)
+(defun check-values (definition part values)
+  "Signal MALFORMED-DEFINITION unless VALUES are one at least, and differ in the table."
   (unless (and (proper-list-p values) values)
     (reject-clause definition part "one value at least, in a list"))
   (dolist (value values) (check-value definition part value))
   (let ((texts (mapcar #'value-text values)))
     (unless (= (length texts) (length (remove-duplicates texts :test #'string=)))
-      (reject-clause definition part "values that differ in the table")))
-  (make-factor (first part) values))
+      (reject-clause definition part "values that differ in the table"))))
+
+(defun check-sampled (definition part choices)
+  "Signal MALFORMED-DEFINITION unless what the ranges of the design PART are of can have the values
+in CHOICES."
+  (dolist (choice choices)
+    (loop for (nil value) in choice
+          for range in (design-ranges part)
+          do (check-value definition range value))))
+
+(defun axis-from (definition part values)
+  "Return the axis that PART, of :vary, makes of VALUES, as VALUES-FORM has them."
+  (cond ((design-part-p part)
+         (let ((choices (design-choices definition part values)))
+           (check-sampled definition part choices)
+           (make-axis (part-names part) choices)))
+        (t (check-values definition part values)
+           (make-axis (part-names part)
+                      (loop for value in values collect (list (list (first part) value)))))))
 
 (defun settings-from (definition settings)
   "Return lists (name value) for SETTINGS, lists (part value) of a definition."
@@ -188,8 +210,8 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
     (setf (experiment-documentation experiment) documentation
           (experiment-robots experiment) robots
           (experiment-thinking experiment) thinking
-          (experiment-factors experiment)
-          (loop for (part values) in factors collect (factor-from definition part values))
+          (experiment-axes experiment)
+          (loop for (part values) in factors collect (axis-from definition part values))
           (experiment-cases experiment)
           (loop for (case settings) in cases
                 collect (make-case case (settings-from definition settings)))

@@ -9,7 +9,7 @@
   (package *package* :type package)
   (robots '() :type list)
   (thinking :free)
-  (factors '() :type list)
+  (axes '() :type list)
   (cases '() :type list)
   (conditions '() :type list)
   (trials 100 :type (integer 1))
@@ -70,13 +70,13 @@ PARAMETERS, lists (name value), that all have."
   (remove-duplicates
    (append (loop for case in (experiment-cases experiment)
                  append (mapcar #'first (factor-case-settings case)))
-           (mapcar #'factor-name (experiment-factors experiment)))
+           (loop for axis in (experiment-axes experiment) append (axis-names axis)))
    :from-end t))
 
 (defun all-conditions (experiment clean parameters)
   "Return the conditions of EXPERIMENT, in order."
   (loop for case in (or (experiment-cases experiment) (list nil))
-        append (loop for others in (combinations (experiment-factors experiment))
+        append (loop for others in (combinations (experiment-axes experiment))
                      collect (condition-from experiment
                                              (append (and case (factor-case-settings case)) others)
                                              (and case (factor-case-name case))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.experiment)
 
 ;;; Whatever reads the table, R, pandas or sqlite, must take a number for a number. So floats have
-;;; no exponent marker of Lisp's, ratios become floats, and truth is TRUE or FALSE.
+;;; no exponent marker of Lisp's, ratios become floats, truth is TRUE or FALSE, and lists are JSON.
 
 ;;; Reader and printer.
 
@@ -52,8 +52,8 @@ same in each run."
   (let ((*read-default-float-format* (type-of number)))
     (prin1-to-string number)))
 
-(defun listed-text (object)
-  "Return OBJECT, a symbol, list or string in one, as people write it, without packages."
+(defun bare-text (object)
+  "Return OBJECT, a symbol, string or character, as people write it, without packages."
   (format nil "~(~A~)" (safe-text object :escape nil)))
 
 (defun finite-value-p (value)
@@ -70,6 +70,32 @@ same in each run."
   "True if VALUE may stand in a table: a number, symbol, string, character, or list of such."
   (and (tree-p value) (plain-part-p value)))
 
+(defun number-text (number)
+  (etypecase number
+    (integer (princ-to-string number))
+    (ratio (float-text (float number 1d0)))
+    (float (float-text number))))
+
+;; What reads tables, reads JSON as well; in Lisp's own way of writing lists nobody else finds the
+;; parts.
+(defun json-text (value)
+  "Return VALUE, which is in a list, as JSON has it."
+  (typecase value
+    (boolean (if value "true" "false"))
+    (number (number-text value))
+    (cons (format nil "[~{~A~^, ~}]" (mapcar #'json-text value)))
+    (string (quoted-text value))
+    (t (quoted-text (bare-text value)))))
+
+(defun quoted-text (text)
+  "Return TEXT between quotes, as JSON has it."
+  (with-output-to-string (out)
+    (write-char #\" out)
+    (loop for char across (plain-text text)
+          do (when (find char "\\\"") (write-char #\\ out))
+             (write-char char out))
+    (write-char #\" out)))
+
 (defun value-text (value)
   "Return how VALUE stands in a table."
   (case value
@@ -77,11 +103,10 @@ same in each run."
     ((nil) "FALSE")
     (:none "")
     (t (typecase value
-         (integer (princ-to-string value))
-         (ratio (float-text (float value 1d0)))
-         (float (float-text value))
+         (number (number-text value))
+         (cons (plain-text (json-text value)))
          (string (plain-text value))
-         (t (plain-text (listed-text value)))))))
+         (t (plain-text (bare-text value)))))))
 
 ;;; Back from a table.
 
