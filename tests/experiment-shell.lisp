@@ -327,5 +327,8 @@ output, and what to the error output."
     (is (= 5 (lines-in "out/rows.csv")))
     ;; Without a limit this returns, as their rows are there.
     (is (eql 0 (shell "experiment" (placed "hang.lisp") "--quiet" "--out" (placed "out"))))
-    (signals cli::usage-error
-      (shell "experiment" (placed "hang.lisp") "--time-limit" "1" "--slurm" "--out" "x"))))
+    (let ((limit '((:time-limit 1/2)))
+          (experiment (cli::experiment-called (placed "hang.lisp"))))
+      (dolist (settings (list (cli::parallel-settings experiment limit "x/")
+                              (cli::slurm-settings experiment limit "x/")))
+        (is (equal "--time-limit 1/2" (second (assoc "limit" settings :test #'string=))))))))

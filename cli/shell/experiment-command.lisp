@@ -66,8 +66,7 @@
 
 (defparameter *options-that-exclude-others*
   '((:shard :parallel :slurm :missing :save-executable) (:until :shard) (:until :parallel)
-    (:until :slurm) (:until :missing) (:time-limit :parallel) (:time-limit :slurm)
-    (:time-limit :missing))
+    (:until :slurm) (:until :missing) (:time-limit :missing))
   "Lists of keys of options of which there may be one at most.")
 
 (defun option-called (key)

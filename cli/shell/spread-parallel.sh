@@ -53,7 +53,7 @@ here() {  # SHARD...
     # A shell would stand between this and its jobs if it did not become them.
     heeding parallel --will-cite $bar --quote --jobs "$jobs" --joblog jobs.log \
         exec $tied ./ars-magna experiment "$experiment" --trials "$trials" --out . \
-        --shard "{}/$shards" --workers 1 --quiet ::: "$@"
+        --shard "{}/$shards" --workers 1 $limit --quiet ::: "$@"
 }
 
 # Each machine gets the program, in a directory in its user's home that is removed at the end. It
@@ -68,7 +68,7 @@ there() {  # SHARD...
         --sshlogin "$hosts" --workdir "$place" --basefile ars-magna \
         --return "shard-{}-of-$shards" --cleanup \
         ./ars-magna experiment "$experiment" --trials "$trials" --out . \
-        --shard "{}/$shards" --workers 1 --quiet ::: "$@" &&
+        --shard "{}/$shards" --workers 1 $limit --quiet ::: "$@" &&
         parallel --will-cite --nonall --sshlogin "$hosts" rm -rf "$place"
 }
 

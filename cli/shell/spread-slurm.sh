@@ -23,7 +23,7 @@ program() {  # OPTION...: this experiment.
 
 # One task of the array, where Slurm has put it.
 if [ -n "${SLURM_ARRAY_TASK_ID:-}" ]; then
-    program --shard "$SLURM_ARRAY_TASK_ID/$shards" --workers "$workers" --quiet && exit
+    program --shard "$SLURM_ARRAY_TASK_ID/$shards" --workers "$workers" $limit --quiet && exit
     say "task $SLURM_ARRAY_TASK_ID of job $SLURM_ARRAY_JOB_ID failed on $(hostname)"
     exit 1
 fi

@@ -35,6 +35,8 @@
       ("trials" ,trials "of each condition")
       ("shards" ,(or (option-value :shards options) (default-shards experiment trials script))
                 "into how many parts all trials are divided")
+      ("limit" ,(format nil "~@[--time-limit ~A~]" (option-value :time-limit options))
+               "--time-limit SECONDS: how long a trial may take")
       ("plot" ,(if (option-value :plot options) "--plot" "") "--plot: pictures, too"))))
 
 (defun parallel-settings (experiment options directory)
