@@ -175,7 +175,7 @@
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
     :components ((:file "package") (:file "fluents") (:file "interface") (:file "takeovers")
-                 (:file "rushing") (:file "under-way") (:file "clashes") (:file "unawaited")
+                 (:file "tellers") (:file "rushing") (:file "under-way") (:file "clashes") (:file "unawaited")
                  (:file "wishes") (:file "reacting") (:file "forking") (:file "handles") (:file "rewinding")
                  (:file "watching") (:file "thread") (:file "starting") (:file "accessors")
                  (:file "outcomes") (:file "commands") (:file "runs") (:file "stranded")
@@ -483,6 +483,7 @@
                  (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "unseen")
                  (:file "beginners") (:file "beginners-more") (:file "beginners-slips")
                  (:file "beginners-words") (:file "beginners-ends")
+                 (:file "beginners-unheard")
                  (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t

@@ -218,7 +218,9 @@ shown at once."
     (is (equal '("*ERROR* -> slip" "*ERROR* -> slip (10 times by now)"
                  "*ERROR* -> slip (100 times by now)")
                lines)))
-  (is (string= "" (echo :error '("blocked"))) "the robot fails, no code")
+  (is-true (has-words-p (echo :error '("blocked")) "blocked") "the robot fails, no code")
+  (is (string= "" (echo :error '("blocked") :told-p t)) "a continuation was told")
+  (is (string= "" (echo :warning '("interrupted"))))
   (is (string= "" (let ((base:flush-all-errors* t)) (echo :error '("slip") :cause t)))))
 
 (test errors.of-live-runs-are-still-messages

@@ -4,7 +4,9 @@
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world
-                #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p #:warn-once
+                #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p
+                #:some-kicker #:kicker-test #:kicker-body
+                #:warn-once
                 #:said-p #:note-looked-after)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
@@ -33,6 +35,7 @@
                 #:simulation-past #:simulation-journal #:remark #:unremark)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
+                #:set-value #:pulse
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:heard-from-outside-p #:idle-p #:set-charges

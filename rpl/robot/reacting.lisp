@@ -147,13 +147,14 @@ wait, and for something else. True if so. Most ticks are like that."
 ;;; The runner.
 
 (defun busy-p (interface)
-  "True if a command of a plan is under way, or something else that is sure to happen. Kickers do
-not count: they tell plans nothing."
+  "True if a command of a plan is under way, or something else may still happen that tells plans
+something."
   (let ((simulation (interface-simulation interface)))
     (or (commands-under-way-p interface)
         (wish-to-serve interface)
         (plusp (agenda-pending (simulation-agenda simulation)))
-        (timeline-inbox (simulation-timeline simulation)))))
+        (timeline-inbox (simulation-timeline simulation))
+        (kickers-may-tell-p interface))))
 
 (defun seconds-when-live (simulation)
   "Return the time in seconds, by which plans that hog their thread are noticed; headless NIL."

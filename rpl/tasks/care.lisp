@@ -107,10 +107,7 @@ task has to bear."
                         (setf trouble (current-failure runner (or trouble (make-failure '())))))
                       (bear :fail))
                     (note (condition)
-                      ;; A limit to the time of more than this plan is for those who set it.
-                      (when (typep condition 'time-limit)
-                        (signal condition)
-                        (setf anywhere t))
+                      (when (let-callers-handle condition) (setf anywhere t))
                       (when (running-task runner)
                         (setf trouble condition)
                         (when (and *break-on-user-error* (typep condition 'error))

@@ -74,7 +74,8 @@
 
 (define-condition definition-doubt (definition-warning style-warning)
   ()
-  (:documentation "A definition needs what there is not yet, or has what it does not need."))
+  (:documentation "A definition needs what there is not yet, or has what it does not need; in a file
+that is compiled, which must not fail for that."))
 
 (defun text-for-author (control arguments)
   (printing-words ()
@@ -85,9 +86,10 @@
   (warn 'definition-warning :text (text-for-author control arguments)))
 
 (defun doubt-definition (control &rest arguments)
-  "Do as WARN-OF-DEFINITION; but the warning is a STYLE-WARNING: the definition may be what its
-author meant."
-  (warn 'definition-doubt :text (text-for-author control arguments)))
+  "Do as WARN-OF-DEFINITION. The definition may be what its author meant: so in a file that is
+compiled the warning is a STYLE-WARNING. Scripts, which do not show these, are not compiled."
+  (warn (if *compile-file-truename* 'definition-doubt 'definition-warning)
+        :text (text-for-author control arguments)))
 
 (defun plain-name (name)
   "Return NAME as people write it: a symbol in lower case, without its package."

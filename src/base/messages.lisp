@@ -112,11 +112,17 @@ counts and tables; whether UNSIGNALLED is NIL may be asked without it."
              (null (message-queue-unsignalled queue)))
     (setf (message-queue-unsignalled queue) message)))
 
+(defun to-be-seen-p (message)
+  "True if MESSAGE tells of an error, or of what is wrong with users' code, and nobody was told of
+it otherwise."
+  (and (not (message-told-p message))
+       (or (message-cause message) (eq :error (message-kind message)))))
+
 (defun echoed-p (message queue)
   "True if MESSAGE is shown as it comes where nobody listens to QUEUE."
   (or (eq :at-once (message-notable-p message))
       (and (message-queue-echoed queue)
-           (or (message-cause message) (eq t (message-notable-p message))))))
+           (or (to-be-seen-p message) (eq t (message-notable-p message))))))
 
 (defun queue-message (message queue)
   "Add MESSAGE to QUEUE, and let whoever listens to that know."

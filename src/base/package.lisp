@@ -90,7 +90,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; elsewhere
   (:export #:call-telling-names #:bound-elsewhere-text #:run-elsewhere-text)
   ;; limits, debuggers
-  (:export #:time-limit #:call-with-limit #:deferring-interrupts #:allowing-interrupts
+  (:export #:time-limit #:let-callers-handle #:call-with-limit
+           #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts #:protecting-strictly #:held-off-p
            #:regain-room #:debugger-p #:foreign-hook #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-hook-p
@@ -124,7 +125,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; keywords
   (:export #:define-with-keywords)
   ;; variables
-  (:export #:variable-name-p #:variable-forms #:variable-name-trouble)
+  (:export #:users-symbol-p #:variable-name-p #:variable-forms #:variable-name-trouble)
   ;; sources, definitions
   (:export #:source-here #:source-file #:part-in-file-p #:skip-comment #:current-source
            #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause

@@ -91,12 +91,6 @@ there is one. True if there was, and whoever handled it wants to go on."
 
 (defparameter *most-unread* 20 "How many different messages are shown that nobody has read.")
 
-(defun to-be-seen-p (message)
-  "True if MESSAGE tells of an error, or of what is wrong with users' code, and nobody was told of
-it otherwise."
-  (and (not (message-told-p message))
-       (or (message-cause message) (eq :error (message-kind message)))))
-
 (defun notable-now-p (message)
   "True if MESSAGE is a warning to be shown like an error."
   (let ((notable (message-notable-p message)))

@@ -194,8 +194,7 @@ queue an error message saying that it came from ORIGIN (an item or list of items
               (again () (go again)))
          (declare (dynamic-extent #'go-on #'again))
          (flet ((note (condition)
-                  ;; A limit to the time of more than this call is for those who set it.
-                  (when (typep condition 'time-limit) (signal condition))
+                  (let-callers-handle condition)
                   (setf trouble condition)
                   (when *break-on-user-error* (invoke-debugger condition))
                   (go-on))

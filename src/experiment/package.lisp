@@ -22,7 +22,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:task-p #:task-over-p #:task-state #:task-result #:task-label
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
-  (:import-from :ars-magna.rpl.fluents #:*realm* #:fork-realm)
+  (:import-from :ars-magna.rpl.fluents #:*realm* #:fork-realm #:fluent-p #:fluent-text)
   (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans* #:stranded-plan-text)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments

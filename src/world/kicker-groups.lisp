@@ -261,6 +261,15 @@ See reading 170."
   (or (world-due-kickers world)
       (some (lambda (group) (plusp (group-count group))) (world-kicker-groups world))))
 
+(defun some-kicker (test world)
+  "True if TEST returns true of a kicker that some thing in WORLD has."
+  (loop for group in (world-kicker-groups world)
+        thereis (loop with last = nil
+                      for index below (group-count group)
+                      for kicker = (svref (group-row group) (+ 2 (* 3 index)))
+                      thereis (and (not (eq kicker last))
+                                   (funcall test (setf last kicker))))))
+
 (defun seed-world (world seed)
   "Let all chance in WORLD come from the integer SEED from now on. Return WORLD."
   (check-argument seed-world seed (integerp seed) "an integer")

@@ -16,7 +16,9 @@
 (document-functions
  kicker-p "True of a kicker."
  kicker-name "Return the symbol that the kicker is called."
- kicker-prob "Return the kicker's probability per tick.")
+ kicker-prob "Return the kicker's probability per tick."
+ kicker-test "Return the function of a thing that says whether the kicker may run, or NIL."
+ kicker-body "Return the function of a thing that the kicker runs.")
 
 (define-kind (attachment :constructor (make-attachment (kicker thing)))
     "A kicker on a thing."

@@ -16,13 +16,6 @@ variables."
   (files '() :type list)
   (variables '() :type list))
 
-(defun lisps-own-package-p (package)
-  (or (package-locked-p package) (eq package (find-package :keyword))))
-
-(defun users-symbol-p (symbol)
-  (let ((package (symbol-package symbol)))
-    (and package (not (lisps-own-package-p package)))))
-
 (defun note-part (kind name number reach)
   (pushnew (list kind name number) (reach-parts reach) :test #'equal))
 

@@ -97,9 +97,17 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
   "Call FUNCTION, of a form of the experiment, with the values that CONDITION has for variables."
   (apply (the function function) (condition-arguments condition)))
 
+(defun truth-of (clause function condition)
+  "Return what FUNCTION, of the form of CLAUSE, returns. Signals MISUSE if that is a fluent."
+  (let ((value (call-form function condition)))
+    (when (fluent-p value)
+      (reject-use "The value of ~(~S~) is the fluent ~A itself, which is true whatever its value ~
+                   is. Write (fluent-value ...)." clause (fluent-text value)))
+    value))
+
 (defun pass-until (function condition)
   "Let ticks pass until FUNCTION returns true."
-  (loop until (call-form function condition) do (run-ticks 1))
+  (loop until (truth-of :until function condition) do (run-ticks 1))
   t)
 
 (defun run-forms (experiment condition)
@@ -139,7 +147,7 @@ what RUN-PLAN would have returned of it. Enter it into RESULT as well."
 took for a success and :success does not is one that was only believed."
   (let ((success (experiment-success experiment)))
     (cond ((null success) (values outcome reason))
-          ((call-form success condition) (values "success" ""))
+          ((truth-of :success success condition) (values "success" ""))
           ((string= outcome "success") (values "failure" "only-believed"))
           (t (values outcome reason)))))
 
