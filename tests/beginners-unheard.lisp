@@ -15,10 +15,10 @@
 
 (world:defmap belfry (10 10)
   (obj (bell :kickers (ring-at-times)) (5 5) ()))
-(world:defmap attic (10 10)
+(world:defmap garret (10 10)
   (obj (bell :kickers (move-at-times)) (5 5) ()))
 (robot:defrobot ringer (belfry (3 3) 0))
-(robot:defrobot mouse (attic (3 3) 0))
+(robot:defrobot mouse (garret (3 3) 0))
 
 (test run-plan.hears-kickers
   (run:with-simulation (ringer)

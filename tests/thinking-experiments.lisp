@@ -29,7 +29,8 @@
 
 (test thinking-clause.can-vary
   (define-thoughtful (:vary (:thinking :free :charged (:charged :budget 1000))))
-  (is (equal '(("thinking=free" 1) ("thinking=charged" 8) ("thinking=(charged budget 1000)" 8))
+  (is (equal '(("thinking=free" 1) ("thinking=charged" 8) 
+               ("thinking=[\"charged\", \"budget\", 1000]" 8))
              (thoughtful-ticks)))
   (define-thoughtful (:vary (:thinking :in '(:charged (:charged :budget 1000)))))
   (is (equal '(8 8) (mapcar #'second (thoughtful-ticks))))

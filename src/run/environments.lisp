@@ -11,6 +11,9 @@ ends with it and simulations side by side do not meet.")
 
 (pushnew '*simulation-variables* *kept-variables*)
 
+;; What CLEAN-SIMULATION has changed goes with the parameters of the run.
+(pushnew '*noise-before-cleaning* *simulation-variables*)
+
 (defun fork-p (simulation)
   "True if SIMULATION is a fork of another."
   (timeline-fork-p (simulation-timeline simulation)))
