@@ -140,3 +140,59 @@
         (setf done-p t)
         (base:join-thread thread))
       (is (< 20 forks)))))
+
+;;; Forks that a continuation makes, while others of the same tick are still to be called.
+
+(defvar *told* '() "Whether those were forks in which something was told.")
+
+(defun note-told (&rest ignore)
+  (declare (ignore ignore))
+  (push (run:fork-p time:*simulation*) *told*))
+
+(defun told-in-fork (continuations)
+  "Return how often the second of two continuations of a tick is called ahead, in a fork that the
+first makes, and in the run itself."
+  (let ((*told* '()))
+    (run:with-simulation (ars-worlds:robbie)
+      (command:robot-place ars-worlds:robbie
+                           (lambda (&rest ignore)
+                             (declare (ignore ignore))
+                             (run:with-fork (:continuations continuations) (run:run-ticks 1))))
+      (command:camera-view (robot:robot-camera ars-worlds:robbie 0) #'note-told)
+      (run:run-ticks 2))
+    (list (count t *told*) (count nil *told*))))
+
+(test forks.of-continuations-call-the-others-of-their-tick
+  (is (equal '(1 1) (told-in-fork t)))
+  (is (equal '(0 1) (told-in-fork nil))))
+
+(test forks.of-continuations-let-plans-hear-of-that-tick
+  "A plan whose command ends in the tick of the continuation that forks goes on in the fork."
+  (let ((ahead nil))
+    (run:with-simulation (ars-worlds:robbie)
+      (command:robot-place ars-worlds:robbie
+                           (lambda (&rest ignore)
+                             (declare (ignore ignore))
+                             (run:with-fork ()
+                               (run:run-ticks 3)
+                               (setf ahead (driver:plans)))))
+      (driver:begin-plan (rpl:interp-lambda ()
+                           (driver:rpl-camera-view 0)
+                           (rpl:wait-for (svref driver:camera-input* 0))))
+      (is (= 1 (length (driver:plans))))
+      (run:run-ticks 2)
+      (is (null (driver:plans))))
+    (is (null ahead))))
+
+;;; What clean-simulation has changed.
+
+(test forks.clean-and-dirty-by-themselves
+  (flet ((noise () base:motion-noise*))
+    (run:with-simulation (ars-worlds:robbie)
+      (let ((noise (noise)))
+        (run:with-fork () (base:clean-simulation))
+        (base:clean-simulation)
+        (is (zerop (noise)))
+        (run:with-fork () (base:dirty-simulation) (is (= noise (noise))))
+        (base:dirty-simulation)
+        (is (= noise (noise)))))))

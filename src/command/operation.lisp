@@ -145,14 +145,17 @@ told, too."
          (command-origin (operation-command operation))
          code (resource-told operation) results))
 
+(defun tell-end (operation code results)
+  "Call the continuation of OPERATION, which has ended with CODE and RESULTS, if it has one."
+  (when (operation-continuation operation)
+    (when (operation-forked-p operation)
+      (begin-moment (operation-timeline operation)))
+    (call-continuation operation code results)))
+
 (defun notify (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
   (when (operation-continuation operation)
-    (notify-later (operation-timeline operation)
-                  (lambda ()
-                    (when (operation-forked-p operation)
-                      (begin-moment (operation-timeline operation)))
-                    (call-continuation operation code results)))))
+    (notify-later (operation-timeline operation) 'tell-end operation code results)))
 
 (defun finish (operation code &rest results)
   "End OPERATION: with the error CODE, or successfully if that is NIL. Its continuation gets CODE,

@@ -24,7 +24,7 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   (:export #:timeline #:make-timeline #:timeline-p #:timeline-of #:timeline-name #:timeline-tick
            #:timeline-agenda #:timeline-run #:timeline-over #:timeline-custody
            #:timeline-phase #:phase-here #:timeline-moments #:timeline-on-moment #:begin-moment
-           #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications
+           #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications #:timeline-untold
            #:timeline-tick-dice
            #:timeline-inbox #:timeline-pacing #:timeline-fork-p #:check-not-over
            #:check-own-run #:check-not-secluded #:secluded

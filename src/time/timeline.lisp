@@ -27,7 +27,9 @@
   ;; What is asked of a run is no part of its state before it is taken.
   (:scratch
    (inbox '() t "the requests that wait for the next tick, newest first")
-   (notifications '() list "functions to call at the end of the tick, newest first"))
+   (notifications '() list "what to call at the end of the tick: lists (function argument...), the
+newest first")
+   (untold '() list "those of them whose turn has come, the oldest first"))
   (:link
    (phase 0 fixnum "how many phases of the tick that is under way have begun; 0 between ticks")
    (moments 0 fixnum "how often in the tick what goes on in forks too was told something or acted")
@@ -200,14 +202,24 @@ others."
 
 ;;; Notifications.
 
-(defun notify-later (timeline function)
-  "Call FUNCTION at the end of this tick, after those already to be called then."
-  (push function (timeline-notifications timeline)))
+(defun notify-later (timeline function &rest arguments)
+  "Call FUNCTION, the name of one, with ARGUMENTS at the end of this tick, after those already to be
+called then."
+  (push (cons function arguments) (timeline-notifications timeline)))
 
+(defun next-notification (timeline)
+  "Return what is to be called next at the end of this tick, removed, or NIL."
+  (or (pop (timeline-untold timeline))
+      (progn (setf (timeline-untold timeline)
+                   (reverse (shiftf (timeline-notifications timeline) '())))
+             (pop (timeline-untold timeline)))))
+
+;; What is left while one is called, forks that are made there take along.
 (defun deliver-notifications (timeline)
-  "Call what is to be called at the end of this tick, in order."
-  (when (timeline-notifications timeline)
+  "Call what is to be called at the end of this tick, in order; the rest also if a call is left."
+  (when (or (timeline-notifications timeline) (timeline-untold timeline))
     (let ((*tick-dice* nil))
-      (loop while (timeline-notifications timeline)
-            do (call-each #'funcall
-                          (reverse (shiftf (timeline-notifications timeline) '())))))))
+      (unwind-protect (loop for notification = (next-notification timeline)
+                            while notification
+                            do (apply (first notification) (rest notification)))
+        (deliver-notifications timeline)))))
