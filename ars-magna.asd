@@ -204,7 +204,7 @@
                  (:file "clauses")
                  (:file "defexperiment") (:file "question") (:file "facts")))
    (:module "src/experiment/trial" :serial t
-    :components ((:file "outcome") (:file "data") (:file "trial") (:file "version") (:file "reaching")
+    :components ((:file "outcome") (:file "data") (:file "trial") (:file "sampling") (:file "version") (:file "reaching")
                  (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
     :components ((:file "row") (:file "checking") (:file "lines") (:file "directory")

@@ -11,8 +11,9 @@ on with, on as many cores and machines as there are. Names lparallel.")
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history
                 #:open-display #:*display-opener*)
-  (:import-from :ars-magna.world #:map-width #:map-height)
+  (:import-from :ars-magna.world #:map-width #:map-height #:world-dice-set)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
+                #:custody-questions #:timeline-phase
                 #:seconds-now #:check-rate #:thinking-mode-p #:thinking-modes-text)
   (:import-from :ars-magna.robot
                 #:robot-x #:robot-y #:find-blueprint #:all-blueprints #:blueprint-name

@@ -17,7 +17,8 @@
     (:run "(:run form...)")
     (:until "(:until form)")
     (:success "(:success form)")
-    (:measure "(:measure (name form)...)"))
+    (:measure "(:measure (name form)...)")
+    (:each-tick "(:each-tick (name form)...)"))
   "The clauses, and how each looks.")
 
 (defun usage-of (key)
@@ -163,20 +164,20 @@ true of; or about CLAUSE if there is none at all."
   "Warn of variables that no form of CLAUSES mentions."
   (dolist (name (varied-variables clauses))
     (unless (or (special-p name)
-                (loop for key in '(:run :until :success :measure)
+                (loop for key in '(:run :until :success :measure :each-tick)
                       thereis (mentioned-p name (clause-called key clauses))))
       (doubt-definition "~A is varied, but no form mentions it.~@[ Did you mean the parameter ~
                          ~A?~]"
                         name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
 
-(defun doubt-measures (clauses)
-  "Warn of a measure of CLAUSES that is a call with a robot, without a name before it."
+(defun doubt-unnamed (key clauses)
+  "Warn of a call with a robot in the clause KEY of CLAUSES without a name before it."
   (loop with robots = (clause-called :robots clauses)
-        for (name form) in (clause-called :measure clauses)
+        for (name form) in (clause-called key clauses)
         when (and (fboundp name) (symbolp form) (member form robots))
           do (doubt-definition "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
-                                it first: (:measure (NAME (~A ~A)))."
-                               name form name form name form)))
+                                it first: (~(~S~) (NAME (~A ~A)))."
+                               name form name form key name form)))
 
 (defun doubt-nested-run (forms)
   "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
@@ -204,18 +205,23 @@ true of; or about CLAUSE if there is none at all."
 
 ;;; All of them.
 
+(defun check-columns (definition taken clauses key)
+  "Signal MALFORMED-DEFINITION if two columns of a table would be called the same: those TAKEN, what
+CLAUSES vary, and what the clause KEY names."
+  (flet ((check (name clause)
+           (when (member (column-name name) taken :test #'string=)
+             (reject-clause definition clause
+                            (format nil "another name; the table has a column ~A already"
+                                    (column-name name))))
+           (push (column-name name) taken)))
+    (dolist (name (varied-names clauses)) (check name name))
+    (dolist (part (clause-called key clauses)) (check (first part) part))))
+
 (defun check-column-names (definition clauses)
-  "Signal MALFORMED-DEFINITION if two columns of the table would be called the same."
-  (let ((taken (append *columns-before* *columns-between* *columns-after*
-                       (and (case-parts clauses) '("case")))))
-    (flet ((check (name clause)
-             (when (member (column-name name) taken :test #'string=)
-               (reject-clause definition clause
-                              (format nil "another name; the table has a column ~A already"
-                                      (column-name name))))
-             (push (column-name name) taken)))
-      (dolist (name (varied-names clauses)) (check name name))
-      (dolist (measure (clause-called :measure clauses)) (check (first measure) measure)))))
+  "Signal MALFORMED-DEFINITION if two columns of a table of CLAUSES would be called the same."
+  (let ((before (append *columns-before* (and (case-parts clauses) '("case")))))
+    (check-columns definition (append before *columns-between* *columns-after*) clauses :measure)
+    (check-columns definition (append before *series-columns*) clauses :each-tick)))
 
 (defun check-number-clause (definition clause test)
   (unless (and (= 2 (length clause)) (funcall test (second clause)))
@@ -253,7 +259,7 @@ true of; or about CLAUSE if there is none at all."
     (:run (unless (rest clause) (reject definition clause))
      (check-runs definition clause))
     ((:thinking :until :success) (unless (= 2 (length clause)) (reject definition clause)))
-    (:measure
+    ((:measure :each-tick)
      (check-each definition clause
                  (lambda (part) (and (proper-list-p part) (= 2 (length part))
                                      (symbolp (first part)) (first part)))))))
@@ -274,6 +280,7 @@ true of; or about CLAUSE if there is none at all."
                    (case-parts clauses))
       (reject-clause definition part "something that the :conditions do not vary already")))
   (check-column-names definition clauses)
-  (doubt-measures clauses)
+  (doubt-unnamed :measure clauses)
+  (doubt-unnamed :each-tick clauses)
   (doubt-nested-run (clause-called :run clauses))
   (doubt-unused clauses))

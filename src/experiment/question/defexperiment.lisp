@@ -43,8 +43,9 @@ none."
                      (special ,@(remove-if-not #'variable-name-p (robot-names clauses))))
             ,@forms))))
 
-(defun measures-form (clauses)
-  `(list ,@(loop for (name form) in (clause-called :measure clauses)
+(defun named-functions-form (key clauses)
+  "Return the form of a list of lists (name function) for what the clause KEY of CLAUSES names."
+  `(list ,@(loop for (name form) in (clause-called key clauses)
                  collect `(list ',name ,(function-form clauses (list form))))))
 
 (defun clean-p (clauses)
@@ -59,7 +60,7 @@ none."
 (defun deciding-text (clauses)
   "Return those of CLAUSES that decide a trial, whatever varies."
   (loop for key in '(:robots :parameters :clean :thinking :seed :limit :run :until :success
-                     :measure)
+                     :measure :each-tick)
         for clause = (find key clauses :key #'first)
         when clause collect clause))
 
@@ -79,7 +80,8 @@ none."
      :run ,(function-form clauses (clause-called :run clauses))
      :until ,(function-form clauses (clause-called :until clauses))
      :success ,(function-form clauses (clause-called :success clauses))
-     :measures ,(measures-form clauses)
+     :measures ,(named-functions-form :measure clauses)
+     :series ,(named-functions-form :each-tick clauses)
      :form ',form
      :deciding ',(deciding-text clauses)))
 
@@ -111,6 +113,10 @@ The CLAUSES are:
                              only :run says so, it is a failure with the reason only-believed
   (:measure (name form)...)  what is measured at its end: numbers, T or NIL, symbols, strings, or
                              :NONE where there is nothing to be measured
+  (:each-tick (name form)...)  what is recorded before the first tick and after each one, plans
+                             included: such values, in a table of their own, series.csv; see
+                             TRIAL-SERIES. The forms must only look: they roll dice of their own,
+                             but whatever else they change, they change in the trial
 Without :success and :until, the values of :run say how the trial went: those of RUN-PLAN what
 became of the plan; the task that BEGIN-PLAN returns what has become of it (unfinished: it is not
 over); else the first one whether it succeeded, and the second, a symbol or string, why not. It is a
@@ -202,7 +208,7 @@ in CHOICES."
 (defun experiment-from (name definition
                         &key documentation robots parameters clean (thinking :free) factors cases
                           (trials 100) (seed 0) (limit 100000) time-limit variables
-                          run until success measures form deciding)
+                          run until success measures series form deciding)
   "Return an experiment called NAME; DEFINITION is what errors in it are said to be in."
   (let ((experiment (%make-experiment name)))
     (check-robots definition (list* :robots robots) robots)
@@ -224,6 +230,7 @@ in CHOICES."
           (experiment-until experiment) until
           (experiment-success experiment) success
           (experiment-measures experiment) measures
+          (experiment-series experiment) series
           (experiment-form experiment) form
           (experiment-deciding experiment) deciding
           (experiment-conditions experiment)

@@ -21,8 +21,9 @@
   (run nil :type (or null function))
   (until nil :type (or null function))
   (success nil :type (or null function))
-  ;; Lists (name function).
+  ;; Lists (name function): what is measured at the end of a trial, and from tick to tick.
   (measures '() :type list)
+  (series '() :type list)
   (variables '() :type list)
   ;; All of its text, and what of it decides a trial.
   (form '() :type list)
@@ -117,6 +118,8 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
   "What stands between what varies and what is measured.")
 (defparameter *columns-after* '("digest" "error")
   "What stands after what is measured.")
+(defparameter *series-columns* '("seed" "trial" "tick")
+  "What stands in the table of series between what varies and what is recorded.")
 
 (defun factor-columns (experiment)
   (append (and (experiment-cases experiment) (list "case"))
@@ -129,3 +132,8 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
   "Return the names of the columns of the table of EXPERIMENT."
   (append *columns-before* (factor-columns experiment) *columns-between*
           (measure-columns experiment) *columns-after*))
+
+(defun series-columns (experiment)
+  "Return the names of the columns of the table of series of EXPERIMENT."
+  (append *columns-before* (factor-columns experiment) *series-columns*
+          (mapcar (lambda (part) (column-name (first part))) (experiment-series experiment))))

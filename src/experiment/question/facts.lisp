@@ -8,4 +8,5 @@
   "Conditions" (length (experiment-conditions experiment))
   "Trials of each" (experiment-trials experiment)
   "Ends at tick" (experiment-limit experiment)
-  "Measures" (listed (mapcar #'first (experiment-measures experiment))))
+  "Measures" (listed (mapcar #'first (experiment-measures experiment)))
+  "Each tick" (listed (mapcar #'first (experiment-series experiment))))

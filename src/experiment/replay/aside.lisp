@@ -55,8 +55,7 @@ where nobody is to answer it is an error of the trial."
 (defun run-to-end (experiment result then)
   "Do in the current simulation what EXPERIMENT says, and call THEN with RESULT, what came of it."
   (keep-history)
-  (call-noting-errors (lambda () (conduct experiment result)) result)
-  (note-end result)
+  (conduct-to-end experiment result)
   (setf (simulation-gate (current-simulation)) #'reject-ticks)
   (funcall then result))
 

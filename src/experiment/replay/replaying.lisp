@@ -158,6 +158,12 @@ from the row in DIRECTORY, if that is given."
         for text in (result-measures result)
         collect (list name (value-in text shared))))
 
+(defun recorded (result)
+  "Return what was recorded in RESULT from tick to tick: lists (tick value...)."
+  (loop with shared = (make-hash-table :test 'equal)
+        for (tick . texts) in (result-series result)
+        collect (cons tick (loop for text in texts collect (value-in text shared)))))
+
 (defun replaying-plist (replaying result differences)
   "Return what REPLAY-TRIAL does."
   (let ((over-p (not (replaying-stopped-p replaying))))
@@ -166,6 +172,7 @@ from the row in DIRECTORY, if that is given."
           :ticks (result-ticks result)
           :digest (result-digest-text result)
           :measures (measured (replaying-experiment replaying) result)
+          :series (recorded result)
           :error (if over-p (result-error result) "")
           :journal (replaying-kept replaying)
           :differences differences)))
@@ -202,9 +209,9 @@ is stopped, before its simulation is gone: to look around, as by SAVE-PICTURE.
   :directory D  compares what comes of it with its row in D
 
 Return a plist: :outcome (\"success\", \"failure\", \"limit\", \"error\"; NIL if it was stopped),
-:reason, :ticks, :digest (as in the row), :measures (lists (name value)), :error, :journal, and
-:differences, in words, from the row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row),
-DAMAGED-TABLE."
+:reason, :ticks, :digest (as in the row), :measures (lists (name value)), :series (what :each-tick
+says, lists (tick value...)), :error, :journal, and :differences, in words, from the row. Signals
+UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."
   (check-replay trial until then step journal directory)
   (when rate (check-rate rate))
   (let* ((experiment (find-experiment experiment))

@@ -16,6 +16,8 @@
   (reason "" :type string)
   (ticks 0 :type integer)
   (measures '() :type list)
+  ;; Lists (tick text...), what was recorded from tick to tick.
+  (series '() :type list)
   (digest nil :type (or null integer))
   (error "" :type string))
 
@@ -153,6 +155,7 @@ took for a success and :success does not is one that was only believed."
 
 (defun note-end (result)
   "Enter into RESULT how far the current simulation has come."
+  (note-series result)
   (setf (result-ticks result) (simulation-tick)
         (result-digest result) (state-digest)))
 
@@ -168,12 +171,12 @@ took for a success and :success does not is one that was only believed."
         (result-measures result) '()
         (result-error result) (plain-text text)))
 
-(defun text-of-measure (name function condition)
-  "Return the text of what FUNCTION, the measure NAME, returns. Signals WRONG-ARGUMENT if a table
-cannot have it."
+(defun text-of-measure (clause name function condition)
+  "Return the text of what FUNCTION, called NAME in CLAUSE, returns. Signals WRONG-ARGUMENT if a
+table cannot have it."
   (let ((value (call-form function condition)))
     (unless (value-p value)
-      (reject-argument "measure" name value "a number, symbol, string or list of them"))
+      (reject-argument clause name value "a number, symbol, string or list of them"))
     (value-text value)))
 
 (defun outcome-so-far (experiment values)
@@ -218,6 +221,7 @@ end, or that no tick has passed; VALUES are those of :run."
             (decide experiment condition outcome reason))
       (add-error result (error-in-plan values))
       (note-unfinished result values)
+      (note-series result)
       (measure experiment result))))
 
 (defvar *aside-p* nil
@@ -252,7 +256,7 @@ NIL."
               for text = ""
               for trouble = (trouble-text
                              (lambda ()
-                               (setf text (text-of-measure name function condition))))
+                               (setf text (text-of-measure "measure" name function condition))))
               when trouble
                 do (add-error result (format nil "Error in the measure ~(~A~): ~A" name trouble))
               collect text)))
@@ -262,15 +266,21 @@ NIL."
   (let ((trouble (trouble-text function)))
     (when trouble (note-error result trouble))))
 
+(defun conduct-to-end (experiment result)
+  "Do in the current simulation what EXPERIMENT says; enter into RESULT what comes of it, also if it
+breaks off, and how far it has come."
+  (call-sampling (lambda ()
+                   (call-noting-errors (lambda () (conduct experiment result)) result)
+                   (note-end result))
+                 experiment result))
+
 (defun run-trial (experiment condition trial &key gate)
   "Run TRIAL, a number, of CONDITION of EXPERIMENT. Return its result. GATE is as for
 CALL-IN-TRIAL."
   (let ((result (make-result condition trial (trial-seed experiment trial))))
     (call-noting-errors
      (lambda ()
-       (call-in-trial (lambda ()
-                        (call-noting-errors (lambda () (conduct experiment result)) result)
-                        (note-end result))
+       (call-in-trial (lambda () (conduct-to-end experiment result))
                       experiment condition trial :gate gate))
      result)
     result))
