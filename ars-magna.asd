@@ -207,7 +207,8 @@
     :components ((:file "outcome") (:file "data") (:file "trial") (:file "sampling") (:file "version") (:file "reaching")
                  (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
-    :components ((:file "row") (:file "checking") (:file "lines") (:file "directory")
+    :components ((:file "row") (:file "checking") (:file "lines") (:file "series-blocks")
+                 (:file "series-table") (:file "directory")
                  (:file "origin") (:file "description") (:file "results") (:file "merging") (:file "shards")))
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "guarding")

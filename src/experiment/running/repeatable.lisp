@@ -28,14 +28,17 @@ there."
     result))
 
 (defun check-repeatable (experiment texts)
-  "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS comes out otherwise now."
+  "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS comes out otherwise now. See
+TEXTS-WITH-MARK."
   (let* ((condition (condition-of-texts experiment texts))
-         (columns (columns experiment))
+         (columns (append (columns experiment) '("series, by its check sum,")))
          (trial (parse-integer (nth (1+ (seed-column columns)) texts)))
-         (again (result-texts experiment (run-by-worker experiment condition trial))))
+         (result (run-by-worker experiment condition trial))
+         (again (texts-with-mark (result-texts experiment result) experiment
+                                 (series-text experiment result))))
     (unless (equal texts again)
       (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently now: ~
-                   ~{its ~A is ~A, and ~A in the row~}. Either the row has been changed, or ~
+                   ~{its ~A is ~A, and ~A in the table~}. Either the row has been changed, or ~
                    something that is not in the fingerprint decides the trial, such as an object ~
                    or closure that trials change, the clock, a file, or a function of SBCL's that ~
                    another version of it has otherwise. Mend that, and begin in another ~

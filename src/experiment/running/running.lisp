@@ -13,16 +13,20 @@
 condition. PARTS are those of the fingerprints of its conditions. Signals MISUSE for rows of other
 code."
   (let ((samples (make-hash-table :test 'eq)) (columns (columns experiment)))
-    (values (present-rows experiment directory
-                          (lambda (condition texts)
-                            (declare (ignore texts))
-                            (reject-foreign experiment condition parts directory))
-                          (lambda (condition texts)
-                            (unless (timed-out-p texts columns)
-                              (setf (gethash condition samples) texts))))
-            (loop for condition in (experiment-conditions experiment)
-                  for texts = (gethash condition samples)
-                  when texts collect texts))))
+    (multiple-value-bind (presence series)
+        (present-rows experiment directory
+                      (lambda (condition texts)
+                        (declare (ignore texts))
+                        (reject-foreign experiment condition parts directory))
+                      (lambda (condition texts)
+                        (unless (timed-out-p texts columns)
+                          (setf (gethash condition samples) texts))))
+      (values presence
+              (loop for condition in (experiment-conditions experiment)
+                    for texts = (gethash condition samples)
+                    when texts
+                      collect (texts-with-mark texts experiment
+                                               (series-text-there series texts)))))))
 
 ;;; Looking at intervals.
 
@@ -88,6 +92,15 @@ code."
 (defparameter *most-trials* 1000000
   "How many trials of a condition are run at most to make its interval narrow, unless one says.")
 
+(defun put-in-order (experiment directory)
+  "Put the tables of EXPERIMENT in DIRECTORY in order."
+  (let ((file (series-file directory)))
+    (write-in-order (list (rows-file directory)) (rows-file directory)
+                    (mapcar #'condition-name (experiment-conditions experiment))
+                    (lambda (rows)
+                      (when (experiment-series experiment)
+                        (write-series-in-order (list file) rows file))))))
+
 (defun run-in (experiment directory trials until shard workers time-limit stream)
   "Run the trials of EXPERIMENT that DIRECTORY has no rows of, and put the table in order."
   (let ((parts (loop for condition in (experiment-conditions experiment)
@@ -105,8 +118,7 @@ code."
                (run-all experiment trials presence shard store workers time-limit stream))
            (check-run-again store parts (seconds-since begun))))
        experiment directory)
-      (write-in-order (list (rows-file directory)) (rows-file directory)
-                      (mapcar #'condition-name (experiment-conditions experiment))))))
+      (put-in-order experiment directory))))
 
 (defun shard-p (shard)
   (or (null shard)
@@ -146,8 +158,9 @@ code."
 threads. Return the results; see PRINT-RESULTS, SAVE-RESULT-PICTURES and COMPARE-CONDITIONS.
 
 The table is kept in DIRECTORY, made if there is none: in rows.csv, a row for each trial; what
-differs from run to run in machine.csv; and how to repeat it in experiment.txt. Trials that have a
-row there are not run again, so that what was stopped is gone on with, and trials are added, by
+differs from run to run in machine.csv; how to repeat it in experiment.txt; and what :each-tick
+records in series.csv, a line for each tick of each trial; see TRIAL-SERIES. Trials that have a row
+there are not run again, so that what was stopped is gone on with, and trials are added, by
 starting it again. Rows of other code or another configuration signal MISUSE. Without a DIRECTORY
 nothing is kept but what is returned.
 

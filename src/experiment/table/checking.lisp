@@ -23,16 +23,21 @@
 
 ;;; The header.
 
-(defun table-columns-p (columns)
-  "True if COLUMNS are those of a table of an experiment."
-  (let ((seed (position "seed" columns :test #'string=)))
-    (and seed
-         (>= seed (length *columns-before*))
-         (equal *columns-before* (subseq columns 0 (length *columns-before*)))
-         (>= (- (length columns) seed)
-             (+ (length *columns-between*) (length *columns-after*)))
-         (equal *columns-between* (subseq columns seed (+ seed (length *columns-between*))))
-         (equal *columns-after* (last columns (length *columns-after*))))))
+(defparameter *rows-layout* (list *columns-between* *columns-after*)
+  "What stands in a table of rows from the seed on, before and after what is measured.")
+(defparameter *series-layout* (list *series-columns* '())
+  "The same of a table of series.")
+
+(defun table-columns-p (columns layout)
+  "True if COLUMNS are those of a table of an experiment with LAYOUT."
+  (destructuring-bind (between after) layout
+    (let ((seed (position "seed" columns :test #'string=)))
+      (and seed
+           (>= seed (length *columns-before*))
+           (equal *columns-before* (subseq columns 0 (length *columns-before*)))
+           (>= (- (length columns) seed) (+ (length between) (length after)))
+           (equal between (subseq columns seed (+ seed (length between))))
+           (equal after (last columns (length after)))))))
 
 (defun check-header-line (line file)
   "Signal DAMAGED-TABLE if LINE, the first of FILE, shows that a program has saved it in a way of
@@ -44,12 +49,12 @@ its own."
                           own. Take the table as it was; or save it as plain UTF-8 with line feeds ~
                           only.")))
 
-(defun columns-in (line file)
-  "Return the names of the columns in LINE, of octets, the first of the table FILE. Signals
-DAMAGED-TABLE."
+(defun columns-in (line file layout)
+  "Return the names of the columns in LINE, of octets, the first of FILE, a table with LAYOUT.
+Signals DAMAGED-TABLE."
   (check-header-line line file)
   (let ((columns (ignore-errors (csv-texts (line-text line)))))
-    (unless (table-columns-p columns)
+    (unless (table-columns-p columns layout)
       (reject-table file 1 "this is no table of an experiment. Give another directory."))
     columns))
 
@@ -101,14 +106,20 @@ again."
       line
       (decoded line)))
 
-(defun row-texts (line columns file number)
-  "Return the texts of LINE, of octets, which is the line NUMBER of FILE, a table with COLUMNS.
-Signals DAMAGED-TABLE."
+(defun cells-of-line (line columns file number)
+  "Return the texts of LINE, of octets, which is the line NUMBER of FILE, a table of rows or series
+with COLUMNS. Signals DAMAGED-TABLE."
   (let ((texts (handler-case (csv-texts (line-text line))
                  (broken-line () '()))))
     (unless (= (length texts) (length columns))
       (reject-row file number "This is no row with ~D columns." (length columns)))
     (unless (hexadecimal-p (second texts))
       (reject-row file number "This is no row: ~A is no fingerprint." (plain-text (second texts))))
+    texts))
+
+(defun row-texts (line columns file number)
+  "Return the texts of LINE, of octets, which is the line NUMBER of FILE, a table with COLUMNS.
+Signals DAMAGED-TABLE."
+  (let ((texts (cells-of-line line columns file number)))
     (check-cells (nthcdr (seed-column columns) texts) columns file number)
     texts))

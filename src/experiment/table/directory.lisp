@@ -2,9 +2,10 @@
 
 (in-package :ars-magna.experiment)
 
-;;; rows.csv has a row for each trial and nothing that differs from run to run; machine.csv says how
-;;; long each took, and where; experiment.txt how to repeat it all. One process at a time writes
-;;; there: it holds the lock of the file `.lock'.
+;;; rows.csv has a row for each trial and nothing that differs from run to run; series.csv, if the
+;;; experiment has :each-tick, lines for each tick of each trial; machine.csv says how long each
+;;; trial took, and where; experiment.txt how to repeat it all. One process at a time writes there:
+;;; it holds the lock of the file `.lock'.
 
 (defstruct (store (:constructor make-store (path experiment)) (:copier nil))
   "The directory PATH in which rows of EXPERIMENT are kept, while they are written."
@@ -12,20 +13,23 @@
   (experiment nil :type experiment :read-only t)
   (lock (make-lock "rows") :read-only t)
   (rows nil)
+  (series nil)
   (machine nil)
-  ;; The texts of the first row of each condition that was kept, by condition.
+  ;; The texts of the first row of each condition that was kept, by condition. See TEXTS-WITH-MARK.
   (samples (make-hash-table :test 'eq) :read-only t))
 
 (defun file-in (directory name)
   (merge-pathnames (native-path name) directory))
 
 (defun rows-file (directory) (file-in directory "rows.csv"))
+(defun series-file (directory) (file-in directory "series.csv"))
 (defun machine-file (directory) (file-in directory "machine.csv"))
 (defun description-file (directory) (file-in directory "experiment.txt"))
 
 (defun check-files-plain (directory)
   "Signal DAMAGED-TABLE if what is called like a file of DIRECTORY is no file of bytes."
-  (dolist (file (list (rows-file directory) (machine-file directory) (description-file directory)))
+  (dolist (file (list (rows-file directory) (series-file directory) (machine-file directory)
+                      (description-file directory)))
     (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that there is not")
                          ((and (probe-file file) (not (plain-file-p file)))
                           "it is a directory, pipe, socket or device"))))
@@ -143,7 +147,11 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
          (progn
            (setf (store-rows store) (open-table (rows-file directory) (columns experiment))
                  (store-machine store) (open-table (machine-file directory) *machine-columns*))
+           (when (experiment-series experiment)
+             (setf (store-series store)
+                   (open-table (series-file directory) (series-columns experiment))))
            (funcall function store))
+      (close-table (store-series store))
       (close-table (store-rows store))
       (close-table (store-machine store)))))
 
@@ -161,22 +169,27 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
                     "no more can be written (~A). What is there is kept; go on once there is room."
                     (unwritten-reason condition)))))
 
+;; The series comes first: where there is a row, all of its series is there.
 (defun keep-row (store result milliseconds worker)
-  "Append to STORE the row for RESULT, which took MILLISECONDS of WORKER. It is there for good when
-this returns."
-  (let* ((texts (result-texts (store-experiment store) result))
+  "Append to STORE the row for RESULT, which took MILLISECONDS of WORKER, and its series. They are
+there for good when this returns."
+  (let* ((experiment (store-experiment store))
+         (texts (result-texts experiment result))
          (line (csv-line texts))
+         (series (series-text experiment result))
          (machine-line (csv-line (machine-texts result milliseconds worker)))
          (condition (result-condition result)))
     (with-lock ((store-lock store))
       (deferring-interrupts
+        (when (store-series store) (write-table-line series (store-series store)))
         (write-table-line line (store-rows store))
         (write-table-line machine-line (store-machine store)
                           ;; What was quick is written together.
                           (if (> milliseconds 1) #'finish-output #'identity))
         (unless (or (gethash condition (store-samples store))
                     (string= "timeout" (result-outcome result)))
-          (setf (gethash condition (store-samples store)) texts))))))
+          (setf (gethash condition (store-samples store))
+                (texts-with-mark texts experiment series)))))))
 
 (defun machine-texts (result milliseconds worker)
   (list (condition-name (result-condition result))
@@ -229,10 +242,12 @@ EXPERIMENT has none of its name."
                   (trial-seed experiment trial) (nth seed texts)))))
 
 (defun present-rows (experiment directory foreign &optional (sample (constantly nil)))
-  "Return the presence of the rows in DIRECTORY, of trials of EXPERIMENT. FOREIGN is called with the
-condition and the texts of a row of another fingerprint, SAMPLE with those of all others. What a
-process that was killed has begun to write is cut off. Signals DAMAGED-TABLE."
+  "Return the presence of the rows in DIRECTORY, of trials of EXPERIMENT, whose series are there as
+well, and the index of these. FOREIGN is called with the condition and the texts of a row of another
+fingerprint, SAMPLE with those of all that are present. What a process that was killed has begun to
+write is cut off. Signals DAMAGED-TABLE."
   (let ((presence (make-presence)) (file (rows-file directory))
+        (series (series-there experiment directory))
         (place (1+ (seed-column (columns experiment)))))
     (when (cut-broken-line file (columns experiment))
       (map-rows (lambda (texts line start number)
@@ -242,8 +257,8 @@ process that was killed has begun to write is cut off. Signals DAMAGED-TABLE."
                                (string/= (second texts) (condition-fingerprint condition)))
                       (funcall foreign condition texts))
                     (check-row experiment condition texts file number)
-                    (when condition
+                    (when (and condition (series-complete-p series texts))
                       (funcall sample condition texts)
                       (note-present condition (parse-integer (nth place texts)) presence))))
                 file))
-    presence))
+    (values presence series)))

@@ -28,11 +28,11 @@ from 1. Return where the last one ends."
   "Return the first line of FILE, of octets, and whether its end is missing; NIL if it is empty."
   (call-with-octets (lambda (in) (read-line in nil nil)) file))
 
-(defun header-of (file)
-  "Return the names of the columns of the table FILE. Signals DAMAGED-TABLE."
+(defun header-of (file &optional (layout *rows-layout*))
+  "Return the names of the columns of FILE, a table with LAYOUT. Signals DAMAGED-TABLE."
   (let ((line (first-line file)))
     (if line
-        (columns-in line file)
+        (columns-in line file layout)
         (reject-table file nil "it is empty. Delete it."))))
 
 (defun map-rows (function file)
@@ -146,29 +146,27 @@ fingerprint and one value of each thing that varies."
 
 ;;; Writing them in order.
 
-(defun call-replacing-table (function file)
-  "Call FUNCTION with a stream to a file that takes the place of the table FILE. Signals
-DAMAGED-TABLE if that cannot be written; FILE is then as it was."
-  (handler-case (call-replacing-file function file)
+(defun call-replacing-table (function file &optional (check #'identity))
+  "Call FUNCTION with a stream to a file that takes the place of the table FILE, once CHECK has been
+called with its path. Signals DAMAGED-TABLE if that cannot be written; FILE is then as it was."
+  (handler-case (call-replacing-file function file :check check)
     ((or stream-error file-error) (condition)
       (reject-table file nil "it cannot be written anew (~A). It is as it was."
                     (unwritten-reason condition)))))
 
 (defun call-with-line-reader (function files)
-  "Call FUNCTION with a function that returns the line of a row in one of FILES."
+  "Call FUNCTION with a function that returns the line in one of FILES that begins at a place."
   (let ((streams (make-hash-table :test 'eq)))
     (unwind-protect
          (progn
            (dolist (file files)
              (setf (gethash file streams) (list (open file :external-format :latin-1) 0)))
            (funcall function
-                    (lambda (row)
-                      (destructuring-bind (stream place) (gethash (indexed-file row) streams)
-                        (unless (= place (indexed-start row))
-                          (file-position stream (indexed-start row)))
+                    (lambda (file start)
+                      (destructuring-bind (stream place) (gethash file streams)
+                        (unless (= place start) (file-position stream start))
                         (let ((line (read-line stream)))
-                          (setf (second (gethash (indexed-file row) streams))
-                                (+ (indexed-start row) (length line) 1))
+                          (setf (second (gethash file streams)) (+ start (length line) 1))
                           line)))))
       (loop for (stream) being the hash-values of streams do (close stream)))))
 
@@ -184,11 +182,12 @@ DAMAGED-TABLE if that cannot be written; FILE is then as it was."
         always (row-before-p (aref rows (1- index)) (aref rows index))))
 
 (defun write-rows (rows line-of out)
-  "Write the lines of ROWS, in order, to OUT, one for each trial. LINE-OF returns the line of a row.
-Signals DAMAGED-TABLE if two of one trial differ. Return how many were written."
+  "Write the lines of ROWS, in order, to OUT, one for each trial. LINE-OF returns the line of a file
+that begins at a place. Signals DAMAGED-TABLE if two of one trial differ. Return how many were
+written."
   (loop with last = nil and last-line = nil and count = 0
         for row across rows
-        for line = (funcall line-of row)
+        for line = (funcall line-of (indexed-file row) (indexed-start row))
         do (cond ((and last (same-trial-p last row))
                   (unless (string= line last-line) (reject-conflict row last)))
                  (t (write-line (line-text line) out)
@@ -196,21 +195,23 @@ Signals DAMAGED-TABLE if two of one trial differ. Return how many were written."
            (setf last row last-line line)
         finally (return count)))
 
-(defun write-in-order (files file order)
+(defun write-in-order (files file order &optional (check #'identity))
   "Write the rows of FILES, tables, to FILE, in order, and each once; FILE may be one of them. ORDER
-is a list of the names of conditions. Return how many rows there are. Signals DAMAGED-TABLE and
-MISUSE; then FILE is as it was."
+is a list of the names of conditions. Before it takes the place of FILE, CHECK is called with the
+path of the new table. Return how many rows there are. Signals DAMAGED-TABLE and MISUSE; then FILE
+is as it was."
   (multiple-value-bind (rows groups) (index-rows files)
     (check-groups groups)
     (rank-groups groups order)
     (let ((columns (header-of (first files))) (count (length rows)))
-      (unless (and (equal files (list file)) (in-order-p rows))
-        (setf rows (stable-sort rows #'row-before-p))
-        (call-with-line-reader
-         (lambda (line-of)
-           (call-replacing-table (lambda (out)
-                                   (write-string (csv-line columns) out)
-                                   (setf count (write-rows rows line-of out)))
-                                 file))
-         files))
+      (cond ((and (equal files (list file)) (in-order-p rows))
+             (funcall check file))
+            (t (setf rows (stable-sort rows #'row-before-p))
+               (call-with-line-reader
+                (lambda (line-of)
+                  (call-replacing-table (lambda (out)
+                                          (write-string (csv-line columns) out)
+                                          (setf count (write-rows rows line-of out)))
+                                        file check))
+                files)))
       count)))

@@ -15,6 +15,12 @@
                            append (conditions-described directory))
                      :test #'string= :from-end t))
 
+(defun join-series (directories target rows)
+  "Put the series in DIRECTORIES, if any has some, into one table in TARGET, for the trials in the
+table ROWS."
+  (let ((files (remove-if-not #'existing-path (mapcar #'series-file directories))))
+    (when files (write-series-in-order files rows (series-file target)))))
+
 (defun join-machine-tables (directories target)
   "Put the tables of what differs from run to run into one, in any order."
   (let ((files (remove-if-not #'existing-path (mapcar #'machine-file directories))))
@@ -32,8 +38,9 @@
 (addition merge-results)
 (defun merge-results (directories &key (to (first directories)))
   "Put the tables in DIRECTORIES, of one experiment, together in the directory TO, in order and each
-trial once. Return the results. Signals DAMAGED-TABLE if two rows of one trial differ, and MISUSE if
-their fingerprints do; TO is then as it was."
+trial once. Return the results. Signals DAMAGED-TABLE if two rows of one trial differ, or its series
+do or are missing, and MISUSE if their fingerprints differ; TO is then as it was. If none of the
+directories has series of a condition, TO has none of it."
   (check-argument merge-results directories
                   (and (consp directories) (proper-list-p directories)
                        (every (lambda (name) (typep name '(or string pathname))) directories))
@@ -48,7 +55,8 @@ their fingerprints do; TO is then as it was."
        (call-plainly
         (lambda ()
           (write-in-order (mapcar #'rows-file sources) (rows-file target)
-                          (order-of-conditions sources))))
+                          (order-of-conditions sources)
+                          (lambda (rows) (join-series sources target rows)))))
        (join-machine-tables sources target)
        (copy-description sources target))
      target)

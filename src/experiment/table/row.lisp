@@ -14,19 +14,44 @@
   (let ((digest (result-digest result)))
     (if digest (digest-text digest) "")))
 
-(defun result-texts (experiment result)
-  "Return the texts of the row for RESULT, of a trial of EXPERIMENT, in the order of its columns."
+(defun trial-texts (experiment result)
+  "Return the texts that say of which trial of EXPERIMENT RESULT is: each line begins with them."
   (let ((condition (result-condition result)))
     (append (list (column-name (experiment-name experiment))
                   (condition-fingerprint condition)
                   (condition-name condition))
             (condition-texts condition)
             (list (princ-to-string (result-seed result))
-                  (princ-to-string (result-trial result))
-                  (result-outcome result)
-                  (result-reason result)
-                  (princ-to-string (result-ticks result)))
-            (or (result-measures result)
-                (make-list (length (experiment-measures experiment)) :initial-element ""))
-            (list (result-digest-text result)
-                  (result-error result)))))
+                  (princ-to-string (result-trial result))))))
+
+(defun result-texts (experiment result)
+  "Return the texts of the row for RESULT, of a trial of EXPERIMENT, in the order of its columns."
+  (append (trial-texts experiment result)
+          (list (result-outcome result)
+                (result-reason result)
+                (princ-to-string (result-ticks result)))
+          (or (result-measures result)
+              (make-list (length (experiment-measures experiment)) :initial-element ""))
+          (list (result-digest-text result)
+                (result-error result))))
+
+;;; What was recorded from tick to tick.
+
+(defun series-text (experiment result)
+  "Return the lines of the table of series for RESULT, of a trial of EXPERIMENT; empty if it has
+none."
+  (let* ((line (csv-line (trial-texts experiment result)))
+         (beginning (substitute #\, #\Newline line :start (1- (length line)))))
+    (with-output-to-string (out)
+      (loop for (tick . texts) in (result-series result)
+            do (write-string beginning out)
+               (write-string (csv-line (cons (princ-to-string tick) texts)) out)))))
+
+(defun series-mark (text)
+  "Return a check sum of TEXT, the lines of a trial's series."
+  (format nil "~8,'0X" (text-checksum text)))
+
+(defun texts-with-mark (texts experiment series)
+  "Return TEXTS, of a row of EXPERIMENT, and if that records anything the check sum of SERIES, the
+trial's lines."
+  (if (experiment-series experiment) (append texts (list (series-mark series))) texts))

@@ -44,30 +44,32 @@ each table that has it."
 
 (defun map-rows-there (function experiment directory)
   "Call FUNCTION with the condition, the number of the trial and the fingerprint of each row in
-DIRECTORY and the shards below it that is of EXPERIMENT, and the name of the directory it is in.
-Tables with other columns have none."
+DIRECTORY and the shards below it that is of EXPERIMENT, the name of the directory it is in, and
+whether its series is there. Tables with other columns have none."
   (let* ((columns (columns experiment)) (seed (seed-column columns)))
     (dolist (name (directories-with-rows directory))
-      (let ((file (rows-file (directory-called name))))
-        (when (equal columns (header-of file))
+      (let* ((file (rows-file (directory-called name)))
+             (own-p (equal columns (header-of file)))
+             (series (and own-p (series-there experiment (directory-called name)))))
+        (when own-p
           (map-rows (lambda (texts line start number)
                       (declare (ignore line start number))
                       (let ((condition (condition-of-texts experiment texts)))
                         (when condition
                           (funcall function condition
                                    (parse-integer (nth (1+ seed) texts))
-                                   (second texts) name))))
+                                   (second texts) name (series-complete-p series texts)))))
                     file))))))
 
 (defun own-fingerprint-p (condition fingerprint)
   (string= fingerprint (condition-fingerprint condition)))
 
 (defun presence-below (experiment directory)
-  "Return which trials of EXPERIMENT have rows in DIRECTORY and the shards below it."
+  "Return which trials of EXPERIMENT have rows, and series, in DIRECTORY and the shards below it."
   (let ((presence (make-presence)))
-    (map-rows-there (lambda (condition trial fingerprint directory)
+    (map-rows-there (lambda (condition trial fingerprint directory complete-p)
                       (declare (ignore directory))
-                      (when (own-fingerprint-p condition fingerprint)
+                      (when (and complete-p (own-fingerprint-p condition fingerprint))
                         (note-present condition trial presence)))
                     experiment directory)
     presence))
@@ -92,8 +94,8 @@ now, could not be gone on with, and DAMAGED-TABLE if they have other columns."
                      collect (prepare-condition experiment condition))))
     (dolist (name (directories-with-rows directory))
       (check-beginning (rows-file (directory-called name)) (columns experiment)))
-    (map-rows-there (lambda (condition trial fingerprint name)
-                      (declare (ignore trial))
+    (map-rows-there (lambda (condition trial fingerprint name complete-p)
+                      (declare (ignore trial complete-p))
                       (unless (own-fingerprint-p condition fingerprint)
                         (reject-foreign experiment condition parts (directory-called name))))
                     experiment directory)))
