@@ -204,8 +204,8 @@
                  (:file "clauses")
                  (:file "defexperiment") (:file "question") (:file "facts")))
    (:module "src/experiment/trial" :serial t
-    :components ((:file "outcome") (:file "data") (:file "trial") (:file "sampling") (:file "version") (:file "reaching")
-                 (:file "fingerprint")))
+    :components ((:file "outcome") (:file "data") (:file "trial") (:file "sampling") (:file "version")
+                 (:file "reaching") (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
     :components ((:file "row") (:file "checking") (:file "lines") (:file "series-blocks")
                  (:file "series-table") (:file "directory")
@@ -225,7 +225,7 @@
     :components ((:file "panels") (:file "result-charts") (:file "pictures") (:file "ways")
                  (:file "ways-picture")))
    (:module "src/experiment/replay" :serial t
-    :components ((:file "aside") (:file "replaying") (:file "failures")))
+    :components ((:file "aside") (:file "replaying") (:file "trial-series") (:file "failures")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -477,6 +477,7 @@
                  (:file "lisp-errors")
                  (:file "experiments-tables") (:file "designs") (:file "experiments-files")
                  (:file "experiments-hanging") (:file "experiments-fingerprints")
+                 (:file "experiments-series") (:file "experiments-series-tables")
                  (:file "thinking-experiments")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")

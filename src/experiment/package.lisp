@@ -70,6 +70,6 @@ on with, on as many cores and machines as there are. Names lparallel.")
   ;; aside, replaying, failures
   (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial
            #:row-of-trial #:row-differences #:prepare-condition #:measured
-           #:trial-failures #:print-failures)
+           #:trial-series #:trial-failures #:print-failures)
   ;; what the prompt shows
   (:export #:experiment-documentation #:trial-seed))
