@@ -326,6 +326,14 @@
                 (plan-value (rpl:par-loop (i (make-list count))
                               (rpl:with-valve (valve) (rpl:wait-time 1))))))))
 
+(defun looks-of-queue-for-two (count)
+  "Do as LOOKS-OF-QUEUE does for tasks that each want two valves."
+  (let ((hand (rpl:make-valve 'hand)) (eye (rpl:make-valve 'eye)))
+    (calls-of 'constructs::available-p
+              (lambda ()
+                (plan-value (rpl:par-loop (i (make-list count))
+                              (rpl:with-valves (hand eye) (rpl:wait-time 1))))))))
+
 (defun order-of-queue (priorities)
   "Return PRIORITIES in the order in which tasks with those have a valve that another had first."
   (let ((valve (rpl:make-valve 'hand)) (order '()))
@@ -348,4 +356,6 @@
 
 (test with-valve.to-queue-takes-the-same-however-many-do
   (is (< (looks-of-queue 1000) 10000))
-  (is (< (looks-of-queue 2000) 20000)))
+  (is (< (looks-of-queue 2000) 20000))
+  (is (< (looks-of-queue-for-two 1000) 10000))
+  (is (< (looks-of-queue-for-two 2000) 20000)))

@@ -6,7 +6,8 @@
 ;;; the newest first. A part of a task that holds a valve may hold it as well, one part at a time.
 ;;; So HOLDERS of a valve are the first claim, its owner's, and those of tasks that this is part of;
 ;;; between them may be such as parts have lost to parts. Any other claim was preempted: it has LOST
-;;; the valve, and its task does not run.
+;;; the valve, and its task does not run. OUTER leads from a claim to those that held a valve when
+;;; it was granted, and are of tasks that its own is part of: they give it back only after it has.
 ;;; The claims that wait for a valve queue by priority, by level, then first in first out, in a LINE
 ;;; for each priority and level; one that wants several can be overtaken by such as can have what
 ;;; they want. To queue, to leave, and to be next take the same time however many wait in a line,
@@ -22,12 +23,14 @@ it, COUNT is how many lines there ever were."
 
 (defstruct (claim (:constructor make-claim (task valves priority)) (:copier nil))
   "That TASK wants or has VALVES. TAKEN are those that it has, LOST those of them that have been
-taken from it. TURNS are its places in the lines of VALVES while it waits."
+taken from it. OUTER are conses of one of TAKEN and the claim around this one. TURNS are its places
+in the lines of VALVES while it waits."
   (task nil :type task :read-only t)
   (valves '() :type list :read-only t)
   (priority 0 :type real :read-only t)
   (taken '() :type list)
   (lost '() :type list)
+  (outer '() :type list)
   (turns '() :type list))
 
 (defstruct (line (:constructor make-line (valve priority level)) (:copier nil))
@@ -100,10 +103,13 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 (defun holders (valve)
   "Return the claims that hold VALVE: that of its owner, and those of tasks that this is part of,
 innermost first."
-  (let ((claims (valve-claims valve)))
-    (and claims
-         (remove-if-not (lambda (claim) (part-of-p (claim-task (first claims)) (claim-task claim)))
-                        claims))))
+  (loop for claim = (first (valve-claims valve)) then (outer-claim valve claim)
+        while claim
+        when (member valve (claim-taken claim) :test #'eq) collect claim))
+
+(defun outer-claim (valve claim)
+  "Return the claim that held VALVE around CLAIM when that was granted, or NIL."
+  (cdr (assoc valve (claim-outer claim) :test #'eq)))
 
 (defun lost-claims (valve)
   "Return the claims that have lost VALVE, that which is to have it next first."
@@ -159,7 +165,10 @@ innermost first."
 (defun take (valve claim)
   "Let CLAIM have VALVE. Return those who lose it by that, the outermost first, each as a list: of
 VALVE and the rival."
-  (let ((rivals (rivals valve (claim-task claim))))
+  (let* ((holders (holders valve))
+         (rivals (rivals valve (claim-task claim)))
+         (outer (find-if-not (lambda (holder) (member holder rivals :test #'eq)) holders)))
+    (when outer (push (cons valve outer) (claim-outer claim)))
     (push claim (valve-claims valve))
     (push valve (claim-taken claim))
     (mapcar (lambda (rival) (list valve rival)) (reverse rivals))))
@@ -297,7 +306,11 @@ those who lost it last."
     (dolist (valve valves)
       (setf (valve-claims valve) (without-claim (valve-claims valve) claim))
       (regain valve claim))
-    (mapc #'grant-waiting valves)))
+    ;; Who is granted one of them may have got others by that, which nobody else can have then.
+    (loop for valve in valves
+          for owner in (mapcar (lambda (valve) (first (valve-claims valve))) valves)
+          when (eq owner (first (valve-claims valve)))
+            do (grant-waiting valve))))
 
 ;;; Circles.
 
