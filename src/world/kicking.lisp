@@ -112,7 +112,8 @@ it begins. NIL if there is none, as all eight are filled."
 (defun kick-thing (thing dx dy kick-if-wall)
   "Move THING by DX, DY metres (manual 5.3.1). If that ends in a wall, move it to an empty cell
 beside that one (the nearest to where it was) if KICK-IF-WALL is true, or else not at all. True
-if it moved; NIL also if it is inside something closed or has been destroyed (reading 172)."
+if it was put into a cell, which may be its own; NIL also if it is inside something closed or has
+been destroyed (reading 172)."
   (let ((moved (if (and (typep dx 'common-number) (typep dy 'common-number))
                    (let ((kick (make-kick (double dx) (double dy))))
                      (declare (dynamic-extent kick))
