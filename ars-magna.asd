@@ -485,7 +485,7 @@
                  (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "unseen")
                  (:file "beginners") (:file "beginners-more") (:file "beginners-slips")
                  (:file "beginners-words") (:file "beginners-ends")
-                 (:file "beginners-unheard")
+                 (:file "beginners-unheard") (:file "beginners-hints")
                  (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t

@@ -138,10 +138,8 @@ none; and true. Return false as a third value for other types."
     (typecase condition
       (undefined-function (format nil "The function ~A is undefined.~@[ ~A~]"
                                   name (function-slip-text (cell-error-name condition))))
-      (unbound-variable (format nil "The variable ~A has no value.~@[ Did you mean ~A?~]"
-                                name
-                                (or (code-slip (cell-error-name condition))
-                                    (variable-slip (cell-error-name condition))))))))
+      (unbound-variable (format nil "The variable ~A has no value.~@[ ~A~]"
+                                name (variable-slip-text (cell-error-name condition)))))))
 
 (defun our-own-p (symbol)
   "True if SYMBOL is of a package of this system."

@@ -1,4 +1,4 @@
-;;;; lisp-slips.lisp -- what was meant where Lisp finds no function, or an object of another type.
+;;;; lisp-slips.lisp -- what was meant where Lisp finds no function, value, syntax or type.
 
 (in-package :ars-magna.base)
 
@@ -23,6 +23,31 @@ that exports it; or NIL."
           (and (find-package package) (find-symbol (symbol-name name) package))
         (when (and (eq :external status) (fboundp symbol)) (return (values symbol package)))))))
 
+;;; Names in other packages.
+
+(defun user-packages ()
+  "Return the packages that use ARS, ARS-USER first, without those of this system."
+  (let ((ours (find-package "ARS-USER")))
+    (cons ours
+          (remove-if (lambda (package)
+                       (or (eq ours package)
+                           (starts-with-subseq "ARS-MAGNA" (package-name package))))
+                     (and (find-package "ARS") (package-used-by-list "ARS"))))))
+
+(defun elsewhere-text (name predicate)
+  "Return in a sentence which users' package has a symbol called NAME, another one, that fits
+PREDICATE, and how to use it; or NIL."
+  (dolist (package (user-packages))
+    (multiple-value-bind (symbol status) (find-symbol (symbol-name name) package)
+      (when (and symbol (not (eq symbol name)) (funcall predicate symbol))
+        (return
+          (if (and (eq :external status) (eq package (symbol-package symbol)))
+              (format nil "There is ~(~A:~A~)." (package-name package) symbol)
+              (format nil "~A has it: say (in-package :~(~:*~A~)) first."
+                      (package-name package))))))))
+
+;;; Functions.
+
 ;; The layer that knows commands sets it.
 (defvar *function-meant* (constantly nil)
   "A function of a symbol that is the name of no function: it returns that of one which is called so
@@ -39,8 +64,54 @@ elsewhere, as at the prompt, or NIL.")
               (format nil "There is one in ~A: write ~(~:*~A:~A~), or type (in-package :ars-user) ~
                            first."
                       package ours))
-          (let ((like (nearest-name name (functions-like name (symbol-package name)))))
-            (and like (format nil "Did you mean ~(~A~)?" (unqualified-text like))))))))
+          (function-elsewhere-text name)))))
+
+(defun function-elsewhere-text (name)
+  "Return in a sentence which function, not ours, NAME may be a slip for, or NIL."
+  (or (elsewhere-text name #'fboundp)
+      (let ((like (nearest-name name (functions-like name (symbol-package name)))))
+        (and like (format nil "Did you mean ~(~A~)?" (unqualified-text like))))))
+
+;;; Variables.
+
+(defun variable-of-users-p (symbol)
+  "True if SYMBOL means something where a variable stands."
+  (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol))))
+
+(defun defined-slip-text (name)
+  "Return in a sentence what the definitions are that NAME, which has no value, stands for, or NIL."
+  (loop for registry in *registries*
+        for entry = (and (not (registry-fixed-p registry)) (lookup-entry name registry))
+        when (and entry (not (entry-variable entry)))
+          return (format nil "It is a ~A: '~(~A~)." (usual-name registry) (unqualified-text name))))
+
+(defun variable-slip-text (name)
+  "Return in a sentence what NAME, which has no value, may be a slip for, or NIL."
+  (when (and (symbolp name) (symbol-package name))
+    (let ((code (code-slip name)))
+      (or (and code (format nil "Did you mean ~A?" code))
+          (elsewhere-text name #'variable-of-users-p)
+          (defined-slip-text name)
+          (let ((like (variable-slip name)))
+            (and like (format nil "Did you mean ~A?" like)))))))
+
+;;; Syntax.
+
+(defvar *dispatch-remedies* '() "Lists (character remedy) for what may stand behind # elsewhere.")
+
+(defun note-dispatch-character (character remedy)
+  "Note that REMEDY, a sentence, says what to do to have CHARACTER read behind #."
+  (pushnew (list character remedy) *dispatch-remedies* :test #'equal))
+
+(defun syntax-slip-text (condition)
+  "Return in a sentence what to do to have read what CONDITION says cannot be read, or NIL."
+  (let ((character (and (typep condition 'simple-condition)
+                        (starts-with-subseq "no dispatch function"
+                                            (simple-condition-format-control condition))
+                        (first (simple-condition-format-arguments condition)))))
+    (and character (second (assoc character *dispatch-remedies* :test #'char-equal)))))
+
+;;; Types.
 
 (defun type-slip-text (datum type)
   "Return in a sentence how to have an object of TYPE, for somebody who gave DATUM; NIL if there is
@@ -54,6 +125,8 @@ no more to say."
   "Return what is to stand behind the report of CONDITION, an error of Lisp's own, or NIL."
   (typecase condition
     (undefined-function (function-slip-text (cell-error-name condition)))
+    (unbound-variable (variable-slip-text (cell-error-name condition)))
+    (reader-error (syntax-slip-text condition))
     (type-error (type-slip-text (type-error-datum condition)
                                 (type-error-expected-type condition)))))
 

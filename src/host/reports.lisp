@@ -18,5 +18,11 @@ NIL.")
 (defmethod print-object :after ((condition undefined-function) stream)
   (write-addition condition stream))
 
+(defmethod print-object :after ((condition unbound-variable) stream)
+  (write-addition condition stream))
+
+(defmethod print-object :after ((condition reader-error) stream)
+  (write-addition condition stream))
+
 (defmethod print-object :after ((condition type-error) stream)
   (write-addition condition stream))

@@ -14,5 +14,9 @@ mark, which some editors begin a file with, is as good as a space."
     (set-syntax-from-char (code-char #xFEFF) #\Space readtable)
     readtable))
 
+(dolist (character '(#\t #\f))
+  (note-dispatch-character character
+                           "Say (named-readtables:in-readtable :nisp) first: Nisp has #t and #f."))
+
 (addition (in-readtable :nisp))
 (ensure-nisp-readtable)

@@ -1,0 +1,45 @@
+;;;; beginners-hints.lisp -- what beginners meant by names, calls and files that mean nothing here.
+
+(in-package :ars-magna.tests)
+
+(in-suite beginners)
+
+;;; Names outside of their package, and syntax outside of its readtable.
+
+(defun hint-to (function)
+  "Return the text with which FUNCTION fails, as a debugger of Lisp's shows it."
+  (handler-case (progn (funcall function) "")
+    (error (condition) (princ-to-string condition))))
+
+(defun hint-to-variable (name)
+  "Return the text that a debugger shows for NAME, a symbol without a value."
+  (hint-to (lambda () (symbol-value name))))
+
+(defun stranger (name)
+  "Return the symbol called NAME of a package that uses nothing of this system."
+  (intern name (or (find-package :beginners-elsewhere)
+                   (make-package :beginners-elsewhere :use '()))))
+
+(test names.of-other-packages-are-hinted-at
+  (setf (symbol-value (intern "PARKED-CAR" :ars-user)) 1)
+  (setf (symbol-function (intern "PARK-CAR" :ars-user)) #'identity)
+  (dolist (name '("PARKED-CAR" "ROBOT-STOPPED*" "*PLAN-LIMIT*"))
+    (is-true (has-words-p (hint-to-variable (stranger name))
+                          "ARS-USER has it: say (in-package :ars-user) first.")
+             "~A" name))
+  (is-true (has-words-p (hint-to (lambda () (funcall (stranger "PARK-CAR"))))
+                        "ARS-USER has it: say (in-package :ars-user) first."))
+  (is-true (has-words-p (hint-to-variable (stranger "DOT")) "There is ars-worlds:dot."))
+  (is (not (search "ARS" (hint-to-variable (stranger "NOBODYS-NAME"))))))
+
+(test names.of-plans-without-a-quote-are-hinted-at
+  (is-true (has-words-p (hint-to-variable 'turn-once) "It is a plan: 'turn-once."))
+  (is-true (has-words-p (base::lisp-error-text (make-condition 'unbound-variable :name 'turn-once))
+                        "has no value. It is a plan: 'turn-once.")))
+
+(test syntax.of-nisp-is-hinted-at
+  (let ((*readtable* (copy-readtable nil)))
+    (dolist (text '("#f" "#T"))
+      (is-true (has-words-p (hint-to (lambda () (read-from-string text)))
+                            "(named-readtables:in-readtable :nisp)")))
+    (is (not (search "nisp" (hint-to (lambda () (read-from-string "#z"))))))))
