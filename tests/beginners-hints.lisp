@@ -43,3 +43,12 @@
       (is-true (has-words-p (hint-to (lambda () (read-from-string text)))
                             "(named-readtables:in-readtable :nisp)")))
     (is (not (search "nisp" (hint-to (lambda () (read-from-string "#z"))))))))
+
+;;; The prompt.
+
+(test prompt.says-what-is-lisp
+  (dolist (line '("robot-x porter" "set-value x 1" "def-interp-proc d () 1"))
+    (is-true (has-words-p (complaint line) "is Lisp, in parentheses: (") "~A" line))
+  (dolist (line '("begin-plan turn-once" "run-plan 'turn-once"))
+    (is-true (has-words-p (complaint line) "PLAN name argument..." "(run-plan 'name") "~A" line))
+  (is (not (search "is Lisp" (complaint "xyzzy 1")))))

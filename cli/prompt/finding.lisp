@@ -51,6 +51,8 @@
     (("RESET" "RESTART") "WORLD name starts a world anew, REWIND 10 goes 10 ticks back.")
     (("WAIT" "SLEEP" "TICK" "RUN-TICKS")
      "STEP 10 lets 10 ticks pass, PAUSE and RESUME stop and start time.")
+    (("RUN-PLAN" "BEGIN-PLAN")
+     "PLAN name argument... carries out a plan; in Lisp it is (run-plan 'name argument...).")
     (("HALT" "KILL" "ABORT") "STOP stops the robot, STOP-PLAN ends plans, PAUSE stops time.")
     (("LOAD" "SOURCE" "RUN")
      "(load \"FILE\") loads a Lisp file, PLAN name carries out a plan, WORLD name goes elsewhere.")
@@ -79,7 +81,8 @@
     (and place (plusp place) (line-advice (subseq name 0 place)))))
 
 (defun reject-unknown (name)
-  (let ((hint (or (hint-for name) (plan-advice name) (parameter-advice name) (call-advice name))))
+  (let ((hint (or (hint-for name) (plan-advice name) (parameter-advice name) (call-advice name)
+                  (lisp-advice name))))
     (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
                  name hint
                  (and (null hint)

@@ -20,6 +20,11 @@ such plan."
     (and line (format nil "~A is a command of this prompt, typed without parentheses: ~A."
                       (line-name line) (usage line)))))
 
+(defun lisp-advice (name)
+  "Return in a sentence how the function or macro of ours called NAME, a string, is typed; or NIL."
+  (and (ours-called name)
+       (format nil "~A is Lisp, in parentheses: (~(~:*~A~) ...)." name)))
+
 (defun shipped-advice (name)
   "Return in a sentence the function that the worlds have under NAME, a symbol's; NIL if none."
   (multiple-value-bind (symbol status) (find-symbol name :ars-worlds)

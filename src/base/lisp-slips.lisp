@@ -14,13 +14,13 @@
     (sort symbols #'string<)))
 
 (defun ours-called (name)
-  "Return the function of ours that is called like NAME, another symbol, and the name of the package
-that exports it; or NIL."
+  "Return the function of ours that is called like NAME, a string or another symbol, and the name of
+the package that exports it; or NIL."
   ;; A user's package may have nicknames of its own for others.
   (let ((*package* (find-package "KEYWORD")))
     (dolist (package '("ARS" "NISP"))
       (multiple-value-bind (symbol status)
-          (and (find-package package) (find-symbol (symbol-name name) package))
+          (and (find-package package) (find-symbol (string name) package))
         (when (and (eq :external status) (fboundp symbol)) (return (values symbol package)))))))
 
 ;;; Names in other packages.

@@ -101,7 +101,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*heir*
            #:*debugger-refused-p*)
   ;; lisp-errors
-  (:export #:note-error-code #:note-dispatch-character #:variable-slip #:*function-meant*)
+  (:export #:note-error-code #:note-dispatch-character #:variable-slip #:*function-meant*
+           #:ours-called)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
            #:report-anyhow
