@@ -176,3 +176,20 @@ name, in Nisp's syntax and with a decimal fraction."
                                              (format nil "replay \"~A\"" file))))
                "~A" name)
         (when (probe-file (base:native-path file)) (delete-file (base:native-path file)))))))
+
+(test files.of-other-kinds-say-what-reads-them
+  (let ((journal (format nil "~A~%(ars-magna-journal 2 (robots))~%" run::+journal-title+)))
+    (is-true (has-words-p (complaint-of-loading journal) "it is a journal; (replay FILE)"))
+    (uiop:with-temporary-file (:pathname path :stream out :type "ars")
+      (write-string journal out)
+      :close-stream
+      (dolist (function (list #'cli::load-lisp
+                              (lambda (path)
+                                (cli::run-arguments (list (uiop:native-namestring path))))))
+        (is-true (has-words-p (said-by (lambda () (funcall function path)))
+                              "it is a journal; (replay FILE)"))))))
+
+(test files.that-are-scripts-of-lines-say-so
+  (dolist (said (list (complaint-of-loading (format nil "; mine~%turn 1~%go 3~%"))
+                      (trouble-in-file (format nil "(values 1)~%turn 1~%go 3~%"))))
+    (is-true (has-words-p said "TURN is a command of the prompt" "a script of lines: ars-magna "))))

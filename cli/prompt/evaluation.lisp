@@ -126,6 +126,7 @@ what Lisp says of a full stack, of which users are told."
            (setf (values form position text) (read-form session text position))
            (check-line-in-parentheses form)
            (check-typed-call form)
+           (check-typed-load form)
            (call-checking-parameters (lambda () (evaluate session form)))))
 
 (defun evaluate-text (session text)

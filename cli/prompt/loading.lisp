@@ -39,5 +39,6 @@
                              (multiple-value-bind (form end)
                                  (read-from-string text t nil :start position)
                                (setf start end)
+                               (check-form-of-file form path)
                                (call-as-from-file (lambda () (eval-quietly form)) path)))
                            file text position))))

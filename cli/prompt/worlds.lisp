@@ -26,7 +26,8 @@ of FLOAT-FORMAT."
 
 (defun load-lisp (path)
   "Load the Lisp file at PATH as users write it: in ARS-USER and Nisp's syntax, unless
-it says otherwise."
+it says otherwise. Signals BAD-LINE if it is something else."
+  (check-lisp-file path)
   (call-with-syntax 'single-float
                     (lambda () (call-quietly (lambda () (load-forms path))))))
 

@@ -160,6 +160,8 @@ value."
 
 (defun run-script-with (script arguments)
   "Run SCRIPT with the options in ARGUMENTS. Return the status to exit with."
+  (let ((text (and (script-path script) (foreign-text (script-path script)))))
+    (when text (reject-usage "~A" text)))
   (run-options (list* (list :script script) (parse-options arguments))))
 
 (defun usage-wanted-p (arguments)

@@ -1,0 +1,43 @@
+;;;; foreign-files.lisp -- files given as Lisp, or as scripts, that are something else.
+
+(in-package :ars-magna.cli)
+
+(defun foreign-text (path)
+  "Return in a sentence what is in the file PATH, and what reads it, if that is neither Lisp nor
+lines; or NIL."
+  (let ((advice (file-advice path :lisp)))
+    (and advice (format nil "~A: ~A." (native-name path) advice))))
+
+(defun script-text (path)
+  "Return in a sentence how the file PATH, which looks like a script of lines, is run."
+  (format nil "It looks like a script of lines: ars-magna ~A." (native-name path)))
+
+(defun check-lisp-file (path)
+  "Signal BAD-LINE if the file PATH, which is to be loaded, is of a kind of its own."
+  (let ((text (foreign-text path)))
+    (when text (reject-line "~A" text))))
+
+(defun line-name-p (form)
+  "True if FORM, from a file, is the name of a line command, and means nothing to Lisp."
+  (and (symbolp form)
+       (not (boundp form))
+       (line-called (symbol-name form))
+       t))
+
+(defun check-form-of-file (form path)
+  "Signal BAD-LINE if FORM, from the file PATH, which is being loaded, is the beginning of a line."
+  (when (line-name-p form)
+    (reject-line "~A is a command of the prompt. ~A" form (script-text path))))
+
+(defun first-form-of (path)
+  "Return the first form in the file PATH; NIL if there is none that can be read."
+  (ignore-errors (let ((text (file-text path)))
+                   (values (read-from-string text t nil :start (form-start text 0))))))
+
+(defun check-typed-load (form)
+  "Signal BAD-LINE if FORM, as typed, loads a file that cannot be Lisp."
+  (when (typep form '(cons (eql load) (cons string)))
+    (let ((path (existing-file (second form))))
+      (when path
+        (check-lisp-file path)
+        (check-form-of-file (first-form-of path) path)))))
