@@ -52,3 +52,14 @@
   (dolist (line '("begin-plan turn-once" "run-plan 'turn-once"))
     (is-true (has-words-p (complaint line) "PLAN name argument..." "(run-plan 'name") "~A" line))
   (is (not (search "is Lisp" (complaint "xyzzy 1")))))
+
+;;; Plans.
+
+(test run-plan.says-how-a-form-becomes-a-plan
+  (flet ((told (plan) `(run:with-simulation (rover) (driver:run-plan ',plan))))
+    (dolist (plan '((rpl:seq (driver:rpl-robot-turn 1)) (driver:rpl-robot-turn 1)))
+      (is-true (complains-p (told plan)
+                            (format nil "(run-plan (interp-lambda () (~(~A~) " (first plan)))))
+    (is-true (complains-p (told '((driver:rpl-robot-turn 1) (rpl:wait-time 1)))
+                          "(run-plan (interp-lambda () (rpl-robot-turn 1) (wait-time 1)))"))
+    (is-true (complains-p (told '(take-two 1 2)) "(run-plan 'take-two 1 2)"))))

@@ -70,14 +70,22 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
              (and (same-name-p name (procedure-name procedure)) (defined-p procedure)))
            (registered-procedures) :from-end t))
 
-;; Users give a call, a function, or the name of a function for that of a plan.
+;; Users give a call, a form of plans, a function, or the name of a function for that of a plan.
+(defun list-remedy (list)
+  "Return in a sentence what to do instead of giving LIST for a plan."
+  (let ((name (first list)))
+    (if (and (symbolp name)
+             (or (live-namesake name) (not (fboundp name))))
+        (format nil "Give the name, and then its arguments: (run-plan '~A~{ ~S~})."
+                name (abridged (rest list)))
+        (format nil "A form is no plan; make one of it: (run-plan (interp-lambda () ~{~A~^ ~}))."
+                (mapcar #'unqualified-text (if (consp name) list (list list)))))))
+
 (defun plan-remedy (name)
   "Return in sentences what to do instead of giving NAME, which is no plan's, for a plan; or NIL."
   (flet ((say (control &rest arguments)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
-    (cond ((typep name '(cons symbol list))
-           (say "Give the name, and then its arguments: (run-plan '~A~{ ~S~})."
-                (first name) (abridged (rest name))))
+    (cond ((and (consp name) (proper-list-p name)) (let ((*print-case* :downcase) (*print-pretty* nil)) (list-remedy name)))
           ((functionp name)
            (let ((plan (find name (registered-procedures) :key #'procedure-stub)))
              (say "~:[A function is no plan; DEF-INTERP-PROC defines one~;Give the plan's name ~
