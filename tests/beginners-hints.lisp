@@ -63,3 +63,17 @@
     (is-true (complains-p (told '((driver:rpl-robot-turn 1) (rpl:wait-time 1)))
                           "(run-plan (interp-lambda () (rpl-robot-turn 1) (wait-time 1)))"))
     (is-true (complains-p (told '(take-two 1 2)) "(run-plan 'take-two 1 2)"))))
+
+;;; Runs.
+
+(test simulator.says-that-it-takes-one-robot
+  (is-true (complains-p '(run:simulator '(rover buddy))
+                        "Give one robot, as 'rover: all robots of its map are in its world"))
+  (flet ((told (form) (warning-about `(lambda () ,form))))
+    (is-true (has-words-p (told '(run:simulator 'rover 'buddy)) "simulator takes one robot"))
+    (is (string= "" (told '(run:simulator 'rover :rate :free))))))
+
+(test run-experiment.names-the-nearest-keyword
+  (is-true (complains-p '(experiment:run-experiment 'none :trails 4)
+                        "There is no keyword of run-experiment called trails"
+                        "Did you mean trials?")))

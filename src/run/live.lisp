@@ -161,12 +161,20 @@ is there who can let it go on; else queue a warning, once in a run."
         (reject-use "Map ~(~A~) has no robot. Define one: (defrobot NAME (~:*~(~A~) (X Y) ANGLE))."
                     (map-name map)))))
 
+(defun reject-robots (designators)
+  "Signal UNKNOWN-NAME: a list of DESIGNATORS is to be run."
+  (error 'unknown-name
+         :kind "robot or map" :name designators
+         :remedy (format nil "Give one robot~@[, as '~(~A~)~]: all robots of its map are in its world."
+                         (and (symbolp (first designators)) (first designators)))))
+
 (defun robot-to-start (designator)
   "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of either.
 One whose map or definition has been replaced means the robot that is called so now."
   (let ((robot (cond ((map-p designator) (first-robot-in designator))
                      ((find-robot designator nil))
                      ((find-map designator nil) (first-robot-in (find-map designator)))
+                     ((consp designator) (reject-robots designator))
                      (t (reject-name "robot or map" designator
                                      (append (mapcar #'blueprint-name (all-blueprints))
                                              (mapcar #'map-name (all-maps))))))))
@@ -332,6 +340,13 @@ MISUSE if the robot no longer fits into its map. See reading 238."
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
     (publish-variables (robot-simulation robot))
     robot))
+
+;; Lisp itself says no more of that than that the number of keyword arguments is odd.
+(define-compiler-macro simulator (&whole form &rest arguments)
+  (when (and arguments (evenp (length arguments)) (not (keywordp (second arguments))))
+    (doubt-definition "simulator takes one robot, and then keywords: all robots of its map are in ~
+                       its world."))
+  form)
 
 (addition stop-simulator)
 (defun stop-simulator (&optional (simulation (current-simulation)))

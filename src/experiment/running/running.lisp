@@ -152,8 +152,9 @@ code."
     (call-with-directory (lambda () (call-plainly #'run)) directory)))
 
 (addition run-experiment)
-(defun run-experiment (name &key trials (workers (processors)) directory until shard
-                              (time-limit nil time-limit-p) (stream *standard-output*))
+(define-with-keywords run-experiment (name &key trials (workers (processors)) directory until shard
+                                           (time-limit nil time-limit-p)
+                                           (stream *standard-output*))
   "Run the experiment NAME: TRIALS trials of each condition, or as many as it says, by WORKERS
 threads. Return the results; see PRINT-RESULTS, SAVE-RESULT-PICTURES and COMPARE-CONDITIONS.
 
