@@ -77,3 +77,19 @@
   (is-true (complains-p '(experiment:run-experiment 'none :trails 4)
                         "There is no keyword of run-experiment called trails"
                         "Did you mean trials?")))
+
+(world:defmap quay (9 9))
+(robot:defrobot crane (quay (3 3) 0) :cameras ((1 5)))
+(robot:defrobot barrow (quay (6 6) 0) :hands (10))
+
+(test commands.for-parts-outside-of-the-run-say-how-to-have-those-inside
+  (flet ((told (name function reader &rest index)
+           (let ((resource (apply reader (robot:find-robot name) index)))
+             (error-output (run:with-simulation ((crane barrow))
+                             (funcall function resource)
+                             (run:run-ticks 1))))))
+    (is-true (has-words-p (told 'crane (lambda (camera) (command:camera-turn camera 1))
+                                #'robot:robot-camera 0)
+                          "camera is of the crane outside" "Inside write (robot-camera crane 0)"))
+    (is-true (has-words-p (told 'barrow (lambda (robot) (command:robot-turn robot 1)) #'identity)
+                          "robot is of the barrow outside" "Inside write barrow"))))

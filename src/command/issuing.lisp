@@ -182,32 +182,52 @@ begin, or to go on."
          (not (live-p timeline))
          (not (timeline-passing-p timeline)))))
 
-(defun way-to-run (robot)
-  "Return in a sentence how ROBOT, which is in no run, gets into one."
-  (let ((map (world-map (robot-world robot))))
+(defun form-of-resource (resource)
+  "Return in words the form that returns RESOURCE, a robot or part, in a run of its robot."
+  (let ((name (robot-name (resource-robot resource))))
+    (typecase resource
+      ((or camera hand storage-bin)
+       (format nil "~((robot-~A ~A ~D)~)" (type-of resource) name (part-index resource)))
+      (part (format nil "~((robot-part ~A '~A ~D)~)" name (type-of resource)
+                    (part-index resource)))
+      (t (format nil "~(~A~)" name)))))
+
+(defun resource-here-text (resource)
+  "Return in sentences what to write instead of RESOURCE, if its robot is in our run too; or NIL."
+  (let ((name (robot-name (resource-robot resource))))
+    (when (find name (world-robots *world*) :key #'robot-name)
+      (format nil "This ~(~A is of the ~A~) outside of this WITH-SIMULATION, which has a ~(~A~) of ~
+                   its own. Inside write ~A."
+              (type-of resource) name name (form-of-resource resource)))))
+
+(defun way-to-run (resource)
+  "Return in a sentence how the robot of RESOURCE, which is in no run, gets into one."
+  (let* ((robot (resource-robot resource))
+         (map (world-map (robot-world robot))))
     (if (and *world*
              (not (eq *world* (robot-world robot)))
              (eq map (world-map *world*)))
-        (format nil "A robot is in the run of WITH-SIMULATION if it is named there, as ~(~A~) is ~
-                     in (with-simulation ((ROBOT ~:*~(~A~))) ...)."
-                (robot-name robot))
+        (or (resource-here-text resource)
+            (format nil "A robot is in the run of WITH-SIMULATION if it is named there, as ~(~A~) ~
+                         is in (with-simulation ((ROBOT ~:*~(~A~))) ...)."
+                    (robot-name robot)))
         (format nil "(simulator '~(~A~)) begins one, and does then what was asked before."
                 (robot-name robot)))))
 
 (defvar *ticks-follow-p* nil
   "True where whoever gives commands lets ticks pass for them, or says that none do.")
 
-(defun tell-if-kept (command robot)
-  "Say once for ROBOT that COMMAND is kept for a later run, if so, and once for each WITH-SIMULATION
-in another thread that has bound the name of ROBOT; but not of what a plan asks for, as running a
-plan lets ticks pass."
+(defun tell-if-kept (command resource robot)
+  "Say once for ROBOT, that of RESOURCE, that COMMAND is kept for a later run, if so, and once for
+each WITH-SIMULATION in another thread that has bound the name of ROBOT; but not of what a plan asks
+for, as running a plan lets ticks pass."
   (when (and (between-runs-p (robot-world robot))
              (not (asker-forked-p *asker*))
              (not *ticks-follow-p*))
     (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
       (warn-once (list :kept (robot-name robot) number) (robot-world robot)
                  (format nil "~(~A~) is kept for a later run, as none of ~A is under way. ~A"
-                         (command-name command) robot (or elsewhere (way-to-run robot)))))))
+                         (command-name command) robot (or elsewhere (way-to-run resource)))))))
 
 ;;; Issuing.
 
@@ -239,5 +259,5 @@ takes another number of arguments."
     (note-bindings command world)
     (doubt-owners command robot arguments)
     (doubt-continuation command world continuation)
-    (tell-if-kept command robot)
+    (tell-if-kept command resource robot)
     (values)))
