@@ -486,7 +486,7 @@
                  (:file "experiment-compare-versions") (:file "rates") (:file "troubles") (:file "unseen")
                  (:file "beginners") (:file "beginners-more") (:file "beginners-slips")
                  (:file "beginners-words") (:file "beginners-ends")
-                 (:file "beginners-unheard") (:file "beginners-hints")
+                 (:file "beginners-unheard") (:file "beginners-hints") (:file "beginners-vain")
                  (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t

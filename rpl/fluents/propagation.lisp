@@ -164,6 +164,15 @@ says what has happened."
     (reject-use "A function lifted over fluents set ~A. Networks only compute: set it in a plan."
                 fluent)))
 
+;; A fluent is allowed as the value of another.
+(defun check-no-circle (operator fluent value)
+  "Signal WRONG-ARGUMENT if VALUE, which OPERATOR is to give FLUENT, is a network of it."
+  (when (and (derived-p value) (depends-p value (here fluent)))
+    (reject-argument operator 'value value
+                     (format nil "a value, not a network of ~A itself. In the network write ~
+                                  (fluent-value ...) around that fluent, for its value now"
+                             (fluent-text fluent)))))
+
 ;;; A change that concerns another runner than the one at work is posted to that runner, or made at
 ;;; once while no thread has it.
 
@@ -204,9 +213,10 @@ function, and the fluent and value that it is called with; or NIL.")
 (defun set-value (fluent value)
   "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
 is in, hear of it if that changed something (EQL) and the outcome is true. FLUENT must not be a
-network. From outside of plans, in any thread, it is heard as soon as the plans at work have come to
-a pause (manual D.2)."
+network, nor VALUE one of FLUENT. From outside of plans, in any thread, it is heard as soon as the
+plans at work have come to a pause (manual D.2)."
   (check-settable 'set-value fluent)
+  (check-no-circle 'set-value fluent value)
   (note-outside #'set-value fluent value)
   (let* ((fluent (here fluent)) (home (elsewhere fluent)))
     (if home
@@ -255,6 +265,7 @@ a pause (manual D.2)."
 for a network that is true at that instant, will wake. Return VALUE. From outside of plans, in any
 thread, it is heard as soon as the plans at work have come to a pause (manual C)."
   (check-settable 'pulse fluent)
+  (check-no-circle 'pulse fluent value)
   (note-outside #'pulse fluent value)
   (let* ((fluent (here fluent)) (home (elsewhere fluent)))
     (if home
