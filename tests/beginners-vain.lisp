@@ -23,3 +23,47 @@
 (defun driver-failure (form)
   "Return the text of the failure of a plan that does FORM."
   (princ-to-string (rpl:run-plan-alone (rpl:make-plan form))))
+
+;;; Policies.
+
+(defun warnings-of-policy (policy &rest body)
+  (warnings-of-procedure 'robot `(block nil (rpl:with-policy ,policy ,@body))))
+
+(test policies.that-test-once-and-fail-are-warned-of
+  (flet ((told (policy) (warnings-of-policy policy '(rpl:wait-time 3))))
+    (is-true (has-words-p (told '(when driver:robot-movement-error* (print 1)
+                                   (rpl:fail :class :hit)))
+                          "waits for nothing" "wait-until" "robot-movement-error*) (print 1)"))
+    (dolist (policy '((if robot (rpl:fail) nil)
+                      (unless robot (rpl:fail))
+                      (cond ((null robot) (rpl:fail)) (t (rpl:fail :class :hit)))))
+      (is-true (has-words-p (told policy) "waits for nothing" "(whenever test form...)")))
+    (dolist (policy '((if robot (rpl:fail) (rpl:seq (rpl:wait-for robot) (rpl:fail)))
+                      (cond (robot (rpl:fail)) (t (turn-once)))
+                      (when robot (a-plan-defined-later) (rpl:fail))))
+      (is (not (search "waits for nothing" (told policy)))))))
+
+(test policies.that-only-wait-are-warned-of
+  (flet ((told (policy) (warnings-of-policy policy '(rpl:wait-time 3))))
+    (dolist (policy '((rpl:wait-for driver:robot-stopped*) (rpl:wait-until (< robot 3))))
+      (is-true (has-words-p (told policy) "does nothing when its wait is over" "seq (")))
+    (dolist (policy '((rpl:wait-time 9)
+                      (rpl:seq (rpl:wait-for driver:robot-stopped*) (rpl:fail))
+                      (rpl:wait-until (rpl:seq (rpl:wait-time 1) (turn-once)))))
+      (is (string= "" (told policy))))))
+
+(test policies.in-the-place-of-the-body-are-warned-of
+  (let ((watch '(rpl:whenever driver:robot-movement-error* (rpl:fail :class :hit)))
+        (react '(rpl:whenever driver:robot-movement-error* (print 1)))
+        (leave '(rpl:whenever driver:robot-movement-error* (return 1)))
+        (steps '(rpl:seq (driver:rpl-robot-turn 1) (rpl:wait-for driver:robot-stopped*))))
+    (loop for (policy . body) in `((,steps ,watch) ((turn-once) ,watch) (,steps ,react))
+          do (is-true (has-words-p (warnings-of-policy policy (first body))
+                                   "never ends" "The policy comes first"
+                                   "(with-policy (whenever ...) form...)")))
+    (loop for (policy . body) in `((,watch ,steps) (,watch ,react) (,steps ,leave)
+                                   ((turn-once) ,react)
+                                   (,steps (print 1) ,watch)
+                                   ((rpl:seq (rpl:wait-for robot) (rpl:fail)) ,react)
+                                   ((rpl:seq (rpl:wait-for robot) (return)) ,react))
+          do (is (not (search "comes first" (apply #'warnings-of-policy policy body)))))))

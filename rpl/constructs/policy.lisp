@@ -5,19 +5,61 @@
 ;;; The policy is part 0 and starts first, one level above the rest: whenever it is ready, the body
 ;;; gives way to it before its next step.
 
-(defun bare-test-p (policy)
-  "True if POLICY, plan text, is (when test (fail ...)), which tests once."
-  (and (typep policy '(cons symbol (cons t (cons (cons (member fail)) null))))
-       (member (first policy) '(if when) :test #'same-name-p)))
+(defun fail-p (form)
+  (operator-in-p form '("FAIL")))
+
+(defun tests-once-p (policy scope)
+  "True if POLICY, plan text, is a test, after which it fails, or does nothing that could wait."
+  (and (consp policy)
+       (operator-in-p policy '("IF" "WHEN" "UNLESS" "COND"))
+       (find-call #'fail-p (list policy))
+       (not (suspends-p (subst-if nil #'fail-p policy) scope))))
+
+(defun awaiting-text (policy)
+  "Return what watches for the test of POLICY, which tests it once, if there is a single one."
+  (and (operator-in-p policy '("IF" "WHEN"))
+       (or (operator-in-p policy '("WHEN")) (null (cdddr policy)))
+       `(seq (wait-until ,(second policy)) ,@(cddr policy))))
+
+(defun only-waits-p (policy scope)
+  "True if POLICY, plan text, is a wait after which it does nothing."
+  (and (consp policy)
+       (operator-in-p policy '("WAIT-FOR" "WAIT-UNTIL"))
+       (not (suspends-p (second policy) scope))))
 
 (defun doubt-policy (policy form scope)
-  "Warn if POLICY, of FORM in SCOPE, waits for nothing, and so has ended before anything happens."
-  (when (or (bare-test-p policy) (not (suspends-p policy scope)))
-    (doubt-own-form form "the policy ~S waits for nothing: it is done once, before the rest, and ~
-                          then has ended. ~:[Write (whenever test form...), or (seq (wait-for ~
-                          fluent) form...)~;Write ~:*~S~]."
-                    policy (and (bare-test-p policy)
-                                `(seq (wait-until ,(second policy)) ,@(cddr policy))))))
+  "Warn if POLICY, of FORM in SCOPE, has ended before anything happens, or does nothing then."
+  (let ((once-p (tests-once-p policy scope)))
+    (cond ((or once-p (not (suspends-p policy scope)))
+           (doubt-own-form form "the policy ~S waits for nothing: it is done once, before the rest, ~
+                                 and then has ended. ~:[Write (whenever test form...), or (seq ~
+                                 (wait-for fluent) form...)~;Write ~:*~S~]."
+                           policy (and once-p (awaiting-text policy))))
+          ((only-waits-p policy scope)
+           (doubt-own-form form "the policy ~S does nothing when its wait is over, and then has ~
+                                 ended. Write what is to be done then: (seq ~:*~S form...), or ~
+                                 (whenever fluent form...) for each time."
+                           policy)))))
+
+(defun watches-text-p (policy)
+  "True if POLICY, plan text, reacts to something, fails or leaves."
+  (find-call (lambda (form)
+               (or (fail-p form)
+                   (operator-in-p form '("WHENEVER" "AT-LOCATION" "LOOP"))
+                   (may-return-p form)))
+             (list policy)))
+
+(defun doubt-order (policy body form)
+  "Warn if POLICY and BODY, of FORM, were most likely written in the wrong order: BODY is a WHENEVER
+that never ends, and POLICY a list of steps, or the WHENEVER fails, as policies do."
+  (when (and (endless-whenever-p (first body))
+             (null (rest body))
+             (not (watches-text-p policy))
+             (or (operator-in-p policy '("SEQ" "PROGN"))
+                 (find-call #'fail-p (first body))))
+    (doubt-own-form form "the body ~S never ends, and ~S is done beside it, once. The policy comes ~
+                          first: (with-policy (whenever ...) form...)."
+                    (first body) policy)))
 
 (define-construct with-policy (policy &body body)
   "Run BODY in a plan under POLICY, a form that runs beside it, starts before it and takes
@@ -25,6 +67,7 @@ precedence over it. The end of BODY ends POLICY; if one of them fails, all fails
 value, one as of every task (manual D.4; reading 186)."
   (:manual)
   (:parts (policy node (progn (doubt-policy policy form scope)
+                             (doubt-order policy body form)
                              (plan-code policy (single-scope scope))))
           (body node (body-code body (single-scope scope))))
   (:steps

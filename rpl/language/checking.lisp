@@ -265,14 +265,16 @@ not in what is called later."
                              (eq :external (nth-value 1 (find-symbol (string operator)
                                                                      home)))))))))))
 
+(defun endless-whenever-p (form)
+  "True if FORM is a WHENEVER that only a failure or what is around it can end."
+  (and (consp form)
+       (operator-in-p form '("WHENEVER"))
+       (null (find-call #'may-return-p (rest form)))))
+
 (defun check-after-whenever (forms)
   "Warn if one of FORMS, which are done one after the other, is a WHENEVER that never ends, and not
 the last."
-  (let ((form (find-if (lambda (form)
-                         (and (consp form)
-                              (operator-in-p form '("WHENEVER"))
-                              (null (find-call #'may-return-p (rest form)))))
-                       (butlast forms))))
+  (let ((form (find-if #'endless-whenever-p (butlast forms))))
     (when (and form *definition*)
       (call-at-place form
                      (lambda ()

@@ -9,11 +9,12 @@ DEFINE-CONSTRUCT adds to it.")
                 #:matchvar-p #:matchvar-name)
   ;; source
   (:export #:author #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
-           #:misplaced-suspension #:note-own-text #:note-expansion #:form-as-written)
+           #:misplaced-suspension #:operator-in-p #:note-own-text #:note-expansion #:form-as-written)
   ;; names, items
   (:export #:check-variables #:plain-parameters #:item-list)
   ;; checking
-  (:export #:warn-of-call #:doubt-own-form #:*advice-on-call*)
+  (:export #:warn-of-call #:doubt-own-form #:*advice-on-call* #:find-call #:may-return-p
+           #:endless-whenever-p)
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope
            #:scope-environment #:scope-variables)
