@@ -67,3 +67,27 @@
                                    ((rpl:seq (rpl:wait-for robot) (rpl:fail)) ,react)
                                    ((rpl:seq (rpl:wait-for robot) (return)) ,react))
           do (is (not (search "comes first" (apply #'warnings-of-policy policy body)))))))
+
+;;; Handlers of what is no failure.
+
+(test handlers.of-codes-of-commands-are-warned-of
+  (flet ((told (clauses &rest body)
+           (warnings-of-procedure 'robot `(rpl:handle-failure ,clauses ,@body))))
+    (let ((go '(driver:rpl-robot-go-forward 9)) (wait '(rpl:wait-for driver:robot-stopped*))
+          (blocked '((:robot-blocked () (return 1)))))
+      (is-true (has-words-p (told blocked go wait)
+                            "rpl-robot-go-forward does not fail with class :robot-blocked"
+                            "(if (fluent-value robot-movement-error*) ...)" "(fail :class "))
+      (is-true (has-words-p (told '(((or :lost :grasp-lost) () (return 1)))
+                                  '(driver:rpl-hand-track 0) wait '(when robot (rpl:fail :lost)))
+                            "(fluent-value (vref hand-error* hand))"))
+      (dolist (body `((,go ,wait (rpl:fail :class :robot-blocked))
+                      (,go ,wait (rpl:fail (rpl:fluent-value driver:robot-movement-error*)))
+                      (,go ,wait (turn-once))
+                      (,go ,wait (a-plan-defined-later))
+                      (,go ,wait (mapc (lambda (each) (rpl:fail each)) robot))
+                      (,go ,wait (if robot (rpl:fail :robot-blocked)))
+                      ((driver:rpl-robot-turn 1) ,wait)
+                      (,wait)))
+        (is (not (search "does not fail" (apply #'told blocked body))) "~S" body))
+      (is (string= "" (told '((t () (return 1))) go wait))))))

@@ -42,6 +42,36 @@
                            (abridged (first clause)))))
   (check-variables (second clause) (scope-environment scope) clause))
 
+;;; Commands do not fail: a fluent tells how they ended.
+
+(defparameter *constructs-without-failures*
+  '("SEQ" "PAR" "PURSUE" "N-TIMES" "WAIT-FOR" "WAIT-TIME" "WAIT-UNTIL" "SET-VALUE" "PULSE"
+    "FLUENT-VALUE" "VREF" "WHENEVER" "WITH-POLICY" "WITH-VALVE")
+  "Operators that fail with the code of no command unless what is in them does.")
+
+(defun may-fail-so-p (form code)
+  "True if FORM, in a plan's text, may fail with class CODE: it is no command and no construct or
+function that is known not to."
+  (let ((operator (first form)))
+    (cond ((fail-p form) (let ((class (if (eq :class (second form)) (third form) (second form))))
+                           (or (not (keywordp class)) (eq class code))))
+          ((operator-in-p form '("FUNCALL" "APPLY" "FUNCTION" "LAMBDA" "EVAL")) t)
+          ((consp operator) nil)
+          (t (not (or (operator-in-p form *constructs-without-failures*)
+                      (plan-function-p operator)
+                      (eq (find-package "COMMON-LISP") (symbol-package operator))))))))
+
+(defun doubt-code (code body form)
+  "Warn if CODE, a class that FORM handles in BODY, is how a command in BODY may end, as nothing in
+that fails so."
+  (let* ((command (find-call (lambda (form) (teller-of-code (first form) code)) body))
+         (fluent (and command (teller-of-code (first command) code))))
+    (when (and command (not (find-call (lambda (form) (may-fail-so-p form code)) body)))
+      (doubt-own-form form "~(~A~) does not fail with class ~S when it ends so; ~(~A~) has that ~
+                            value then. After the wait write (if (fluent-value ~(~A~)) ...), or ~
+                            (fail :class (fluent-value ~(~A~))) in that."
+                      (first command) code fluent fluent fluent))))
+
 (define-construct with-failure-handling (clauses &body body)
   "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
 whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
@@ -55,7 +85,9 @@ at the handler's end the failure goes on. Return all values of BODY."
    (progn
      (unless (proper-list-p clauses)
        (reject-clause (author) form "a list of clauses such as (type (variable) form...)"))
-     (dolist (clause clauses) (check-clause clause form scope))
+     (dolist (clause clauses)
+       (check-clause clause form scope)
+       (dolist (code (ensure-list (first clause))) (doubt-code code body form)))
      (block-code nil form scope
                  (lambda (scope)
                    (with-gensyms (start)

@@ -5,9 +5,6 @@
 ;;; The policy is part 0 and starts first, one level above the rest: whenever it is ready, the body
 ;;; gives way to it before its next step.
 
-(defun fail-p (form)
-  (operator-in-p form '("FAIL")))
-
 (defun tests-once-p (policy scope)
   "True if POLICY, plan text, is a test, after which it fails, or does nothing that could wait."
   (and (consp policy)

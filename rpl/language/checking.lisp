@@ -207,9 +207,12 @@ not in what is called later."
                         ((not (member (first form) '(quote function lambda)))
                          (find-call test form))))))
 
+(defun fail-p (form)
+  (operator-in-p form '("FAIL")))
+
 (defun vain-handler-p (form)
   "True if FORM is a handler of errors around a FAIL."
-  (find-call (lambda (form) (operator-in-p form '("FAIL"))) (forms-with-errors-handled form)))
+  (find-call #'fail-p (forms-with-errors-handled form)))
 
 (defun check-handlers (form)
   "Warn of the first handler of errors in FORM, of a plan's text, around a FAIL."

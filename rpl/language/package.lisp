@@ -13,7 +13,8 @@ DEFINE-CONSTRUCT adds to it.")
   ;; names, items
   (:export #:check-variables #:plain-parameters #:item-list)
   ;; checking
-  (:export #:warn-of-call #:doubt-own-form #:*advice-on-call* #:find-call #:may-return-p
+  (:export #:warn-of-call #:doubt-own-form #:*advice-on-call* #:find-call #:fail-p
+           #:may-return-p
            #:endless-whenever-p)
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope

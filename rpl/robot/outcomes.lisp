@@ -104,10 +104,10 @@ and PARAMETERS, lists (variable type text)."
                  ((:set :error :pulse) (list (second clause)))
                  (:when (clause-fluents (cddr clause))))))
 
-(defun wait-form (clauses part)
-  "Return the form of the fluent for which plans wait that want to hear of the end of a command on
-PART, the name of its argument, if CLAUSES say what comes of it; or NIL."
-  (let ((fluent (second (assoc :pulse clauses))))
+(defun fluent-form (kind clauses part)
+  "Return the form of the fluent that CLAUSES, of a command on PART, the name of its argument, say
+in a clause of KIND (:pulse, which tells of its end, or :error) is the first to be set; or NIL."
+  (let ((fluent (second (assoc kind clauses))))
     (cond ((null fluent) nil)
           ((second (assoc fluent *fluent-variables*)) `(vref ,fluent ,part))
           (t fluent))))
@@ -125,7 +125,10 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
              for parameters = (parameters-in-plan resource specifications)
              collect `(public ,name)
              collect `(note-twin ',command-name '(,name ,@parameters)
-                                 ',(wait-form clauses (first parameters)))
+                                 ',(fluent-form :pulse clauses (first parameters))
+                                 ',(fluent-form :error clauses (first parameters))
+                                 (mapcar #'error-code-keyword
+                                         (command-errors (find-command ',command-name))))
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
                                       fluents. (Manual C.)"

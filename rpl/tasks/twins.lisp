@@ -2,12 +2,23 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(defun note-twin (name call wait)
+(defun note-twin (name call wait &optional fluent codes)
   "Note that plans write CALL, with the names of its arguments, of which the first is a part if
 there are several of them, instead of a call of NAME; and that (wait-for WAIT) then waits for the
-end, unless WAIT is NIL."
+end, unless WAIT is NIL. FLUENT, a form, or NIL, then has one of CODES if something went wrong."
   (setf (get name 'twin) (list call wait)
-        (get (first call) 'end) (list (second call) wait)))
+        (get (first call) 'end) (list (second call) wait)
+        (get (first call) 'codes) (list fluent codes)))
+
+(defun plan-function-p (name)
+  "True if NAME is a plan's function for a command."
+  (and (symbolp name) (get name 'end) t))
+
+(defun teller-of-code (name code)
+  "Return the form of the fluent that has CODE if what NAME, a plan's function, has begun ends so;
+NIL if it never does."
+  (destructuring-bind (&optional fluent codes) (and (symbolp name) (get name 'codes))
+    (and (symbolp code) (member code codes :test #'same-name-p) fluent)))
 
 (defun has-twin-p (name)
   "True if plans call another function instead of the one called NAME."
