@@ -91,3 +91,34 @@
                       (,wait)))
         (is (not (search "does not fail" (apply #'told blocked body))) "~S" body))
       (is (string= "" (told '((t () (return 1))) go wait))))))
+
+;;; Commands that are cut off.
+
+(test plans.that-wait-for-a-tick-between-commands-are-told-so-once
+  (flet ((told (plan) (rover-writes () (driver:run-plan plan) (driver:run-plan plan))))
+    (let ((text (told (plan-of (driver:rpl-robot-turn 1)
+                               (rpl:wait-time 1)
+                               (driver:rpl-robot-go-forward 1)
+                               (rpl:wait-for driver:robot-stopped*)))))
+      (is (= 1 (length (lines-of text))) "~A" text)
+      (is-true (has-words-p text "rpl-robot-turn of the plan" "was cut off after a tick"
+                            "(wait-for robot-stopped*)")))
+    (dolist (plan (list (plan-of (driver:rpl-robot-turn 1) (rpl:wait-time 2)
+                          (driver:rpl-robot-go-forward 1) (rpl:wait-for driver:robot-stopped*))
+                        (plan-of (driver:rpl-robot-turn 1) (rpl:wait-time 1)
+                          (driver:rpl-robot-stop) (rpl:wait-for driver:robot-stopped*))
+                        (plan-of (driver:rpl-robot-turn 1/100) (rpl:wait-time 3)
+                          (driver:rpl-robot-go-forward 1) (rpl:wait-for driver:robot-stopped*))
+                        (plan-of (driver:rpl-robot-turn 1) (rpl:wait-time 1)
+                          (when (rpl:fluent-value driver:robot-place*) (rpl:fail))
+                          (driver:rpl-robot-go-forward 1) (rpl:wait-for driver:robot-stopped*))
+                        (plan-of (driver:rpl-robot-turn 1)
+                          (rpl:wait-for driver:robot-stopped* :timeout 1)
+                          (driver:rpl-robot-go-forward 1) (rpl:wait-for driver:robot-stopped*))
+                        (plan-of (block nil
+                                   (loop (driver:rpl-robot-turn 1)
+                                         (rpl:wait-time 1)
+                                         (driver:rpl-robot-go-forward 1)
+                                         (rpl:wait-for driver:robot-stopped*)
+                                         (return))))))
+      (is (string= "" (told plan))))))

@@ -28,9 +28,9 @@
   "Warn if POLICY, of FORM in SCOPE, has ended before anything happens, or does nothing then."
   (let ((once-p (tests-once-p policy scope)))
     (cond ((or once-p (not (suspends-p policy scope)))
-           (doubt-own-form form "the policy ~S waits for nothing: it is done once, before the rest, ~
-                                 and then has ended. ~:[Write (whenever test form...), or (seq ~
-                                 (wait-for fluent) form...)~;Write ~:*~S~]."
+           (doubt-own-form form "the policy ~S waits for nothing: it is done once, before the ~
+                                 rest, and then has ended. ~:[Write (whenever test form...), or ~
+                                 (seq (wait-for fluent) form...)~;Write ~:*~S~]."
                            policy (and once-p (awaiting-text policy))))
           ((only-waits-p policy scope)
            (doubt-own-form form "the policy ~S does nothing when its wait is over, and then has ~

@@ -208,6 +208,7 @@ not in what is called later."
                          (find-call test form))))))
 
 (defun fail-p (form)
+  "True if FORM is a call of FAIL."
   (operator-in-p form '("FAIL")))
 
 (defun vain-handler-p (form)

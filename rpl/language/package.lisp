@@ -9,7 +9,8 @@ DEFINE-CONSTRUCT adds to it.")
                 #:matchvar-p #:matchvar-name)
   ;; source
   (:export #:author #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
-           #:misplaced-suspension #:operator-in-p #:note-own-text #:note-expansion #:form-as-written)
+           #:misplaced-suspension #:operator-in-p #:note-own-text #:note-expansion
+           #:form-as-written)
   ;; names, items
   (:export #:check-variables #:plain-parameters #:item-list)
   ;; checking

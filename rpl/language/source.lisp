@@ -120,6 +120,7 @@ user's that is called as iterate's are is none."
   (if (and (symbolp name) (our-symbol-p name)) (symbol-name name) name))
 
 (defun operator-in-p (form names)
+  "True if FORM is a call of an operator of Lisp's or ours that is called one of NAMES."
   (let ((name (plan-operator-name form)))
     (and name (member name names :test #'string=))))
 

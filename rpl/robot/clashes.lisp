@@ -74,28 +74,53 @@ happens."
                               ...)."
                          interrupted by (deed-resource older))))))
 
-;;; A task that gives one command after the other has forgotten to wait.
+;;; A task that gives one command after the other has forgotten to wait, or waits for a tick only.
 
-(defun hurry-p (older newer)
-  "True if the deed NEWER is of the task that has asked for the deed OLDER in the same tick, and
-does not react to an event."
-  (let ((task (deed-task older)))
+(defun step-before (task)
+  "Return the form of the innermost list of steps in TASK that it did before the one it is at."
+  (loop for frame = (task-frame task) then (frame-up frame)
+        while frame
+        do (let ((form (node-form (frame-node frame))))
+             (when (operator-called-p form '("SEQ"))
+               (let ((at (current-form (frame-node frame) frame)))
+                 (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
+
+(defun drives-p (deed)
+  "True if DEED drives the robot on, as one may for a tick, too."
+  (member (command-name (deed-command deed))
+          '(robot-go-forward robot-go-distance robot-goto-wall robot-follow-wall)))
+
+(defun hurry (older newer)
+  "Return how many ticks, 0 or 1, the deed OLDER was given by its task, which cuts it short by the
+deed NEWER, most likely by mistake; NIL if that may be meant, as where it reacts to an event."
+  (let ((task (deed-task older)) (ticks (- (deed-tick newer) (deed-tick older))))
     (and task
          (eq task (deed-task newer))
-         (eql (deed-tick older) (deed-tick newer))
          (not (gentle-p older))
          (not (gentle-p newer))
-         (not (reacting-to-events-p task nil)))))
+         (not (reacting-to-events-p task nil))
+         (or (= 0 ticks)
+             (and (= 1 ticks)
+                  (not (drives-p older))
+                  (operator-called-p (step-before task) '("WAIT-TIME"))
+                  (not (watches-p task))))
+         ticks)))
+
+(defun hurry-text (older newer ticks)
+  "Return in sentences that the deed NEWER has cut the deed OLDER short, which had TICKS, 0 or 1."
+  (format nil "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, as rpl-~(~A~) was given~;~
+               does nothing: rpl-~(~A~) was given before a tick has passed~], and ~A carries out ~
+               one command at a time.~@[ Wait for the end of the first before it: ~A.~]"
+          (command-name (deed-command older)) (task-label (task-top (deed-task older)))
+          (= 0 ticks) (command-name (deed-command newer)) (deed-resource older)
+          (wait-text (deed-outcome older) (deed-resource older))))
 
 (defun tell-of-hurry (interface older newer)
-  "Say once if the deed NEWER of INTERFACE has cut the deed OLDER short before that has begun."
-  (when (and newer (hurry-p older newer))
-    (let ((before (command-name (deed-command older))) (after (command-name (deed-command newer))))
-      (warn-once (list :hurry-in-plan before after)
+  "Say once if the deed NEWER of INTERFACE has cut the deed OLDER short before that has begun, or
+just after."
+  (let ((ticks (and newer (hurry older newer))))
+    (when ticks
+      (warn-once (list :hurry-in-plan (command-name (deed-command older))
+                       (command-name (deed-command newer)))
                  (simulation-world (interface-simulation interface))
-                 (format nil "rpl-~(~A~) of the plan ~A does nothing: rpl-~(~A~) was given before ~
-                              a tick has passed, and ~A carries out one command at a time.~@[ Wait ~
-                              for the end of the first before it: ~A.~]"
-                         before (task-label (task-top (deed-task older))) after
-                         (deed-resource older)
-                         (wait-text (deed-outcome older) (deed-resource older)))))))
+                 (hurry-text older newer ticks)))))

@@ -59,8 +59,9 @@
                 #:give-back-all #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
-                #:part-of-p #:frame-node #:frame-up #:node-form #:task-level #:evaporating-p
-                #:reasons #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
+                #:part-of-p #:frame-node #:frame-up #:node-form #:current-form
+                #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
+                #:entity-realm #:entity-like
                 #:*on-outside-change* #:note-word #:task-now #:*advice-on-call*)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
