@@ -122,3 +122,33 @@
                                          (rpl:wait-for driver:robot-stopped*)
                                          (return))))))
       (is (string= "" (told plan))))))
+
+(test commands.after-the-last-tick-are-told-of
+  (is-true (has-words-p (rover-writes ()
+                          (run:run-ticks 5)
+                          (command:robot-turn rover 1 nil)
+                          (command:camera-turn (robot:robot-camera rover 0) 1 nil))
+                        "robot-turn, camera-turn did nothing" "another tick" "(run-ticks N)"))
+  (is (string= "" (rover-writes () (run:run-ticks 5) (command:robot-stop rover nil))))
+  (is (string= "" (rover-writes (:errors :collect)
+                    (run:run-ticks 5)
+                    (command:robot-turn rover 1 nil))))
+  (let ((done nil))
+    (is (string= "" (rover-writes ()
+                      (command:robot-turn rover 1/10 (lambda (&rest told)
+                                                       (declare (ignore told))
+                                                       (setf done t)
+                                                       (command:robot-turn rover 1 nil)))
+                      (run:run-until (lambda () done)))))
+    (is-true done)))
+
+(test commands.that-interrupt-themselves-are-told-of-once
+  (let ((text (rover-writes ()
+                (dotimes (i 4) (command:robot-turn rover 1 nil) (run:run-ticks 3)))))
+    (is (= 1 (length (lines-of text))) "~A" text)
+    (is-true (has-words-p text "robot-turn was asked for again after 3 ticks"
+                          "(run-ticks N)" "(continuation (err robot angle) ...)")))
+  (is (string= "" (rover-writes ()
+                    (dotimes (i 4) (command:robot-turn rover (/ i 2) nil) (run:run-ticks 3))
+                    (dotimes (i 4) (command:robot-turn rover 1 (constantly nil)) (run:run-ticks 3))
+                    (dotimes (i 4) (command:robot-turn rover 1/10 nil) (run:run-ticks 30))))))

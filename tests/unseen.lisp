@@ -83,7 +83,7 @@ output."
   (is-true (has-words-p (rover-writes (:errors :collect) (command:robot-turn rover 1 nil))
                         "No ticks have passed" "robot-turn did nothing"))
   (is (string= "" (rover-writes () (robot:robot-x rover))))
-  (is (string= "" (rover-writes () (run:run-ticks 1) (command:robot-turn rover 1 nil))))
+  (is (string= "" (rover-writes () (run:run-ticks 1) (command:robot-stop rover nil))))
   (is (string= "" (rover-writes ()
                     (ignore-errors (run:with-simulation (rover)
                                      (command:robot-turn rover 1 nil)

@@ -108,6 +108,36 @@ tick, or live in the one before, and is not told of the end of that."
                        (command-name before) (told-at-end before) (command-name command)
                        (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
+(defun relative-turn-p (command)
+  "True if COMMAND turns the robot from where it faces, so that to ask again is to turn on."
+  (member (command-name command)
+          '(robot-turn robot-about-face robot-turn-left robot-turn-right)))
+
+(defun doubt-again (command resource arguments timeline)
+  "Say once if COMMAND, which turns by ARGUMENTS, is asked of RESOURCE, headless, while it is under
+way by the same asker, who is not told of its end: it begins anew."
+  (let ((before (resource-event resource)))
+    (when (and (operation-p before)
+               (eq command (operation-command before))
+               (relative-turn-p command)
+               (by-program-p)
+               (not (live-p timeline))
+               (not (operation-finished-p before))
+               (null (operation-continuation before))
+               (equal arguments (operation-arguments before))
+               (equal (note-of-asker) (request-asker before)))
+      (warn-of-again command (- (timeline-tick timeline) (operation-asked before)) resource))))
+
+(defun warn-of-again (command ticks resource)
+  "Say once that COMMAND of RESOURCE interrupts itself after TICKS."
+  (let ((*print-pretty* nil))
+    (warn-once (list :again (command-name command))
+               (robot-world (resource-robot resource))
+               (format nil "~(~A~) was asked for again after ~D tick~:P, when it had not ended: it ~
+                            was interrupted, and began anew. Let it end by (run-ticks N) with more ~
+                            ticks, or ask again in its (continuation ~(~A~) ...)."
+                       (command-name command) ticks (told-at-end command)))))
+
 ;; Manipulations, and commands that users define, may be for two robots.
 (defun doubt-owners (command robot arguments)
   "Say once for each owner if one of ARGUMENTS, of COMMAND, is another robot's than ROBOT's."
@@ -251,6 +281,7 @@ takes another number of arguments."
                         arguments)))
     (note-asked (occupied command resource))
     (doubt-hurry command (occupied command resource) timeline)
+    (doubt-again command (occupied command resource) arguments timeline)
     (post (make-operation command (occupied command resource) arguments
                           (if (untold-p timeline) nil continuation)
                           timeline)

@@ -287,10 +287,11 @@ or the program has looked itself at what was under way."
       (let ((undone (undone-text simulation)))
         (and undone (format nil "No ticks have passed in with-simulation, so ~A" undone)))
       (and (eq :report (message-queue-error-policy (simulation-messages simulation)))
-           ;; Who reads messages looks after the plans.
-           (not (message-queue-read-p (simulation-messages simulation)))
            (eq simulation (latest simulation))
-           (cut-off-text simulation))))
+           (or (too-late-text simulation)
+               ;; Who reads messages looks after the plans.
+               (and (not (message-queue-read-p (simulation-messages simulation)))
+                    (cut-off-text simulation))))))
 
 (defun look-at-end (simulation left-p)
   "Say so if something was asked for in SIMULATION, whose run is to end, and no tick has passed, or
@@ -360,7 +361,8 @@ BODY.
 ERRORS says what becomes of errors in users' code that the run calls, and of failures of plans that
 were begun; the run goes on in any case. With :REPORT they are messages; those that nobody has read
 when BODY ends are written to the error output, and so are other errors, but for those of commands
-that have a continuation to tell, and warnings that come once in a run, as of degrees for radians.
+that have a continuation to tell, and warnings that come once in a run, as of degrees for radians,
+and of commands that BODY gives after the last tick.
 With :SIGNAL the first of them is an error of BODY, a USER-CODE-ERROR that RUN-TICKS signals when
 its tick is over, or WITH-SIMULATION at the end. With :COLLECT they are only messages;
 SIMULATION-ERRORS returns them. In any case it is written to the error output if no ticks have

@@ -1,4 +1,4 @@
-;;;; leaving.lisp -- what a program without a debugger leaves undone when it ends.
+;;;; leaving.lisp -- what a program leaves undone when it, or its headless run, ends.
 
 (in-package :ars-magna.run)
 
@@ -10,6 +10,20 @@
   "True if a program has asked for REQUEST itself, as no plan, continuation or prompt has."
   (and (request-name request)
        (starts-with-subseq "Lisp" (note-text (request-asker request)))))
+
+(defun too-late-text (simulation)
+  "Return in sentences what the program has asked for in SIMULATION since its last tick, and a
+remedy; NIL if there is nothing, or it only ends something."
+  (let ((names (loop for request in (timeline-inbox (simulation-timeline simulation))
+                     when (and (operation-p request)
+                               (programs-request-p request)
+                               (not (member (request-name request) '(robot-stop camera-untrack)
+                                            :test #'same-name-p)))
+                       collect (string-downcase (request-name request)))))
+    (when names
+      (format nil "~{~A~^, ~} did nothing, as with-simulation ended before another tick had ~
+                   passed. Call (run-ticks N) or (run-until TEST) after that."
+              (remove-duplicates (reverse names) :test #'string= :from-end t)))))
 
 (defun left-undone (world)
   "Return the names of what programs have asked for in WORLD that is under way or has not begun."
