@@ -93,3 +93,13 @@
                           "camera is of the crane outside" "Inside write (robot-camera crane 0)"))
     (is-true (has-words-p (told 'barrow (lambda (robot) (command:robot-turn robot 1)) #'identity)
                           "robot is of the barrow outside" "Inside write barrow"))))
+
+(test schedule.says-where-the-delay-stands
+  (loop for (form . words)
+          in '(((time:schedule 10 (base:out "ten" t)) "say (schedule (nil :timer 10) ...)")
+               ((time:schedule (:timer 10) (base:out "ten" t)) "(schedule (nil :timer 10) ...)")
+               ((time:schedule (lambda () 1) 10) "the code is the body" "(nil :timer 10)")
+               ((time:schedule rover 1) "say (schedule (rover :timer 1) ...)")
+               ((time:schedule (rover 10) 1) "say (schedule (rover :timer 10) ...)")
+               ((time:schedule (nil :timr 10) 1) "did you mean :timer?"))
+        do (is-true (apply #'complains-p form words))))

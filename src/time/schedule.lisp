@@ -101,6 +101,24 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
 
 (define-operator 'schedule '(function datum integer datum datum datum integer) #'schedule-again)
 
+(defun doubtful-delay (head body)
+  "Return the number in HEAD or BODY, of a call of SCHEDULE, that is meant as a delay, or NIL."
+  (find-if #'integerp (list* head (and (consp head) (ignore-errors (second head)))
+                             (and (typep body '(cons t null)) body))))
+
+(defmethod advice-on-use ((operator (eql 'schedule)) form)
+  (let* ((head (second form)) (delay (doubtful-delay head (cddr form))))
+    (flet ((advice (resource)
+             (format nil "say (schedule (~(~A~)~@[ :timer ~D~]) ...)"
+                     (unqualified-text resource) delay)))
+      (cond ((null (rest form)) (advice nil))
+            ((typep head '(cons (member lambda function)))
+             (format nil "the code is the body: ~A" (advice nil)))
+            ((integerp head) (advice nil))
+            ((atom head) (advice head))
+            ((typep head '(cons keyword)) (and delay (advice nil)))
+            ((integerp (second head)) (advice (first head)))))))
+
 (public schedule)
 (define-user-macro schedule ((resource &key priority interrupt (when t when-p) timeout timer)
                     &body body)
