@@ -103,3 +103,20 @@
                ((time:schedule (rover 10) 1) "say (schedule (rover :timer 10) ...)")
                ((time:schedule (nil :timr 10) 1) "did you mean :timer?"))
         do (is-true (apply #'complains-p form words))))
+
+(test rpl-init-robot.is-asked-for-before-the-plan
+  (is-true (complains-p '(run:with-simulation ((crane barrow))
+                          (driver:run-plan (rpl:interp-lambda () (driver:rpl-init-robot crane))))
+                        "before the plan, not in it: (rpl-init-robot crane)")))
+
+(test commands-of-plans.outside-of-plans-name-those-of-programs
+  (is-true (complains-p '(run:with-simulation (rover)
+                          (let ((driver::*interface* nil))
+                            (driver:rpl-robot-go-forward 3)))
+                        "use commands without RPL-, such as (robot-turn rover 1)")))
+
+(test sleep.in-plans-is-a-wait-in-seconds
+  (is-true (has-words-p (warnings-of-procedure '(list robot) '(sleep 5))
+                        "In a plan write (wait-time 5 :unit :seconds)."))
+  (is-true (has-words-p (warnings-of-procedure '(list robot) '(run:run-ticks 5))
+                        "(wait-time 5), for so many ticks")))

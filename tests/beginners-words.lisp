@@ -32,7 +32,7 @@
 
 (test plans.warn-of-what-lets-time-pass-for-programs
   (flet ((told (form) (warnings-of-procedure 'robot form)))
-    (is-true (has-words-p (told '(sleep 3)) "stops all plans" "(wait-time 3)"))
+    (is-true (has-words-p (told '(sleep 3)) "stops all plans" "(wait-time 3 :unit :seconds)"))
     (is-true (has-words-p (told '(when robot (run:run-ticks 5))) "for programs" "(wait-time 5)"))
     (is-true (has-words-p (told '(run:run-until (lambda () t))) "(wait-until condition)"))
     (dolist (form '((mapc (lambda (x) (sleep x)) robot) '(sleep 3)))

@@ -245,9 +245,9 @@ not in what is called later."
     (declare (ignore options))
     (warn-of-call #'doubt-definition form "~A In a plan write ~A."
                   (cdr (assoc (symbol-name name) *vain-waits* :test #'string=))
-                  (if (string= "RUN-UNTIL" name)
-                      "(wait-until condition)"
-                      (format nil "(wait-time ~S), for so many ticks" time)))))
+                  (cond ((string= "RUN-UNTIL" name) "(wait-until condition)")
+                        ((string= "SLEEP" name) (format nil "(wait-time ~S :unit :seconds)" time))
+                        (t (format nil "(wait-time ~S), for so many ticks" time))))))
 
 (defun check-waits (form)
   "Warn of the first form in FORM, of a plan's text, that lets time pass for programs only."

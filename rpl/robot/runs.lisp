@@ -12,8 +12,8 @@ only one, or that of the prompt. Signals MISUSE if that could be several."
   (let ((robots (simulation-robots (current-simulation))))
     (cond ((= 1 (length robots)) (first robots))
           ((find (commanded-robot) robots))
-          (t (reject-use "There are ~D robots here. Say which is to be driven: (rpl-init-robot ~
-                          ~:[ROBOT~;~:*~(~A~)~])."
+          (t (reject-use "There are ~D robots here. Say which is to be driven, before the plan, ~
+                          not in it: (rpl-init-robot ~:[ROBOT~;~:*~(~A~)~])."
                          (length robots)
                          (and robots (robot-name (first robots))))))))
 
