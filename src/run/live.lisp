@@ -165,7 +165,8 @@ is there who can let it go on; else queue a warning, once in a run."
   "Signal UNKNOWN-NAME: a list of DESIGNATORS is to be run."
   (error 'unknown-name
          :kind "robot or map" :name designators
-         :remedy (format nil "Give one robot~@[, as '~(~A~)~]: all robots of its map are in its world."
+         :remedy (format nil "Give one robot~@[, as '~(~A~)~]: all robots of its map are in its ~
+                              world."
                          (and (symbolp (first designators)) (first designators)))))
 
 (defun robot-to-start (designator)
