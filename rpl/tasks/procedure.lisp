@@ -85,8 +85,8 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
   "Return in sentences what to do instead of giving NAME, which is no plan's, for a plan; or NIL."
   (flet ((say (control &rest arguments)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
-    (cond ((and (consp name) (proper-list-p name)) (let ((*print-case* :downcase) (*print-pretty* nil))
-             (list-remedy name)))
+    (cond ((and (consp name) (proper-list-p name))
+           (let ((*print-case* :downcase) (*print-pretty* nil)) (list-remedy name)))
           ((functionp name)
            (let ((plan (find name (registered-procedures) :key #'procedure-stub)))
              (say "~:[A function is no plan; DEF-INTERP-PROC defines one~;Give the plan's name ~
