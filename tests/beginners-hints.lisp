@@ -120,3 +120,18 @@
                         "In a plan write (wait-time 5 :unit :seconds)."))
   (is-true (has-words-p (warnings-of-procedure '(list robot) '(run:run-ticks 5))
                         "(wait-time 5), for so many ticks")))
+
+(test designators.that-are-not-yet-found-are-waited-for
+  (flet ((told (&rest waits)
+           (rover-writes ()
+             (driver:run-plan
+              (rpl:make-plan
+               `(rpl:seq (driver:rpl-camera-get-all-object-designators 0 :non-local '((:color red)))
+                         ,@waits
+                         (driver:rpl-camera-track
+                          0 (first (rpl:fluent-value
+                                    (svref driver:camera-designators* 0))))))))))
+    (is-true (has-words-p (told) "designator is NIL" "the search for it is still under way"
+                          "(wait-for (vref camera-input* 0)) first"))
+    (is (not (search "under way"
+                     (told '(rpl:wait-for (svref driver:camera-input* 0))))))))

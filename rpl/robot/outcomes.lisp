@@ -47,7 +47,7 @@ COMMAND-IN-PLAN."
       (let ((arguments (loop for spec in (command-parameters command)
                              for argument in arguments
                              collect (convert-argument argument (spec-type spec) operator))))
-        (check-in-plan operator command arguments)
+        (check-in-plan interface operator command arguments)
         (note-last-command interface operator resource)
         (issue-deed interface command resource arguments outcome issue)))))
 
@@ -60,13 +60,35 @@ and the results, makes settings of its end. Return nothing."
                            (issue-in-plan interface operator command outcome arguments))))
   (values))
 
-(defun check-in-plan (operator command arguments)
-  "Signal WRONG-ARGUMENT in the name of OPERATOR if COMMAND does not take ARGUMENTS."
+(defun search-under-way (interface)
+  "Return the camera of a search for designators that plans of INTERFACE wait for, or NIL."
+  (flet ((search-p (deed)
+           (and (deed-open-p deed)
+                (find-if (lambda (spec)
+                           (member (spec-name spec) '(designator designators) :test #'same-name-p))
+                         (command-results (deed-command deed))))))
+    (let ((deed (find-if #'search-p (interface-deeds interface))))
+      (and deed (deed-resource deed)))))
+
+(defun expected-text (interface type argument)
+  "Return in words what to give for ARGUMENT, which is not of TYPE, in a plan of INTERFACE."
+  (let ((camera (and (null argument)
+                     (same-name-p type 'designator)
+                     (search-under-way interface))))
+    (if camera
+        (format nil "a designator; the search for it is still under way: ~
+                     (wait-for (vref camera-input* ~D)) first"
+                (part-index camera))
+        (argument-type-text type argument))))
+
+(defun check-in-plan (interface operator command arguments)
+  "Signal WRONG-ARGUMENT in the name of OPERATOR if COMMAND, for a plan of INTERFACE, does not take
+ARGUMENTS."
   (loop for spec in (command-parameters command)
         for argument in arguments
         unless (argument-of-type-p argument (spec-type spec))
           do (error 'wrong-argument :operator operator :name (spec-name spec) :value argument
-                                    :expected (argument-type-text (spec-type spec) argument))))
+                                    :expected (expected-text interface (spec-type spec) argument))))
 
 (defun plan-function-name (command-name)
   "Return the symbol of the plan function for COMMAND-NAME, in the package at hand."
