@@ -79,6 +79,16 @@
                (type-to 'ars-worlds:marvin "(rpl-init-robot gofer)" "robot marvin"
                         "(run-plan (interp-lambda () (rpl-robot)))")))))
 
+(test robots.that-rpl-init-robot-has-named-are-driven-by-the-line-plan
+  "As by RUN-PLAN, until ROBOT says which one is commanded."
+  (with-names ("MARVIN" "GOFER")
+    (is (equal '("#<GOFER>" "driven succeeded: GOFER" "GOFER" ":SUCCEEDED"
+                 "driven succeeded: MARVIN")
+               (rest (type-to 'ars-worlds:marvin
+                              "(def-interp-proc driven () (robot-name (rpl-robot)))"
+                              "(rpl-init-robot gofer)" "plan driven" "(run-plan 'driven)"
+                              "robot marvin" "plan driven"))))))
+
 (test robots.that-run-live-are-known
   (with-names ("DOT")
     (unwind-protect (run:simulator 'ars-worlds:dot :rate :free :display nil)

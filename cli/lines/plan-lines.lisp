@@ -97,15 +97,6 @@ package; NIL if there is none."
 
 ;;; Starting them.
 
-(defun let-plans-drive (robot)
-  "Let ROBOT be the one that plans drive. Signals BAD-LINE while they drive another."
-  (unless (and (plan-runner-now) (eq robot (rpl-robot)))
-    (when (plans)
-      (reject-line "Plans drive one robot of a run at a time, now ~A. STOP-PLAN ends what ~
-                    drives that."
-                   (rpl-robot)))
-    (rpl-init-robot robot)))
-
 (defun begin-errand (errand plan arguments)
   "Start PLAN, a plan procedure, with ARGUMENTS for ERRAND. Signals BAD-LINE."
   (with-lock (*plan-errands-lock*) (push errand *plan-errands*))
@@ -120,10 +111,11 @@ package; NIL if there is none."
 (defun send-plan (session plan arguments)
   "Start PLAN, a plan procedure, with ARGUMENTS as an errand of SESSION."
   (let ((errand (make-plan-errand (procedure-name plan) session (current-simulation))))
-    (let-plans-drive (session-robot))
+    (check-run)
     (setf (session-failure session) nil)
     (pushnew (procedure-name plan) (session-plans session))
-    (let ((task (begin-errand errand plan arguments)))
+    (let ((task (let ((*robot-to-drive* #'session-robot))
+                  (begin-errand errand plan arguments))))
       (push errand (session-errands session))
       (note-plan-of-line (session-account session) task)
       (when (live-p (plan-errand-simulation errand)) (start-watching-plan errand))
