@@ -131,7 +131,7 @@
                          (driver:rpl-camera-track
                           0 (first (rpl:fluent-value
                                     (svref driver:camera-designators* 0))))))))))
-    (is-true (has-words-p (told) "designator is NIL" "the search for it is still under way"
+    (is-true (has-words-p (told) "designator is NIL" "the search that is still under way"
                           "(wait-for (vref camera-input* 0)) first"))
     (is (not (search "under way"
                      (told '(rpl:wait-for (svref driver:camera-input* 0))))))))

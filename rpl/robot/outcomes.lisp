@@ -76,7 +76,7 @@ and the results, makes settings of its end. Return nothing."
                      (same-name-p type 'designator)
                      (search-under-way interface))))
     (if camera
-        (format nil "a designator; the search for it is still under way: ~
+        (format nil "a designator, which the search that is still under way has yet to find: ~
                      (wait-for (vref camera-input* ~D)) first"
                 (part-index camera))
         (argument-type-text type argument))))
