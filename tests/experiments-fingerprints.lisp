@@ -151,6 +151,42 @@
     (is-true (noticed-p (lambda ()
                           (push "x" (question-record-names (aref *question-data* 1))))))))
 
+(defstruct (question-node (:print-function (lambda (node stream depth)
+                                             (declare (ignore node depth))
+                                             (write-string "node" stream))))
+  (value 0) (parent nil))
+
+(test data.in-themselves-are-noticed
+  (let ((node (make-question-node)) (ring (list 1 2 3)))
+    (setf (question-node-parent node) node
+          (cdddr ring) ring)
+    (with-question-data (node)
+      (is-true (noticed-p (lambda () (setf (question-node-value node) 1)))))
+    (with-question-data (ring)
+      (is-true (noticed-p (lambda () (setf (second ring) 5)))))))
+
+(test data.deep-down-and-many-are-noticed
+  (let* ((leaf (list 0)) (deep leaf) (many (make-array 1500000 :initial-element 0)))
+    (loop repeat 300 do (setf deep (list deep)))
+    (with-question-data (deep)
+      (is-true (noticed-p (lambda () (setf (first leaf) 1)))))
+    (with-question-data (many)
+      (is-true (noticed-p (lambda () (setf (aref many 1400000) 1)))))))
+
+(test data.beside-what-is-none-are-noticed
+  (with-question-data ((list 0 #'car (make-condition 'error) ars-worlds:dot))
+    (is-true (noticed-p (lambda () (setf (first *question-data*) 1))))))
+
+(test data.of-global-and-undeclared-variables-are-noticed
+  (eval '(sb-ext:defglobal **question-global** (list 0)))
+  (let ((name (intern "*QUESTION-UNDECLARED*" :ars-magna.tests)))
+    (setf (symbol-value name) (list 0))
+    (handler-bind ((warning #'muffle-warning))
+      (dolist (symbol (list '**question-global** name))
+        (define-reaching (identity symbol))
+        (eval `(experiment:defexperiment question (:robots ars-worlds:dot) (:run (first ,symbol))))
+        (is-true (noticed-p (lambda () (incf (first (symbol-value symbol))))))))))
+
 (test data.in-tables-have-no-order
   (with-question-data ((question-table 1 2 3 4 "five" 6))
     (is-false (noticed-p (lambda ()

@@ -10,6 +10,7 @@
 
 (declaim (inline digest-word))
 (defun digest-word (digest word)
+  "Add WORD, 64 bits, to DIGEST."
   (setf (digest-value digest)
         (mix-word (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 

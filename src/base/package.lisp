@@ -210,7 +210,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:ticks-for #:noise-of-step #:per-tick-drift
            #:per-tick-probability)
   ;; digest
-  (:export #:digest #:make-digest #:digest-add #:digest-value)
+  (:export #:digest #:make-digest #:digest-add #:digest-word #:text-word #:digest-value)
   ;; kinds, digesting, copying
   (:export #:define-kind #:*object-kinds* #:kind-p #:kind-of #:kind-called #:kind-name
            #:kind-slots #:all-kinds #:find-kind-name

@@ -2,8 +2,14 @@
 
 (in-package :ars-magna.experiment)
 
-(defconstant +deepest-data+ 50 "How deep data stand in data at most.")
-(defconstant +largest-data+ 1000000 "How many parts data have at most.")
+;;; Data are numbers, names, characters, strings, paths, and conses, arrays, hash tables and users'
+;;; structures of such. Of other parts, such as functions and objects of classes, only the type
+;;; counts. A part that is in itself counts by how far above itself it is, so that the number does
+;;; not depend on the order of a table.
+
+(defconstant +deepest-data+ 2000 "How deep parts count that stand in data.")
+(defconstant +largest-data+ 1000000 "How many conses, arrays, tables and structures data have.")
+(defconstant +most-elements+ 20000000 "How many elements of arrays data have.")
 
 (defun plain-structure-p (value)
   "True if VALUE is of a user's DEFSTRUCT; not a fluent, thing or the like."
@@ -16,76 +22,123 @@
   (loop for slot in (class-slot-names (class-of structure))
         collect (slot-value structure slot)))
 
-(defun table-entries (table)
-  "Return lists (key value) of the hash TABLE."
-  (loop for key being the hash-keys of table using (hash-value value)
-        collect (list key value)))
-
 ;; What is in a weak table depends on when memory is tidied.
 (defun lasting-table-p (value)
   (and (hash-table-p value) (not (weak-table-p value))))
 
-(defun data-p (value)
-  "True if VALUE is made of numbers, names, characters, strings, paths, conses, arrays, hash tables
-and users' structures alone, and is of a bounded size."
-  (let ((left +largest-data+))
-    (labels ((visit (value depth)
-               (when (or (> depth +deepest-data+) (minusp (decf left)))
-                 (return-from data-p nil))
-               (typecase value
-                 ((or number symbol character string bit-vector pathname))
-                 (cons (loop while (consp value)
-                             do (visit (pop value) (1+ depth))
-                                (when (minusp (decf left)) (return-from data-p nil)))
-                       (visit value (1+ depth)))
-                 (array (dotimes (index (array-total-size value))
-                          (visit (row-major-aref value index) (1+ depth))))
-                 ((satisfies lasting-table-p) (visit (table-entries value) (1+ depth)))
-                 ((satisfies plain-structure-p) (visit (structure-values value) (1+ depth)))
-                 (t (return-from data-p nil)))))
-      (visit value 0)
-      t)))
+(deftype plain-atom ()
+  '(or number symbol character string bit-vector pathname))
 
-;;; Tables and structures are written as lists. All else is written as it is.
+(deftype compound ()
+  '(or cons array (satisfies lasting-table-p) (satisfies plain-structure-p)))
 
-(defun written-table (table)
-  "Return a list for the hash TABLE, the same whatever was entered first."
-  (list* :table (hash-table-test table)
-         (mapcar #'cdr (sort (loop for entry in (mapcar #'written (table-entries table))
-                                   collect (cons (prin1-to-string entry) entry))
-                             #'string< :key #'car))))
+;;; Walking.
 
-(defun written-array (array)
-  "Return an array like ARRAY, with what is to be written of its elements."
-  (let ((copy (make-array (array-dimensions array)
-                          :fill-pointer (and (array-has-fill-pointer-p array)
-                                             (fill-pointer array)))))
-    (dotimes (index (array-total-size array) copy)
-      (setf (row-major-aref copy index) (written (row-major-aref array index))))))
+(defstruct (walk (:constructor make-walk (digest atom)) (:copier nil))
+  "A way through data: what it meets is added to DIGEST, and ATOM is called with what has no parts.
+PATH are the compound parts that it is in, by how deep they are."
+  (digest nil :type digest :read-only t)
+  (atom nil :type function :read-only t)
+  (path (make-hash-table :test 'eq) :read-only t)
+  (compounds +largest-data+ :type fixnum)
+  (elements +most-elements+ :type fixnum))
 
-(defun written-list (list)
-  (loop with rest = list
-        while (consp rest)
-        collect (written (pop rest)) into parts
-        finally (return (nconc parts (written rest)))))
+(defun mark-word (word walk)
+  (digest-word (walk-digest walk) (ldb (byte 64 0) word)))
 
-(defun written (value)
-  "Return what is to be written of VALUE, which is data: lists in place of tables and structures."
-  (typecase value
-    (cons (written-list value))
-    ((array t) (written-array value))
-    (hash-table (written-table value))
-    (structure-object (if (plain-structure-p value)
-                          (list* :structure (type-of value) (written (structure-values value)))
-                          value))
-    (t value)))
+(defun mark-text (text walk)
+  (mark-word (text-word text) walk))
+
+(defun mark-atom (atom walk)
+  "Enter ATOM, which has no parts, into WALK."
+  (typecase atom
+    (fixnum (mark-word 1 walk) (mark-word atom walk))
+    (double-float (mark-word 2 walk) (mark-word (double-to-bits atom) walk))
+    (plain-atom (mark-text (prin1-to-string atom) walk))
+    (t (mark-text (prin1-to-string (type-of-other atom)) walk)))
+  (funcall (walk-atom walk) atom))
+
+(defun type-of-other (object)
+  "Return a name for the type of OBJECT, which is no data."
+  (if (functionp object) 'function (class-name (class-of object))))
+
+(defun count-compound (walk)
+  "Leave WALK if it has met more than data may have."
+  (when (or (minusp (decf (walk-compounds walk)))
+            (minusp (walk-elements walk)))
+    (throw 'too-large nil)))
+
+(defun walk-value (value depth walk)
+  "Enter VALUE, at DEPTH, into WALK, with all that is in it."
+  (if (and (typep value 'compound) (not (stringp value)) (not (bit-vector-p value)))
+      (walk-compound value depth walk)
+      (mark-atom value walk)))
+
+(defun walk-compound (value depth walk)
+  (let ((above (gethash value (walk-path walk))))
+    (cond (above (mark-word 3 walk) (mark-word (- depth above) walk))
+          ((> depth +deepest-data+) (mark-word 4 walk))
+          ((consp value) (walk-list value depth walk))
+          (t (count-compound walk)
+             (setf (gethash value (walk-path walk)) depth)
+             (etypecase value
+               (array (walk-array value depth walk))
+               (hash-table (walk-table value depth walk))
+               (structure-object (mark-text (prin1-to-string (type-of value)) walk)
+                (dolist (part (structure-values value)) (walk-value part (1+ depth) walk))))
+             (remhash value (walk-path walk))))))
+
+(defun walk-list (list depth walk)
+  "Enter the conses of LIST into WALK. Its tails are as deep as it is."
+  (mark-word 5 walk)
+  (loop for rest = list then (cdr rest)
+        while (and (consp rest) (not (gethash rest (walk-path walk))))
+        do (count-compound walk)
+           (setf (gethash rest (walk-path walk)) depth)
+           (walk-value (car rest) (1+ depth) walk)
+        finally (if (consp rest) (mark-word 6 walk) (walk-value rest (1+ depth) walk)))
+  (loop for rest = list then (cdr rest)
+        while (and (consp rest) (remhash rest (walk-path walk)))))
+
+(defun walk-array (array depth walk)
+  (mark-word 7 walk)
+  (dolist (dimension (array-dimensions array)) (mark-word dimension walk))
+  (when (array-has-fill-pointer-p array) (mark-word (fill-pointer array) walk))
+  (decf (walk-elements walk) (array-total-size array))
+  (count-compound walk)
+  (dotimes (index (array-total-size array))
+    (walk-value (row-major-aref array index) (1+ depth) walk)))
+
+(defun walk-table (table depth walk)
+  "Enter the hash TABLE into WALK, the same whatever was entered into it first."
+  (mark-text (prin1-to-string (hash-table-test table)) walk)
+  (let* ((digest (walk-digest walk)) (before (digest-value digest)))
+    (mapc (lambda (number) (mark-word number walk))
+          (prog1 (sort (loop for key being the hash-keys of table using (hash-value value)
+                             do (setf (digest-value digest) 0)
+                                (walk-value key (1+ depth) walk)
+                                (walk-value value (1+ depth) walk)
+                             collect (digest-value digest))
+                       #'<)
+            (setf (digest-value digest) before)))))
+
+;;; What is known of a value.
+
+(defun call-walking (value atom)
+  "Call ATOM with each part of VALUE that has no parts. Return a number for VALUE as it is; NIL if
+it is too large."
+  (let ((walk (make-walk (make-digest) atom)))
+    (catch 'too-large
+      (call-in-peace (lambda () (walk-value value 0 walk)) (find-package :keyword))
+      (digest-value (walk-digest walk)))))
 
 (defun data-number (value)
-  "Return a number for VALUE, which is data: for its text, with the packages of names."
-  (call-in-peace (lambda ()
-                   (text-checksum (prin1-to-string (if (data-p value) (written value) value))))
-                 (find-package :keyword)))
+  "Return a number for VALUE as it is, with the packages of names; NIL if it is too large."
+  (call-walking value #'identity))
 
 (defun no-data-p (value)
-  "True if VALUE is NIL or an empty hash table, as often stands where data are to be kept later."
-  (or (null value) (and (hash-table-p value) (zerop (hash-table-count value)))))
+  "True if VALUE is NIL or an empty hash table, as often stands where data are to be kept later; or
+no data at all."
+  (or (null value)
+      (and (hash-table-p value) (zerop (hash-table-count value)))
+      (not (typep value '(or plain-atom compound)))))

@@ -56,15 +56,20 @@ variables."
   (ignore-errors (global-value symbol) t))
 
 (defun visit-variable (symbol reach)
-  "Visit the special variable SYMBOL and its value, which is a part if it is data. NIL and an empty
-table count as no data, since they often stand where a table or structure is filled later."
-  (push symbol (reach-variables reach))
-  (let* ((value (global-value symbol)) (data-p (data-p value)))
-    (when (and data-p (not (no-data-p value)))
-      (note-part :variable (qualified symbol) (data-number value) reach))
-    (cond ((functionp value) (visit-function value symbol reach))
-          (data-p (visit (written value) reach))
-          ((tree-p value) (visit value reach)))))
+  "Visit the variable SYMBOL and what is in its value, which is a part if it is data. NIL and an
+empty table count as no data, since they often stand where a table or structure is filled later."
+  (unless (eq :global (variable-kind symbol)) (push symbol (reach-variables reach)))
+  (let ((value (global-value symbol)))
+    (if (no-data-p value)
+        (when (functionp value) (visit-function value symbol reach))
+        (let ((number (call-walking value (lambda (atom)
+                                            (when (typep atom '(or symbol function))
+                                              (visit atom reach))))))
+          (when number (note-part :variable (qualified symbol) number reach))))))
+
+(defun used-as-variable-p (symbol)
+  "True if SYMBOL is a variable, perhaps one that was set and never declared."
+  (member (variable-kind symbol) '(nil :special :global)))
 
 ;; What an experiment varies, and how often it is tried, decides no trial.
 (defun visit-definition (entry reach)
@@ -113,7 +118,7 @@ table count as no data, since they often stand where a table or structure is fil
     (dolist (method (methods-on-class symbol)) (visit-function (method-code method) symbol reach))
     (loop for (file written) in (files-besides-functions symbol)
           do (note-file file written reach))
-    (when (and (null entries) (special-p symbol) (has-global-value-p symbol))
+    (when (and (null entries) (used-as-variable-p symbol) (has-global-value-p symbol))
       (visit-variable symbol reach))))
 
 (defun visit-symbol (symbol reach)
