@@ -175,7 +175,8 @@
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
     :components ((:file "package") (:file "fluents") (:file "interface") (:file "takeovers")
-                 (:file "tellers") (:file "rushing") (:file "under-way") (:file "clashes") (:file "unawaited")
+                 (:file "tellers") (:file "rushing") (:file "under-way") (:file "clashes")
+                 (:file "unawaited") (:file "unread")
                  (:file "wishes") (:file "reacting") (:file "forking") (:file "handles") (:file "rewinding")
                  (:file "watching") (:file "thread") (:file "starting") (:file "accessors")
                  (:file "outcomes") (:file "commands") (:file "runs") (:file "stranded")

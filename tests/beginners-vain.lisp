@@ -152,3 +152,56 @@
                     (dotimes (i 4) (command:robot-turn rover (/ i 2) nil) (run:run-ticks 3))
                     (dotimes (i 4) (command:robot-turn rover 1 (constantly nil)) (run:run-ticks 3))
                     (dotimes (i 4) (command:robot-turn rover 1/10 nil) (run:run-ticks 30))))))
+
+;;; Commands that come to nothing.
+
+(defmacro told-of-ends (&body body)
+  "Return what is written to the error output when a plan that does BODY has run."
+  `(rover-writes () (driver:run-plan (plan-of ,@body))))
+
+(defun movement-error () (rpl:fluent-value driver:robot-movement-error*))
+
+(test plans.that-do-not-look-at-how-a-command-ended-are-told-so-once
+  (let ((text (rover-writes ()
+                (dotimes (i 2)
+                  (driver:run-plan (plan-of (driver:rpl-robot-goto-designator 0)
+                                     (rpl:wait-for driver:robot-stopped*)
+                                     :there))))))
+    (is (= 1 (length (lines-of text))) "~A" text)
+    (is-true (has-words-p text "rpl-robot-goto-designator ended with :not-tracking"
+                          "did not look at robot-movement-error*" "(if (fluent-value ")))
+  (is-true (has-words-p (told-of-ends (dotimes (i 2)
+                                        (driver:rpl-hand-insert-bin 0 0)
+                                        (rpl:wait-for (svref driver:hand-moved* 0))))
+                        "rpl-hand-insert-bin ended with :different-location"
+                        "(fluent-value (vref hand-error* 0))")))
+
+(test plans.that-look-at-how-a-command-ended-are-not-told
+  (macrolet ((quiet (&body body)
+               `(is (string= "" (told-of-ends (driver:rpl-robot-goto-designator 0) ,@body)))))
+    (quiet (rpl:wait-for driver:robot-stopped*) (rpl:fluent-value driver:robot-movement-error*))
+    (quiet (rpl:wait-for driver:robot-stopped*) (movement-error))
+    (quiet (rpl:wait-for driver:robot-stopped*) (rpl:fluent-value driver:robot-arrived-at*))
+    (quiet (rpl:wait-for driver:robot-stopped*) (when driver:robot-movement-error* 1))
+    (quiet (rpl:wait-for (or driver:robot-arrived-at* driver:robot-movement-error*)))
+    (quiet (rpl:par (rpl:wait-for driver:robot-movement-error*)
+                    (rpl:wait-for driver:robot-stopped*)))
+    (quiet (rpl:wait-for driver:robot-stopped*)
+           (rpl:pursue (rpl:whenever driver:robot-movement-error* (print 1)) (rpl:wait-time 1))))
+  (is (string= "" (told-of-ends (driver:rpl-robot-go-forward 99)
+                    (rpl:wait-for driver:robot-stopped*)))
+      "being blocked")
+  (is (string= "" (told-of-ends (driver:rpl-camera-untrack 0) (rpl:wait-time 2)))
+      "what was so already")
+  (is (string= "" (rover-writes ()
+                    (driver:run-plan (plan-of (driver:rpl-robot-goto-designator 0)
+                                       (rpl:wait-for driver:robot-stopped*)))
+                    (movement-error)))
+      "the program looks"))
+
+(test plans.that-try-again-until-it-works-are-not-told
+  (is (string= "" (told-of-ends (driver:rpl-robot-set-speed 99) (rpl:wait-time 2)
+                    (driver:rpl-robot-set-speed 1/2) (rpl:wait-time 2))))
+  (is-true (has-words-p (told-of-ends (driver:rpl-robot-set-speed 1/2) (rpl:wait-time 2)
+                          (driver:rpl-robot-set-speed 99) (rpl:wait-time 2))
+                        "rpl-robot-set-speed ended with :too-high-speed")))

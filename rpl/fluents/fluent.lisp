@@ -12,6 +12,8 @@
   "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
   (name nil :read-only t)
   (now nil)
+  ;; Whether somebody has looked at it: see LOOKED-AT-P.
+  (looked nil :type (member nil :once :always))
   (home nil :type (or null home))
   (height 0 :type fixnum)
   ;; How often it was set to another value, and pulsed: see views.lisp.
@@ -74,7 +76,8 @@ counts."
   (declare (ignore realm))
   (let ((twin (%make-fluent (fluent-name fluent) (fluent-now fluent))))
     (setf (fluent-sets twin) (fluent-sets fluent)
-          (fluent-pulses twin) (fluent-pulses fluent))
+          (fluent-pulses twin) (fluent-pulses fluent)
+          (fluent-looked twin) (fluent-looked fluent))
     twin))
 
 (defmethod fresh-twin ((fluent derived) realm)

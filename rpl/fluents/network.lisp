@@ -91,6 +91,7 @@ have set the fluent just before; so who waits for it to be true looks at it afte
   "Return the value of FLUENT, which is in use; signal the error that computing it met, if any."
   (when (and (derived-p fluent) (derived-trouble fluent))
     (error (derived-trouble fluent)))
+  (unless (fluent-looked fluent) (setf (fluent-looked fluent) :once))
   (fluent-now fluent))
 
 (defun current-value (fluent)
@@ -100,6 +101,17 @@ have set the fluent just before; so who waits for it to be true looks at it afte
         (t (acquire fluent)
            (unwind-protect (value-in-use fluent)
              (release fluent)))))
+
+;; What says why a command has failed is of use only if somebody looks at it.
+(defun looked-at-p (fluent)
+  "True if FLUENT was read since FORGET-LOOKS, or is or was in a network, or is waited for."
+  (let ((fluent (here fluent)))
+    (and (or (fluent-looked fluent) (fluent-first-watcher fluent)) t)))
+
+(defun forget-looks (fluent)
+  "Let nobody have read FLUENT so far."
+  (let ((fluent (here fluent)))
+    (when (eq :once (fluent-looked fluent)) (setf (fluent-looked fluent) nil))))
 
 (declaim (inline operand-value))
 (defun operand-value (object)
@@ -142,6 +154,8 @@ or a vector of fluents."
 
 (defun make-derived (name operator sources)
   (let ((sources (mapcar (lambda (source) (if (fluent-p source) (here source) source)) sources)))
+    (dolist (source sources)
+      (when (fluent-p source) (setf (fluent-looked source) :always)))
     (%make-derived name operator sources (height-over sources))))
 
 (defun lift (name function &rest arguments)

@@ -18,7 +18,8 @@ no plan.")
            #:make-watcher #:state #:watcher #:watcher-client #:watcher-wake #:watcher-pending
            #:watcher-fluent #:watcher-p #:define-membership)
   ;; network
-  (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
+  (:export #:base-fluents #:depends-p #:looked-at-p #:forget-looks
+           #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
            #:fluent-value #:operand-value #:unwatch #:watch)
   ;; realm
   (:export #:*realm* #:+root+ #:fork-realm #:leave-realm #:realm-sources #:source-realm

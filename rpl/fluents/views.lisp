@@ -41,6 +41,7 @@
 (defun make-view (name sources bases memory &key always-p test key)
   "Return a view of SOURCES called NAME; see VIEW."
   (let ((view nil))
+    (dolist (base bases) (setf (fluent-looked base) :always))
     (setf view (%make-view name (lambda (&rest values) (look view (first values)))
                            sources (height-over sources) bases memory always-p test key))))
 

@@ -43,6 +43,7 @@ been told since which robot it commands")
    (eras '() list "which tasks are of which era, the newest first; see handles.lisp")
    (warned '() list "what was said of takeovers, and at which tick")
    (last-command '() list "the plan, the function and the part of the command given last")
+   (unread '() list "how commands ended of which plans have not looked at how; see unread.lisp")
    (next-tick nil (or null real (eql :ready))
               "published: the tick at which plans next go on, :READY for at once, or NIL"))
   (:link

@@ -120,11 +120,15 @@ and PARAMETERS, lists (variable type text)."
                       (format nil "(:set fluent form), (:error fluent), (:pulse fluent) or ~
                                    (:when form clause...)")))))
 
-(defun clause-fluents (clauses)
-  (loop for clause in clauses
-        append (case (first clause)
-                 ((:set :error :pulse) (list (second clause)))
-                 (:when (clause-fluents (cddr clause))))))
+(defun clause-fluents (clauses &optional (kinds '(:set :error :pulse)))
+  "Return the variables of the fluents that CLAUSES of KINDS set, perhaps several times."
+  (loop for (kind . more) in clauses
+        append (cond ((member kind kinds) (list (first more)))
+                     ((eq :when kind) (clause-fluents (rest more) kinds)))))
+
+(defun note-result-fluents (command-name variables)
+  "Note that the fluents in VARIABLES say how a command called COMMAND-NAME ended."
+  (setf (get command-name 'result-fluents) variables))
 
 (defun fluent-form (kind clauses part)
   "Return the form of the fluent that CLAUSES, of a command on PART, the name of its argument, say
@@ -146,6 +150,9 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
              for name = (plan-function-name command-name)
              for parameters = (parameters-in-plan resource specifications)
              collect `(public ,name)
+             collect `(note-result-fluents ',command-name
+                                           ',(remove-duplicates
+                                              (clause-fluents clauses '(:set :error))))
              collect `(note-twin ',command-name '(,name ,@parameters)
                                  ',(fluent-form :pulse clauses (first parameters))
                                  ',(fluent-form :error clauses (first parameters))

@@ -36,7 +36,8 @@
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
                 #:set-value #:pulse
-                #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
+                #:apply-settings #:looked-at-p #:forget-looks
+                #:*home-in-use* #:*runner* #:post-call #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:heard-from-outside-p #:idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner

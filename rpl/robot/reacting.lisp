@@ -197,7 +197,9 @@ that this failure happened, if that was just now."
 (defun note-end (interface task)
   "Do what is due when TASK, a top-level task of INTERFACE, has ended."
   (no-longer-unwanted interface task)
-  (cond ((eq :succeeded (task-state task)) (tell-of-unawaited interface task))
+  (cond ((eq :succeeded (task-state task))
+         (tell-of-unawaited interface task)
+         (tell-of-unread interface task))
         (t (interrupt-deeds interface task)
            (remark-end interface task)))
   (report-end task (and (member task (interface-awaited interface) :test #'eq) t)))

@@ -89,6 +89,7 @@ somebody has done so before."
   (when (take-answer answer interface)
     (let ((deed (answer-deed answer)) (settings (answer-settings answer)))
       (setf (deed-begun-p deed) t)
+      (note-unread interface deed (answer-err answer))
       (with-answer ((deed-issue deed) (answer-err answer))
         (apply-settings (if (deed-told-p deed)
                             (state-settings settings)
