@@ -145,6 +145,8 @@
              (base:misuse (condition) (princ-to-string condition)))))
     (with-report (results '("metres") '() (grown 2 4 8))
       (is (equal '((nil "metres=4" "metres=2")) (said results 4 2)) "there is no fourth condition"))
+    (with-report (results '("metres") '() (grown 1 2))
+      (is (equal '((nil "metres=1" "metres=2")) (said results 1 2)) "that is the same"))
     (with-report (results '("metres") '() (grown 3 2 1))
       (is (mentions-p (said results 1 2) "1 against 2 is ambiguous"))
       (is (mentions-p (said results 1 2) "metres=1 against metres=2. Give more")))))

@@ -34,7 +34,7 @@
     (is (mentions-p text "plan=a noise=0: dir 1 and dir 0 are the same in all 100 trials"))
     (is (mentions-p (base:one-line text)
                     (format nil "noise=1: dir 1 succeeds less often than dir 0: p < .001 as ~
-                                 one of 12 tests, 80 % against 100 %")))
+                                 one of 6 tests, 80 % against 100 %")))
     (is (mentions-p text "plan=b noise=0: dir 1 succeeds more often than dir 0: p < .001"))
     (is (mentions-p text "over all: No difference in success between dir 1 and dir 0 can be"))))
 
@@ -146,6 +146,14 @@ would be beyond doubt, and three seeds are p = 1/4."
   (is (mentions-p (nth-value 1 (compare-tables (rows-of-outcomes "a" "0" "++-")
                                                (rows-of-outcomes "a" "0" "+-+")))
                   "What differs between the tables is not known")))
+
+(test compare-results.warns-of-rows-that-no-fingerprint-explains
+  (with-directories (before after)
+    (made-up-table before (rows-of-outcomes "a" "0" "++-") "A1")
+    (made-up-table after (rows-of-outcomes "a" "0" "+-+") "A1")
+    (is (mentions-p (format nil "~{~A~}" (experiment:comparison-changes
+                                          (experiment:compare-results before after :stream nil)))
+                    "and yet the rows of 2 trials differ"))))
 
 ;;; Pictures.
 

@@ -182,6 +182,15 @@
         for bad from 0 by 6
         append (rows-of-outcomes plan noise (repeated #\- bad #\+ (- 60 bad)))))
 
+(test compare.counts-no-tests-of-what-is-the-same-in-all-pairs
+  "Ticks and way never differ, so success and what is found are the only tests."
+  (with-made-up (results (four-plans "0"))
+    (let ((success (first (experiment:contrast-differences
+                           (first (experiment:comparison-contrasts
+                                   (experiment:compare-conditions results 'a 'd :stream nil)))))))
+      (is (string= "success" (experiment:paired-measure success)))
+      (is (near-p (* 2 (experiment:paired-p success)) (experiment:paired-adjusted-p success))))))
+
 (test compare.corrects-p-for-all-tests
   (with-made-up (results (four-plans "0"))
     (let* ((comparison (experiment:compare-conditions results 'a :all :measure 'success

@@ -208,6 +208,21 @@
         (is (search "*question-data*" (princ-to-string condition)))
         (is (search "give each its own" (princ-to-string condition)))))))
 
+(test rows.that-were-refused-stay-so
+  (with-directories (directory other)
+    (with-question-data ((list 0))
+      (define-reaching (incf (first *question-data*)))
+      (flet ((go-on () (experiment:run-experiment 'question :trials 3 :workers 1 :stream nil
+                                                            :directory directory))
+             (refused-p (function)
+               (handler-case (progn (funcall function) nil)
+                 (base:misuse (condition)
+                   (search "were refused" (princ-to-string condition))))))
+        (signals base:misuse (go-on))
+        (is-true (refused-p #'go-on))
+        (is-true (refused-p (lambda () (experiment:merge-results (list directory) :to other))))
+        (signals warning (experiment:read-results directory))))))
+
 (test values.of-conditions-have-packages
   (flet ((fingerprint (symbol)
            (eval `(experiment:defexperiment question (:robots ars-worlds:dot)

@@ -47,6 +47,17 @@ BEFORE."
                     (and (/= (length others) (length parts))
                          (list "the parameters, robots or values of conditions"))))))
 
+(defun leak-lines (pairs)
+  "Return lines that warn if trials of PAIRS, with equal fingerprints, have come out differently."
+  (let ((count (loop for (sample other) in pairs
+                     sum (loop for (i . j) in (common-trials sample other)
+                               count (not (same-row-p sample i other j))))))
+    (unless (zerop count)
+      (list (format nil "WARNING: and yet the rows of ~D trial~:P differ. Something that is in no ~
+                         fingerprint decides them, such as what trials leave to each other, a ~
+                         clock or a file, or rows have been changed. Neither table can be relied ~
+                         on." count)))))
+
 (defun changes-between (pairs after before)
   "Return lines on what decides the trials of PAIRS in one table but not in the other, by the texts
 in the directories AFTER and BEFORE, which may be NIL."
@@ -58,7 +69,8 @@ in the directories AFTER and BEFORE, which may be NIL."
          (parts (remove-duplicates (apply #'append (remove :unknown changes))
                                    :test #'string= :from-end t)))
     (cond ((null changed)
-           (list "Both tables are of the same code and configuration: the fingerprints are equal."))
+           (cons "Both tables are of the same code and configuration: the fingerprints are equal."
+                 (leak-lines pairs)))
           ((null parts)
            (list (format nil "What differs between the tables is not known: the fingerprints do, ~
                               but no experiment.txt beside them says of what.")))

@@ -179,5 +179,6 @@ say. Return CONTRAST."
     (adjust-for-all (loop for contrast in contrasts append (contrast-differences contrast)))))
 
 (defun tested-differences (contrasts)
+  "Return the differences of CONTRASTS that count as tests: see ADJUST-FOR-ALL."
   (loop for contrast in contrasts
-        append (remove nil (contrast-differences contrast) :key #'paired-p)))
+        append (remove-if-not #'tested-p (contrast-differences contrast))))

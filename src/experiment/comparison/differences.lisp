@@ -9,7 +9,7 @@
 (defstruct (paired-difference (:conc-name paired-)
                               (:constructor make-difference
                                   (measure kind trials first second low high p
-                                   &optional table))
+                                   &optional table same-p))
                               (:copier nil))
   "How two conditions differ in MEASURE, a KIND of number: :RATE or :MEAN."
   (measure "" :type string :read-only t)
@@ -21,6 +21,8 @@
   (high nil :read-only t)
   (p nil :read-only t)
   (table '() :type list :read-only t)
+  ;; True if there is no difference in any pair.
+  (same-p nil :type boolean :read-only t)
   ;; As one of how many tests it counts, and what P is worth as that.
   (tests 1 :type integer)
   (adjusted-p nil))
@@ -71,7 +73,8 @@ of booleans, are true."
             (make-difference measure :rate trials
                              (/ (+ both first) trials) (/ (+ both second) trials) low high
                              (values (mcnemar-test first second))
-                             (list both first second neither)))))))
+                             (list both first second neither)
+                             (= 0 first second)))))))
 
 ;;; Means.
 
@@ -101,17 +104,26 @@ can be does not depend on it."
                                                                (- (rational a) (rational b)))
                                                              firsts seconds)
                                                      :resamples (draws-for trials)
-                                                     :rare-too t)))))))
+                                                     :rare-too t))
+                           '()
+                           (every #'= firsts seconds))))))
 
 ;;; Several.
 
+;; What is the same in all pairs could not be told to differ, whatever chance did: it is no test.
+(defun tested-p (difference)
+  (and (paired-p difference) (not (paired-same-p difference))))
+
 (defun adjust-for-all (differences)
   "Let each of DIFFERENCES know what its test is worth among them."
-  (let ((tested (remove nil differences :key #'paired-p)))
+  (let* ((with-p (remove nil differences :key #'paired-p))
+         (tested (remove-if-not #'tested-p with-p)))
+    (dolist (difference with-p)
+      (setf (paired-adjusted-p difference) (paired-p difference)
+            (paired-tests difference) (max 1 (length tested))))
     (loop for difference in tested
           for adjusted in (holm-adjusted (mapcar #'paired-p tested))
-          do (setf (paired-adjusted-p difference) adjusted
-                   (paired-tests difference) (length tested)))))
+          do (setf (paired-adjusted-p difference) adjusted))))
 
 (defun least-p (seeds)
   "Return the least p of a test over so many SEEDS: all differences on one side."

@@ -137,11 +137,17 @@ of one factor; NIL if not."
             when (and (member level levels :test #'string=) (member base levels :test #'string=))
               return (list place level base)))))
 
+(defun same-either-way-p (results first second contest)
+  "True if the conditions numbered FIRST and SECOND are just those that CONTEST compares."
+  (equal (list (list (numbered-sample results first) (numbered-sample results second)))
+         (contest-pairs results contest)))
+
 (defun as-meant (results first second)
   "Return FIRST and SECOND, as words if they are values of one factor and no numbers of conditions.
 Signals MISUSE if they are both."
   (let ((contest (contest-of-values results first second)))
-    (cond ((null contest) (values first second))
+    (cond ((or (null contest) (same-either-way-p results first second contest))
+           (values first second))
           ((and (numbered-sample results first) (numbered-sample results second))
            (reject-ambiguous (format nil "~D against ~D" first second)
                              (list (format nil "the conditions number ~D and ~D" first second)

@@ -79,10 +79,21 @@ least one is tried, and others as long as less than SECONDS have passed."
         for before in parts
         for now = (prepare-condition experiment condition)
         unless (equal before now)
-          do (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The ~
-                          rows in ~A may be of either. ~@[~A ~]Begin in another directory."
-                         (changed-names before now) (native-name directory)
-                         (shared-variable-advice before now))))
+          do (call-noting-refusal (lambda () (reject-changed before now directory)) directory)))
+
+(defun reject-changed (before now directory)
+  "Signal MISUSE: the parts BEFORE of what decides the rows in DIRECTORY are NOW others."
+  (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows in ~A ~
+               may be of either. ~@[~A ~]Begin in another directory."
+              (changed-names before now) (native-name directory)
+              (shared-variable-advice before now)))
+
+(defun call-noting-refusal (function directory)
+  "Call FUNCTION. If it signals MISUSE, the text in DIRECTORY says from then on that the rows beside
+it were refused."
+  (handler-bind ((misuse (lambda (condition)
+                           (note-refusal directory (princ-to-string condition)))))
+    (funcall function)))
 
 (defun check-run-again (store parts seconds)
   "Signal MISUSE if what was kept in STORE, in so many SECONDS, cannot be had again: if its
@@ -90,8 +101,11 @@ experiment, of PARTS, is no longer what it was, or a trial comes out otherwise. 
 twentieth of that time, or one trial."
   (let ((experiment (store-experiment store)))
     (check-unchanged experiment parts (store-path store))
-    (check-samples experiment
-                   (loop for condition in (experiment-conditions experiment)
-                         for texts = (gethash condition (store-samples store))
-                         when texts collect texts)
-                   (/ seconds 20))))
+    (call-noting-refusal
+     (lambda ()
+       (check-samples experiment
+                      (loop for condition in (experiment-conditions experiment)
+                            for texts = (gethash condition (store-samples store))
+                            when texts collect texts)
+                      (/ seconds 20)))
+     (store-path store))))

@@ -105,6 +105,7 @@ code."
   "Run the trials of EXPERIMENT that DIRECTORY has no rows of, and put the table in order."
   (let ((parts (loop for condition in (experiment-conditions experiment)
                      collect (prepare-condition experiment condition))))
+    (when (existing-path (rows-file directory)) (check-not-refused directory))
     (multiple-value-bind (presence samples) (rows-there experiment parts directory)
       (check-samples experiment samples *seconds-for-checks*)
       (note-damaged-description directory)

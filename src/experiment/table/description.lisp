@@ -94,10 +94,40 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
   (let ((text (with-output-to-string (stream)
                 (printing-plainly ()
                   (write-description experiment parts trials until stream)))))
-    (call-replacing-file (lambda (stream)
-                           (write-string text stream)
-                           (write-string (check-line text) stream))
-                         (description-file directory))))
+    (write-checked-text text (description-file directory))))
+
+(defun write-checked-text (text file)
+  "Let FILE have TEXT, and its check sum."
+  (call-replacing-file (lambda (stream)
+                         (write-string text stream)
+                         (write-string (check-line text) stream))
+                       file))
+
+;;; Rows that were refused stay so, whoever reads them later.
+
+(defparameter *refusal-title* "Refused: ")
+
+(defun refusal-in (directory)
+  "Return why the rows in DIRECTORY were refused when they were run, or NIL if they were not."
+  (let ((line (find-if (lambda (line) (starts-with-subseq *refusal-title* line))
+                       (description-lines directory))))
+    (and line (subseq line (length *refusal-title*)))))
+
+(defun note-refusal (directory reason)
+  "Let the text in DIRECTORY say that the rows beside it were refused, for REASON, a text."
+  (let* ((text (description-text directory))
+         (place (and text (search *check-title* text :from-end t))))
+    (when place
+      (let ((text (format nil "~A~A~A~%" (subseq text 0 place) *refusal-title* (one-line reason))))
+        (write-checked-text text (description-file directory))))))
+
+(defun check-not-refused (directory)
+  "Signal MISUSE if the rows in DIRECTORY were refused."
+  (let ((reason (refusal-in directory)))
+    (when reason
+      (reject-use "The rows in ~A were refused when they were run. Delete rows.csv there, or give ~
+                   another directory. It was said then: ~A"
+                  (native-name directory) reason))))
 
 ;;; What has changed.
 

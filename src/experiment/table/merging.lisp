@@ -50,6 +50,7 @@ directories has series of a condition, TO has none of it."
          (target (ensure-store-directory to))
          (there (and (existing-path (rows-file target)) (list target)))
          (sources (remove-duplicates (append there sources) :test #'equal :from-end t)))
+    (mapc #'check-not-refused sources)
     (call-with-directory
      (lambda ()
        (call-plainly

@@ -192,6 +192,9 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
       (reject-use "There is no rows.csv in ~A. Give the directory of an experiment."
                   (native-name path)))
     (note-damaged-description path)
+    (when (refusal-in path)
+      (warn "The rows in ~A were refused when they were run: ~A" (native-name path)
+            (refusal-in path)))
     path))
 
 (addition read-results)
