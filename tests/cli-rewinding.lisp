@@ -24,6 +24,13 @@
     (is-true (has-words-p (joined lines) "Plans under way: drone"))
     (is (equal "3" (car (last lines))))))
 
+(test rewind.waits-for-the-commands-that-are-under-way-again
+  "As after Lisp that rewinds."
+  (is (equal '("NIL" "robot-turn: Robot turned 1.00" "Tick 3, headless."
+               "robot-turn: Robot turned 1.00" "5")
+             (type-to 'ars-worlds:dot "(values (keep-forks))" "turn 1" "rewind 2"
+                      "(simulation-tick)"))))
+
 (test rewind.says-what-plans-without-names-are
   (is-true (has-words-p (joined (type-batch "(keep-forks)"
                                             "(begin-plan (interp-lambda () (wait-time 99)))"

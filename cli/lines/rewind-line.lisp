@@ -22,7 +22,9 @@
 (defun rewind-here (session ticks)
   "Let SESSION go on in a run that is TICKS ticks back."
   (rewind ticks)
-  (setf (session-after-rewind session) nil)
+  ;; The commands that are under way again are nobody's errands.
+  (setf (session-after-rewind session) nil
+        (session-lisp-p session) t)
   (take-up-plans session))
 
 (defun check-rewindable (session)
