@@ -134,6 +134,39 @@ turn 1" "--rate" "free")
                (first (last (ends-in (objects-of-script "pause
 turn 1" "--rate" "free")))))))
 
+(test scripts.say-that-what-lisp-has-asked-for-has-not-ended
+  "As of a line that is none, also if a continuation has paused the run."
+  (dolist (text '("pause
+(robot-turn dot 1)
+quit" "pause
+(list (robot-turn dot 3 nil)
+  (camera-turn (elt !>dot.cameras 0) .1 (lambda (&rest results) results (pause))))
+resume"))
+    (multiple-value-bind (lines status) (run-script text "--rate" "free")
+      (is (= 1 status))
+      (is-true (has-words-p (first (last lines)) "not all that was asked for has ended"))))
+  (is (equal '("done\",\"line\":1,\"text\":\"pause\",\"ok\":true"
+               "waiting\",\"line\":2,\"text\":\"(robot-turn dot 1)\""
+               "done\",\"line\":3,\"text\":\"(list 2)\",\"ok\":true"
+               "done\",\"line\":2,\"text\":\"(robot-turn dot 1)\",\"ok\":false")
+             (ends-in (objects-of-script "pause
+(robot-turn dot 1)
+(list 2)" "--rate" "free")))))
+
+(test scripts.repeat-what-waits-for-nothing-while-time-stands-still
+  "But not what Lisp asks for; that is waited for while time passes."
+  (is (equal '("Tick 0, paused." "1" "1" "robot-turn: Robot turned 1.00")
+             (values (run-script "pause
+turn 1
+repeat 2 (list* 1)
+resume" "--rate" "free"))))
+  (is-true (has-words-p (second (run-script "pause
+repeat 2 (robot-turn dot 1)
+resume" "--rate" "free"))
+                        "line 2: Time stands still: (robot-turn dot 1)"))
+  (is (equal '("robot-turn: Robot turned 1.00" "robot-turn: Robot turned 1.00")
+             (values (run-script "repeat 2 (robot-turn dot 1)")))))
+
 (test scripts.do-not-wait-while-time-stands-still
   "Nobody is there to let it go on: not for REPEAT, nor when a continuation has paused."
   (let ((lines (run-script "pause

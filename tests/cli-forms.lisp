@@ -4,9 +4,10 @@
 
 (in-suite cli-scripts)
 
-(defun ends-of-lines (text)
-  "Return the numbers of lines with a done in a script of TEXT, a list, negative if not ok."
-  (loop for object in (objects-of-script text)
+(defun ends-of-lines (text &rest options)
+  "Return the numbers of lines with a done in a script of TEXT with OPTIONS, a list, negative if not
+ok."
+  (loop for object in (apply #'objects-of-script text options)
         when (search "\"type\":\"done\"" object)
           collect (let ((line (parse-integer object :start (+ 7 (search "\"line\":" object))
                                                     :junk-allowed t)))
@@ -63,3 +64,9 @@
                                                         "--rate" "free"))))
     (is (search "\"text\":\"turn 1\",\"ok\":true" text) "~A" text)
     (is (search "\"status\":0,\"errors\":0" text) "~A" text)))
+
+(test json.of-a-command-of-lisp-that-fails-is-not-well
+  "Also if it has waited for time to pass."
+  (is (equal '(1 -2 3)
+             (ends-of-lines (format nil "pause~%(hand-ungrasp (robot-hand dot 0) nil)~%resume")
+                            "--rate" "free"))))

@@ -67,10 +67,31 @@ only what comes of your own; say which, if SETTING is left out."
   (format t "What comes of the commands of plans and programs is ~:[~;not ~]shown.~%"
           (session-quiet-p session)))
 
-(defun check-time-passes (session cmd)
-  "Signal BAD-LINE if what SESSION has issued, by the line CMD, waits for RESUME."
-  (when (and (errands-under-way session) (waits-for-resume-p session))
+(defun check-time-passes (session cmd errands inbox)
+  "Signal BAD-LINE if what SESSION has issued, by the line CMD, waits for RESUME: one of ERRANDS, or
+what was not in INBOX before."
+  (when (and (waits-for-resume-p session)
+             (or (notevery #'errand-over-p errands)
+                 (some #'awaited-p (set-difference (requests-waiting) inbox))))
     (reject-line "Time stands still: ~A is carried out after RESUME, and not repeated." cmd)))
+
+(defun await-repetition (session cmd errands inbox)
+  "Wait until ERRANDS, which SESSION has issued by the line CMD, and what Lisp has issued are done.
+Signals BAD-LINE if that waits for RESUME. INBOX is what did so before."
+  (check-time-passes session cmd errands inbox)
+  (mapc #'await-errand (reverse errands))
+  (unless (waits-for-resume-p session) (await-lisp))
+  (check-time-passes session cmd errands inbox))
+
+(defun repeat-once (session cmd)
+  "Do what CMD, a line, says, and wait for what it has issued, unless SESSION is in a trial."
+  (let ((before (session-errands session)) (inbox (requests-waiting)))
+    (run-text session cmd)
+    (unless (session-visit session)
+      (await-repetition session cmd
+                        (remove-if (lambda (errand) (member errand before))
+                                   (session-errands session))
+                        inbox))))
 
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :line "a command, with its arguments"))
@@ -79,11 +100,7 @@ only what comes of your own; say which, if SETTING is left out."
 trial without waiting."
   (loop repeat num
         until (session-over-p session)
-        do (run-text session cmd)
-           (unless (session-visit session)
-             (check-time-passes session cmd)
-             (await-errands session)
-             (check-time-passes session cmd))))
+        do (repeat-once session cmd)))
 
 (define-line "QUIT" (session)
     (:general)

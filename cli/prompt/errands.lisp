@@ -117,22 +117,31 @@ on."
   (let ((event (resource-event resource)))
     (and (typep event 'operation) (not (grip-watched-p resource)))))
 
-(defun busy-p (resource)
-  "True if RESOURCE carries out a command that is waited for."
-  (and (at-work-p resource) (awaited-p (resource-event resource))))
-
-(defun robot-busy-p (robot)
-  (some #'busy-p (robot-resources robot)))
+(defun some-request-p (test)
+  "True if TEST, a function of a request, is true of one that waits to begin, or is carried out, in
+the current simulation."
+  (flet ((busy-p (resource)
+           (and (at-work-p resource) (funcall test (resource-event resource)))))
+    (or (some test (timeline-inbox (timeline-of *simulation*)))
+        (some (lambda (robot) (some #'busy-p (robot-resources robot)))
+              (simulation-robots *simulation*)))))
 
 (defun settled-p ()
   "True if no command but those of plans waits to begin, or goes on, in the current simulation."
-  (and (notany #'awaited-p (timeline-inbox (timeline-of *simulation*)))
-       (notany #'robot-busy-p (simulation-robots *simulation*))))
+  (not (some-request-p #'awaited-p)))
 
 (defun settle ()
-  "Let time pass until no robot carries out a command that Lisp has issued, within patience."
+  "Let time pass until no robot carries out a command that Lisp has issued, within patience. True
+if none does."
   (let ((simulation *simulation*))
     (await (lambda () (let ((*simulation* simulation)) (settled-p))))))
+
+(defun await-lisp ()
+  "Let time pass until what Lisp in lines has issued is done, within patience."
+  (let ((simulation *simulation*))
+    (flet ((of-lisp-p (request) (lisp-asker-p (request-asker request))))
+      (await (lambda ()
+               (let ((*simulation* simulation)) (not (some-request-p #'of-lisp-p))))))))
 
 (defun waits-p (session)
   "True if SESSION reads on when what was issued has completed."
@@ -155,7 +164,10 @@ on."
   (heed-rewind session)
   (if (waits-p session)
       (progn (await-errands session)
-             (when (shiftf (session-lisp-p session) nil) (settle))
+             (setf (session-lisp-p session)
+                   (and (shiftf (session-lisp-p session) nil)
+                        (not (settle))
+                        (held-up-p *simulation*)))
              (tell-whereabouts session))
       (setf (session-errands session) (errands-under-way session))))
 
@@ -173,12 +185,27 @@ on."
         ((some #'errand-failed-p errands) :failed)
         (t :ok)))
 
+(defun lisp-goes-on-p (session)
+  "True if time stands still, and Lisp in the line of SESSION that is under way has issued what has
+not ended."
+  (let ((account (session-account session)))
+    (and (account-text account)
+         (waits-for-resume-p session)
+         (some-request-p (lambda (request) (of-lisp-in-line-p (request-asker request) account))))))
+
 (defun end-of-errands (session)
   "Return NIL if what SESSION has issued last has ended, or what CATCH-UP has not waited for: a
 function that returns what HOW-ENDED does."
-  (let* ((errands (remove-if #'errand-apart-p (errands-under-way session)))
-         (text (account-text (session-account session)))
-         (lisp-p (and text (lisp-p text) (waits-for-resume-p session))))
+  (let ((errands (remove-if #'errand-apart-p (errands-under-way session)))
+        (lisp-p (lisp-goes-on-p session)))
     (unless (how-ended errands lisp-p)
       (dolist (errand errands) (setf (errand-apart-p errand) t))
       (lambda () (how-ended errands lisp-p)))))
+
+(defun unended-p (session)
+  "True if what SESSION has issued, itself or by Lisp, has not ended, as time stands still."
+  (and *simulation*
+       (or (errands-under-way session)
+           (and (session-lisp-p session)
+                (waits-for-resume-p session)
+                (not (settled-p))))))

@@ -34,6 +34,15 @@ TYPED-P is true of a line that is no Lisp."
   (let ((asker (message-asker message)))
     (and (equal asker +asker+) (gethash asker *askers*) t)))
 
+(defun lisp-asker-p (asker)
+  "True if ASKER, of a request, asks for what Lisp in lines asks for."
+  (and (equal asker +asker+) (not (line-asker-p asker))))
+
+(defun of-lisp-in-line-p (asker account)
+  "True if ASKER, of a request, asks for what Lisp in the line under way of ACCOUNT asks for."
+  (destructuring-bind (&optional whose line typed-p) (gethash asker *askers*)
+    (and (eq whose account) (eql line (account-line account)) (not typed-p))))
+
 (defun note-plan-of-line (account plan)
   "Note that the line under way of ACCOUNT, or NIL, has begun PLAN, a task."
   (when account (push (cons (asker-note plan) (line-under-way account)) (account-plans account))))

@@ -238,7 +238,9 @@ an error in a script, with the place of its line."
   "Count the error MESSAGE in SESSION: if it is of an earlier line, not for the line under way."
   (let ((account (session-account session)))
     (incf (session-errors session))
-    (when (others-error-p account message) (incf (account-errors account)))))
+    (when (others-error-p account message)
+      (incf (account-errors account))
+      (note-error-of-line account (line-of-message account message)))))
 
 (defun messages-for (session messages)
   "Count the errors among MESSAGES, and return those that SESSION is to show."
