@@ -45,6 +45,19 @@ ok."
   (let ((long (text-of-bytes *too-many*)))
     (is (equal '(2 4) (ends-of-lines (format nil "; ~A~%turn 1~%# ~:*~A~%turn 2~%" long))))))
 
+(test comments.that-are-longer-than-a-line-leave-what-is-behind-them
+  "Unless it is itself in a line that is too long."
+  (let ((long (text-of-bytes *too-many*)))
+    (is (equal '(2 3) (ends-of-lines (format nil "#| ~A~%|# turn 1~%turn 2~%" long))))
+    (is (equal '(2 3) (ends-of-lines (format nil "#| ~A~%|# (list 1)~%turn 2~%" long))))
+    (is (equal '(2) (ends-of-lines (format nil "#| ~A |#~%turn 2~%" long))))
+    (is (equal '(3) (ends-of-lines (format nil "#|~%~A|# #| more |# ; more~%turn 2~%" long))))
+    (is (equal '(-1 2) (ends-of-lines (format nil "#| ~A |#  turn 1~%turn 2~%" long))))
+    (is (equal '(-1 4) (ends-of-lines (format nil "#|~%~A|# (turn~%1)~%turn 2~%" long))))
+    (is (equal '(-1 3) (ends-of-lines (format nil "(list 1) #|~%~A|# turn 1~%turn 2~%" long))))
+    (is (equal '(1 3) (ends-of-lines (format nil "(list 1) #|~%~A|#~%turn 2~%" long))))
+    (is (equal '(-1) (ends-of-lines (format nil "#| ~A~%turn 2~%" long))))))
+
 (test comments.may-touch-what-is-before-them
   (is (= 0 (nth-value 1 (type-batch "status; c" "turn 90 deg; c" "turn 1; c" "turn pi/2;c"))))
   (is (equal '(1 2) (ends-of-lines (format nil "go 1 m; c~%status;c~%")))))

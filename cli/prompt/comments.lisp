@@ -23,18 +23,19 @@ in how many it is at its end, if they go on."
                  (t (setf i end)))
         finally (return (values nil depth))))
 
-(defun rest-after-block (session text start)
+(defun rest-after-block (session text start trouble)
   "Return what stands behind the comment that begins in TEXT at START, reading on in SESSION until
-it ends. Signals BAD-LINE if it does not."
+it ends; and what TROUBLE is for TEXT: NIL, or the condition that says that this is but the outline
+of a line that is too long. Signals BAD-LINE if the comment does not end."
   (let ((line text) (position (+ 2 start)) (depth 1))
     (loop
       (multiple-value-bind (end deeper) (block-end line position depth)
-        (when end (return (subseq line end)))
+        (when end (return (values (subseq line end) trouble)))
         (setf depth deeper
               position 0
-              line (or (read-outline session text)
-                       (reject-line "The comment that begins with #| does not end; close it with ~
-                                     |#.")))))))
+              (values line trouble) (read-outline session text))
+        (unless line
+          (reject-line "The comment that begins with #| does not end; close it with |#."))))))
 
 (defun block-start (text)
   "Return where the first such comment begins in TEXT, of no form, outside of quotes and of other
@@ -47,13 +48,33 @@ comments; NIL if there is none."
                  ((block-at-p text i) (return i))
                  ((comment-at-p text i) (return nil)))))
 
-(defun without-blocks (session text)
-  "Return TEXT, a line of SESSION as typed, without such comments, unless it begins with a form."
+(defun without-blocks (session text &optional trouble)
+  "Return TEXT, a line of SESSION as typed, without such comments, unless it begins with a form; and
+what TROUBLE is for TEXT, as in REST-AFTER-BLOCK. What is in comments may be too long."
   (let ((start (unless (or (comment-p text) (lisp-p text)) (block-start text))))
     (if start
-        (without-blocks session (format nil "~A ~A" (subseq text 0 start)
-                                        (rest-after-block session text start)))
-        text)))
+        (let ((before (subseq text 0 start)))
+          (multiple-value-bind (rest later) (rest-after-block session text start trouble)
+            (without-blocks session (format nil "~A ~A" before rest)
+                            (or (unless (comment-p rest) later)
+                                (unless (comment-p before) trouble)))))
+        (values text trouble))))
+
+(defun check-outline (session text trouble)
+  "Signal TROUBLE, unless it is NIL or TEXT, an outline of a line of SESSION, is a comment. A form
+that begins there is passed over."
+  (when (and trouble (not (comment-p text)))
+    (when (lisp-p text) (skip-rest session text 0))
+    (error trouble)))
+
+(defun forms-after-block (session text start)
+  "Return what stands behind the comment that begins in TEXT, of forms, at START, reading on in
+SESSION until it ends. Signals LINE-TOO-LONG if there is more than comments in such a line."
+  (multiple-value-bind (rest trouble) (rest-after-block session text start nil)
+    (cond (trouble (multiple-value-call #'check-outline
+                     session (without-blocks session rest trouble))
+                   "")
+          (t rest))))
 
 (defun skip-comments (session text position)
   "Return TEXT, of forms, or as much of it as stands behind comments, and where it goes on from
@@ -63,5 +84,5 @@ POSITION behind blanks and comments; read on in SESSION until these end."
       (unless (block-at-p text start)
         (return (values text start)))
       ;; Not at 0: there is something before it.
-      (setf text (format nil " ~A" (rest-after-block session text start))
+      (setf text (format nil " ~A" (forms-after-block session text start))
             position 1))))

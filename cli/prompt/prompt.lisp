@@ -35,23 +35,20 @@ tell somebody who sits there."
   (note-line-begun (session-account session) (if (comment-p text) nil text)
                    (lines-typed (session-input session)) (session-errors session)))
 
-(defun begin-long-line (session condition)
-  "Begin the line of SESSION that is too long, as CONDITION says, and pass over the rest of the form
-or comment that begins in it."
-  (let ((outline (line-outline condition)))
-    (begin-line-of session (line-beginning condition))
-    (if (lisp-p outline)
-        (skip-rest session outline 0)
-        (without-blocks session outline))))
+(defun begin-next (session text trouble)
+  "Begin the line of SESSION that is TEXT, or that TEXT is an outline of if the condition TROUBLE says
+that it is too long. Return it without comments between #| and |#, of any length."
+  (begin-line-of session (if trouble (line-beginning trouble) text))
+  (multiple-value-bind (rest trouble) (without-blocks session text trouble)
+    (check-outline session rest trouble)
+    (unless (eq rest text) (begin-line-of session rest))
+    rest))
 
 (defun read-next (session)
-  "Return the next line of SESSION, or NIL at the end. One that is too long to be done is begun, so
-that its end is reported; but a comment is as good as an empty line."
+  "Return the next line of SESSION, or NIL at the end; of one that is too long to be done an outline,
+and the condition that says so."
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
-    (line-too-long (condition)
-      (cond ((comment-p (line-outline condition)) "")
-            (t (begin-long-line session condition)
-               (error condition))))))
+    (line-too-long (condition) (values (line-outline condition) condition))))
 
 (defun find-place (session)
   "Let SESSION command the robot that it is for, in a run that goes on, and listen to that."
@@ -66,14 +63,11 @@ that its end is reported; but a comment is as good as an empty line."
   (tell-whereabouts session)
   (find-place session)
   (when (session-account session) (account-for-last session))
-  (let ((text (unless (stopped-p session) (read-next session))))
+  (multiple-value-bind (text trouble) (unless (stopped-p session) (read-next session))
     (cond (text
            ;; While it was typed, its run may have ended and another begun.
            (unless (session-breaks session) (find-place session))
-           (begin-line-of session text)
-           (let ((rest (without-blocks session text)))
-             (unless (eq rest text) (begin-line-of session rest))
-             (do-telling-of-time session rest)))
+           (do-telling-of-time session (begin-next session text trouble)))
           (t (setf (session-over-p session) t
                    (session-ended-p session) (not (terminal-p session)))))))
 

@@ -33,10 +33,10 @@
     char))
 
 (defun read-outline (session text)
-  "Return the next line of SESSION, which goes on from TEXT, or the outline of one that is too long;
-NIL at the end."
+  "Return the next line of SESSION, which goes on from TEXT, or the outline of one that is too long
+and the condition that says so; NIL at the end."
   (handler-case (read-input session +going-on+ text)
-    (line-too-long (condition) (line-outline condition))))
+    (line-too-long (condition) (values (line-outline condition) condition))))
 
 (defun next-outline (session text)
   "Return TEXT with the next line of SESSION after it, or its outline. At the end of what is typed,

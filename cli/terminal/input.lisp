@@ -16,7 +16,7 @@
   ((beginning :initarg :beginning :reader line-beginning)
    (outline :initarg :outline :reader line-outline))
   (:documentation "A line that was typed is too long. BEGINNING is how it begins, OUTLINE a text
-that has its beginning, parentheses, quotes and marks of comments."))
+that has its beginning, parentheses, quotes, marks of comments and of each word a beginning."))
 
 (defvar *program-reads* nil
   "What is called before a program of the user, not the prompt, reads a line that is typed; NIL
@@ -50,9 +50,10 @@ was more when the last of them was."))
   (interactive-stream-p stream))
 
 (defun outlining-p (char last)
-  "True if CHAR, which stands after LAST, shows how forms of Lisp go on."
+  "True if CHAR, which stands after LAST, shows how forms of Lisp go on, or begins a word."
   (flet ((mark-p (char) (find char "()\"\\|;#")))
-    (or (mark-p char) (mark-p last) (char= char #\Newline))))
+    (or (mark-p char) (mark-p last) (char= char #\Newline)
+        (and (blank-p last) (not (blank-p char))))))
 
 (defun read-octets (octets)
   "Return the characters of the stream OCTETS up to and with the next newline, but not many more
