@@ -36,8 +36,8 @@ tell somebody who sits there."
                    (lines-typed (session-input session)) (session-errors session)))
 
 (defun begin-next (session text trouble)
-  "Begin the line of SESSION that is TEXT, or that TEXT is an outline of if the condition TROUBLE says
-that it is too long. Return it without comments between #| and |#, of any length."
+  "Begin the line of SESSION that is TEXT, or that TEXT is an outline of if the condition TROUBLE
+says that it is too long. Return it without comments between #| and |#, of any length."
   (begin-line-of session (if trouble (line-beginning trouble) text))
   (multiple-value-bind (rest trouble) (without-blocks session text trouble)
     (check-outline session rest trouble)
@@ -45,8 +45,8 @@ that it is too long. Return it without comments between #| and |#, of any length
     rest))
 
 (defun read-next (session)
-  "Return the next line of SESSION, or NIL at the end; of one that is too long to be done an outline,
-and the condition that says so."
+  "Return the next line of SESSION, or NIL at the end; of one that is too long to be done an
+outline, and the condition that says so."
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
 

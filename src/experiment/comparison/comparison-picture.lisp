@@ -44,7 +44,7 @@
 
 (defun tests-words (contrasts measure)
   "Return as one of how many tests p of CONTRASTS counts in the picture of MEASURE; NIL if none is."
-  (let ((tested (remove nil (shown-differences contrasts measure) :key #'paired-p)))
+  (let ((tested (remove-if-not #'tested-p (shown-differences contrasts measure))))
     (when tested
       (let ((tests (paired-tests (first tested))))
         (format nil "one of ~D test~:P~:[, ~D of them shown~;~]" tests (= tests (length tested))
