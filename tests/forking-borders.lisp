@@ -196,3 +196,48 @@ first makes, and in the run itself."
         (run:with-fork () (base:dirty-simulation) (is (= noise (noise))))
         (base:dirty-simulation)
         (is (= noise (noise)))))))
+
+(defun noise-after (function)
+  "Return the noise of motion after FUNCTION and DIRTY-SIMULATION in a run that keeps forks."
+  (run:with-simulation (ars-worlds:robbie :keep t)
+    (funcall function)
+    (base:dirty-simulation)
+    base:motion-noise*))
+
+(test rewinds.keep-what-dirty-simulation-restores
+  (let ((noise base:motion-noise*))
+    (flet ((cleaned (back)
+             (lambda ()
+               (base:clean-simulation)
+               (run:run-ticks 3)
+               (run:rewind back))))
+      (is (= noise (noise-after (cleaned 1)) (noise-after (cleaned 3)))))
+    (is (= noise (noise-after (lambda ()
+                                (base:clean-simulation)
+                                (run:run-ticks 3)
+                                (base:dirty-simulation)
+                                (run:run-ticks 3)
+                                (run:rewind 5)
+                                (is (zerop base:motion-noise*))))))))
+
+(test replays.keep-what-dirty-simulation-restores
+  (let* ((noise base:motion-noise*)
+         (journal (run:with-simulation (ars-worlds:robbie :journal t)
+                    (base:clean-simulation)
+                    (run:run-ticks 3)
+                    (run:simulation-journal time:*simulation*))))
+    (run:with-replay (journal)
+      (is (zerop base:motion-noise*))
+      (base:dirty-simulation)
+      (is (= noise base:motion-noise*)))))
+
+(test forks.of-continuations-let-plans-act-in-that-tick
+  (let ((*told* '()))
+    (run:with-simulation (ars-worlds:robbie)
+      (driver:begin-plan (rpl:interp-lambda () (push (rpl:plan-time) *told*)))
+      (command:robot-place ars-worlds:robbie
+                           (lambda (&rest ignore)
+                             (declare (ignore ignore))
+                             (run:with-fork () (run:run-ticks 3))))
+      (run:run-ticks 3))
+    (is (equal '(1 1) *told*))))

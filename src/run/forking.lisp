@@ -74,12 +74,14 @@ a live run's there are no dice: each of its threads has its own, and plans take 
                                                   (simulation-tick simulation)))
                environment))))
 
-;; A continuation may have made the fork, and others of that tick are yet to be called.
-(defun tell-rest-of-tick (fork)
-  "Call in FORK what is still to be called in the tick in which it was made."
-  (let ((timeline (simulation-timeline fork)))
-    (when (or (timeline-untold timeline) (timeline-notifications timeline))
-      (call-inside fork (lambda () (deliver-notifications timeline))))))
+;; A continuation may have made the fork: others of that tick are yet to be called, and plans are
+;; yet to act.
+(defun finish-tick (fork phase)
+  "Do in FORK what is still to be done in the tick in which it was made, in PHASE of that."
+  (when (<= (phase-number :continuations) phase (phase-number :observers))
+    (call-inside fork (lambda ()
+                        (deliver-notifications (simulation-timeline fork))
+                        (let-all-participants-act fork)))))
 
 (defun fork-now (simulation continuations decisions)
   "Return a fork of SIMULATION, which stands still here; see FORK-OPTIONS. Signals MISUSE inside a
@@ -95,7 +97,7 @@ tick, and CANNOT-FORK."
           (simulation-trails copy) (simulation-trails simulation))
     (when journal
       (setf (simulation-journal copy) (copied-journal journal (simulation-tick simulation))))
-    (tell-rest-of-tick copy)
+    (finish-tick copy (timeline-phase (simulation-timeline simulation)))
     copy))
 
 ;;; Whoever takes part may be busy just now, in another thread.

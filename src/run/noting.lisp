@@ -49,7 +49,16 @@ past."
   (follow-parameters (simulation-known-parameters simulation)
                      (and (simulation-thread simulation) t)
                      (lambda (symbol value)
-                       (note simulation 'parameter (list (string-downcase symbol) value)))))
+                       (note simulation 'parameter (list (string-downcase symbol) value))))
+  (when (and (eq simulation *simulation*)
+             (not (eq *noise-before-cleaning* (simulation-known-noise simulation))))
+    (note-cleaning simulation)))
+
+(defun note-cleaning (simulation)
+  "Let the journal of SIMULATION know what DIRTY-SIMULATION would restore there now."
+  (setf (simulation-known-noise simulation) *noise-before-cleaning*)
+  (note simulation 'cleaning (list (loop for (symbol value) in *noise-before-cleaning*
+                                         collect (list (string-downcase symbol) value)))))
 
 (defun own-binding-p (binding)
   "True if BINDING, (symbol . value), is that of this thread alone."

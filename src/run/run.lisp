@@ -14,6 +14,8 @@
    (known-parameters (parameter-values) simple-vector
                      "the values of the parameters as the journal knows them"))
   (:link
+   (known-noise *noise-before-cleaning* list
+                "what DIRTY-SIMULATION would restore, as the journal knows it")
    (journal nil t "the journal that the simulation keeps, or NIL")
    (variables '() list "the symbols that are bound for the headless simulation")
    (environment '() list "what they are, a list (symbol . value), in a fork")

@@ -46,6 +46,15 @@ journal has that in the same place."
 
 (define-operator 'parameter '(name datum) #'set-parameter)
 
+(defun set-cleaning (settings)
+  "Let DIRTY-SIMULATION restore SETTINGS, lists (name value), as in the run that is repeated."
+  (setf *noise-before-cleaning*
+        (loop for (name value) in settings
+              collect (list (parameter-symbol (find-parameter name)) value)))
+  (follow-settings *simulation*))
+
+(define-operator 'cleaning '(datum) #'set-cleaning)
+
 (defun note-request (simulation request)
   (destructuring-bind (operator . arguments) (request-entry request)
     (note simulation operator arguments request)))
