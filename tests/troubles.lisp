@@ -236,6 +236,13 @@ shown at once."
     (is (string= "" (error-output (base:trouble-set t "slip" "slip"))))
     (is (= 1 heard))))
 
+(test messages.of-interrupts-wait-for-the-queue
+  "What interrupts a thread that queues a message, and queues one too, comes after it."
+  (let ((base:*message-queue* (base:make-message-queue)))
+    (base::with-queue (base:*message-queue*)
+      (base:interrupt-thread (base:current-thread) (lambda () (base:message-set "later"))))
+    (is-true (has-words-p (displayed) "later"))))
+
 ;;; Experiments.
 
 (rpl:def-interp-proc plan-to-dig (how)

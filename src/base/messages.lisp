@@ -87,13 +87,18 @@ counts and tables; whether UNSIGNALLED is NIL may be asked without it."
       (documentation 'message-queue-unsignalled 'function)
       "Return the first message about an error in users' code that is to be signalled, or NIL.")
 
+;; An interrupt, such as Control-C, may report something too.
+(defmacro with-queue ((queue) &body body)
+  "Run BODY while no other thread changes QUEUE. Interrupts wait."
+  `(deferring-interrupts (with-lock ((message-queue-lock ,queue)) ,@body)))
+
 (defvar *message-queue* (make-message-queue :echoed (make-hash-table :test 'equal))
   "The queue that messages go to. A headless simulation binds its own.")
 
 (defun copy-message-queue (queue)
   "Return a new queue that holds the messages of QUEUE, as seen, and has no listener."
   (let ((copy (make-message-queue)))
-    (with-lock ((message-queue-lock queue))
+    (with-queue (queue)
       (setf (message-queue-newest-first copy) (message-queue-newest-first queue)
             (message-queue-seen copy) (message-queue-newest-first queue)
             (message-queue-count copy) (message-queue-count queue)
@@ -126,7 +131,7 @@ it otherwise."
 
 (defun queue-message (message queue)
   "Add MESSAGE to QUEUE, and let whoever listens to that know."
-  (with-lock ((message-queue-lock queue))
+  (with-queue (queue)
     (when (and (message-cause message) (eq :error (message-kind message)))
       (keep-trouble message queue))
     (push message (message-queue-newest-first queue))
@@ -168,7 +173,7 @@ nothing."
 (defun take-messages (&optional (queue *message-queue*))
   "Empty QUEUE. Return its messages, oldest first, at most *MESSAGE-LIMIT* of them. If older
 ones were forgotten, a warning that says how many comes first."
-  (with-lock ((message-queue-lock queue))
+  (with-queue (queue)
     (setf (message-queue-read-p queue) t)
     (let* ((messages (message-queue-newest-first queue))
            (kept (subseq messages 0 (min (length messages) *message-limit*)))

@@ -47,7 +47,7 @@ or a failure of a plan; TEXT says it in a line. Return nothing."
 (defun errors-in (queue run-p)
   "Return the errors of users' code that were told to QUEUE of runs for which RUN-P is true, as
 USER-CODE-ERRORs, the oldest first."
-  (let ((messages (with-lock ((message-queue-lock queue))
+  (let ((messages (with-queue (queue)
                     (reverse (message-queue-troubles queue)))))
     (loop for message in messages
           when (funcall run-p (message-run message))
@@ -56,20 +56,20 @@ USER-CODE-ERRORs, the oldest first."
 (defun forget-errors (queue run-p)
   "Forget the errors of users' code that were told to QUEUE of runs for which RUN-P is true: else a
 run that is over would be kept as long as the queue."
-  (with-lock ((message-queue-lock queue))
+  (with-queue (queue)
     (setf (message-queue-troubles queue)
           (remove-if run-p (message-queue-troubles queue) :key #'message-run))))
 
 (defun drop-unsignalled (queue)
   "Let no error of users' code that QUEUE has been told of be signalled."
-  (with-lock ((message-queue-lock queue))
+  (with-queue (queue)
     (setf (message-queue-unsignalled queue) nil)))
 
 (defun take-unsignalled (queue)
   "Return the first error of users' code that is to be signalled and was not, as USER-CODE-ERROR, or
 NIL. It, and others that came after it, count as signalled; it is no message any more."
   (when (message-queue-unsignalled queue)
-    (with-lock ((message-queue-lock queue))
+    (with-queue (queue)
       (let ((message (shiftf (message-queue-unsignalled queue) nil)))
         (when message
           (when (member message (message-queue-newest-first queue) :test #'eq)
@@ -98,7 +98,7 @@ there is one. True if there was, and whoever handled it wants to go on."
 
 (defun take-unseen (queue)
   "Return the messages in QUEUE that nobody has seen, the oldest first. All in it counts as seen."
-  (with-lock ((message-queue-lock queue))
+  (with-queue (queue)
     (let ((newest-first (message-queue-newest-first queue)))
       (reverse (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))))
 
@@ -154,7 +154,7 @@ unless they were read or told before."
   "Return how often TEXT has been shown, or would have been, since it was last forgotten."
   (let* ((counter (if (message-queue-echoed queue) queue *echo-counter*))
          (counts (message-queue-echoed counter)))
-    (with-lock ((message-queue-lock counter))
+    (with-queue (counter)
       (when (< +most-echoed+ (hash-table-count counts)) (clrhash counts))
       (incf (gethash text counts 0)))))
 
