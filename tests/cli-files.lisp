@@ -193,3 +193,22 @@ name, in Nisp's syntax and with a decimal fraction."
   (dolist (said (list (complaint-of-loading (format nil "; mine~%turn 1~%go 3~%"))
                       (trouble-in-file (format nil "(values 1)~%turn 1~%go 3~%"))))
     (is-true (has-words-p said "TURN is a command of the prompt" "a script of lines: ars-magna "))))
+
+(test files.that-are-being-loaded-are-named-when-a-batch-is-ended
+  "By a time limit or control C; and so are lines that are piped in."
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+    (format out "(list 1)~%(loop (handler-case (progn (write-line \"BEGUN\") (finish-output) (loop))
+  (t () nil)))~%")
+    :close-stream
+    (let* ((name (uiop:native-namestring path)) (place (format nil "stopped in ~A, line 2: " name)))
+      (multiple-value-bind (errors status) (run-script-apart "" "--load" name "--time-limit" "0.5")
+        (is (= 124 status))
+        (is (mentions-p errors (format nil "~Athe time limit of 0.5 s" place))))
+      (is (mentions-p (nth-value 1 (patience-of-script "" "--load" name))
+                      (format nil "~Acontrol C has come again" place)))))
+  (is (mentions-p (nth-value 1 (uiop:run-program
+                                (list (base:native-name (project-file "cli/ars-magna"))
+                                      "--batch" "--time-limit" "0.5")
+                                :input (make-string-input-stream (format nil "~%(loop)~%"))
+                                :error-output :string :ignore-error-status t))
+                  "line 2: stopped: the time limit of 0.5 s")))

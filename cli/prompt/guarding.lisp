@@ -61,15 +61,23 @@ Where a break is answered, return how."
                      robot command plans-p))
             (t " QUIT leaves.")))))
 
-(defun whose-code ()
-  "Return in words whose code this thread is in, as far as anybody watches it; else NIL."
-  (let ((origin (and *user-calls* (user-calls-origin *user-calls*))))
-    (and origin (text-of-origin origin))))
+(defun whose-code (&optional (calls *user-calls*))
+  "Return in words whose code a thread is in, of which CALLS tells, or which form of a file it
+loads; NIL if neither, or nobody watches."
+  (let ((origin (and calls (user-calls-origin calls)))
+        (place (and calls (user-calls-place calls))))
+    (cond (origin (text-of-origin origin))
+          (place (funcall place)))))
+
+(defun say-where (session text)
+  "Say TEXT on the error output, with the place of the line of SESSION that is under way."
+  (let* ((account (session-account session)) (line (line-done-now account)))
+    (say-on-error-output (format nil "~@[~A, ~]~@[line ~D: ~]~A"
+                                 (and line (account-file account)) line text))))
 
 (defun leave-batch (session whose)
   "End the batch of SESSION, which was interrupted in code of WHOSE, a text or NIL."
-  (say-on-error-output (placed-text (session-account session)
-                                    (format nil "stopped~@[ in ~A~]." whose)))
+  (say-where session (format nil "stopped~@[ in ~A~]." whose))
   (throw 'leave 130))
 
 (defun dropped-text (count)

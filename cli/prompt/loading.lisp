@@ -10,14 +10,22 @@
         do (setf start end)
         finally (return position)))
 
+(defun call-watched-at (place function)
+  "Call FUNCTION, while PLACE, a function, says to whoever watches where in a file that is."
+  (let ((calls *user-calls*))
+    (if calls
+        (let ((outer (shiftf (user-calls-place calls) place)))
+          (unwind-protect (funcall function)
+            (setf (user-calls-place calls) outer)))
+        (funcall function))))
+
 (defun call-on-line (function file text position)
   "Call FUNCTION, which deals with the form of FILE's TEXT at POSITION."
-  (handler-bind ((error (lambda (condition)
-                          (unless (placed-p condition)
-                            (error 'file-trouble
-                                   :file file :cause condition
-                                   :line (1+ (count #\Newline text :end position)))))))
-    (funcall function)))
+  (flet ((line () (1+ (count #\Newline text :end position))))
+    (handler-bind ((error (lambda (condition)
+                            (unless (placed-p condition)
+                              (error 'file-trouble :file file :cause condition :line (line))))))
+      (call-watched-at (lambda () (format nil "~A, line ~D" file (line))) function))))
 
 (defun load-forms (path)
   "Do as LOAD does with the Lisp file at PATH. Signals FILE-TROUBLE."

@@ -87,7 +87,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
          (lines (plan-lines options)))
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
                   :output (or objects *standard-output*) :batch batch
-                  :account (when (or script objects) (make-account script objects))
+                  :account (when batch (make-account script objects))
                   :stop (option-value :stop options)
                   :files (option-values :load options) :lines lines
                   :patient (or batch piped) :echo (and piped (not batch))
@@ -121,17 +121,19 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
     (handler-case (ensure-windows)
       (bad-line (condition) (reject-usage "~A" (bad-line-text condition))))))
 
+(defun run-standard (session options)
+  "Run the lines of SESSION as OPTIONS say."
+  (let ((robot-name (robot-asked-for session options)))
+    (when (option-value :json options) (write-all-as-objects session))
+    (report-beginning session robot-name options)
+    (call-typing (lambda () (run-in-world session robot-name options))
+                 (session-input session))))
+
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
   (check-window options)
-  (let* ((session (standard-session options))
-         (robot-name (robot-asked-for session options)))
-    (when (option-value :json options) (write-all-as-objects session))
-    (report-beginning session robot-name options)
-    (call-with-watchers session options
-                        (lambda ()
-                          (call-typing (lambda () (run-in-world session robot-name options))
-                                       (session-input session))))
+  (let ((session (standard-session options)))
+    (call-with-watchers session options (lambda () (run-standard session options)))
     (report-end session
                 (if (and (session-batch-p session) (plusp (session-errors session))) 1 0))))
 

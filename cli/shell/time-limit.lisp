@@ -15,14 +15,11 @@
 
 (defun call-under-way (session calls)
   "Return in words whose code SESSION is in, of which CALLS tells, or its live run; and how many
-calls were begun before."
-  (let ((origin (user-calls-origin calls)) (simulation (session-simulation session)))
-    (cond (origin (values (text-of-origin origin) (user-calls-count calls)))
+calls were begun before. Without a second value, which form of a file is loaded, or NIL."
+  (let ((simulation (session-simulation session)))
+    (cond ((user-calls-origin calls) (values (whose-code calls) (user-calls-count calls)))
+          ((user-calls-place calls) (whose-code calls))
           ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
-
-(defun say-where (session text)
-  "Say TEXT on the error output, with the place of the line of SESSION that is under way."
-  (say-on-error-output (placed-text (session-account session) text)))
 
 (defun say-who-stays (session whose)
   (say-where session (format nil "~A has not returned for ~D s and goes on. Control-C ends the ~
@@ -36,7 +33,7 @@ signalled. What is seen four times on end, a third of *HOG-PATIENCE* apart, has 
         until (wait-on-semaphore ended (/ *hog-patience* 3))
         do (multiple-value-bind (whose count) (call-under-way session calls)
              (unless (eql count seen) (setf seen count looks 0))
-             (when (and whose (= 4 (incf looks))) (say-who-stays session whose)))))
+             (when (and whose count (= 4 (incf looks))) (say-who-stays session whose)))))
 
 (defun say-stopped (session whose reason)
   "Say that SESSION is stopped, in code of WHOSE at last, or NIL, for REASON."

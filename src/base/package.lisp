@@ -179,7 +179,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:call-user-code #:*break-on-user-error* #:*user-error-hooks*
            #:note-waiting #:report-break #:continue-inside
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
-           #:user-calls-waiting-p
+           #:user-calls-waiting-p #:user-calls-place
            #:as-users-code #:abort-user-code #:*spoilt-by-leaving-p* #:brief-text #:text-of-origin
            #:recurring-code #:recurring-remedy
            #:report-user-error)

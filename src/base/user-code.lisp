@@ -25,11 +25,15 @@ is queued as an error message that names its origin, and the run goes on.")
   (count 0 :type fixnum)
   ;; It is in a debugger.
   (waiting-p nil :type t)
+  ;; Says which form of a file is loaded, perhaps by that code.
+  (place nil :type (or null function))
   (stop nil :type (or null function) :read-only t))
 
 (document-functions
   make-user-calls "Return a record of users' code called by a thread which the function STOP stops."
   user-calls-origin "Return whose code the thread is in, an item or a list of items, or NIL."
+  user-calls-place "Return a function that says where the form is that the thread loads of a file,
+or NIL if it loads none. Can be set."
   user-calls-count "Return how many calls of users' code the thread has begun."
   user-calls-waiting-p "True if the last of them waits for an answer in a debugger.")
 
