@@ -79,7 +79,7 @@ what was not in INBOX before."
   "Wait until ERRANDS, which SESSION has issued by the line CMD, and what Lisp has issued are done.
 Signals BAD-LINE if that waits for RESUME. INBOX is what did so before."
   (check-time-passes session cmd errands inbox)
-  (mapc #'await-errand (reverse errands))
+  (await-errands session errands)
   (unless (waits-for-resume-p session) (await-lisp))
   (check-time-passes session cmd errands inbox))
 

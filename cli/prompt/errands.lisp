@@ -98,12 +98,14 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
   "Return what SESSION has issued and has not ended, newest first."
   (remove-if #'errand-over-p (session-errands session)))
 
-(defun await-errands (session)
-  "Wait until all that SESSION has issued is done, or its run is paused with nobody to let it go
-on."
-  (unwind-protect (mapc #'await-errand (reverse (session-errands session)))
+(defun await-errands (session &optional (errands (session-errands session)))
+  "Wait until ERRANDS of SESSION, by default all, are done, or its run is paused with nobody to let
+it go on."
+  (unwind-protect (mapc #'await-errand (reverse errands))
     (setf (session-errands session)
-          (and *simulation* (held-up-p *simulation*) (errands-under-way session)))))
+          (if (and *simulation* (held-up-p *simulation*))
+              (errands-under-way session)
+              (remove-if (lambda (errand) (member errand errands)) (session-errands session))))))
 
 ;;; Lisp may have issued commands too. Plans that it has begun go on by themselves: nobody waits for
 ;;; what they ask for, of which there may be no end.
