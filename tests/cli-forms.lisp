@@ -83,3 +83,9 @@ ok."
   (is (equal '(1 -2 3)
              (ends-of-lines (format nil "pause~%(hand-ungrasp (robot-hand dot 0) nil)~%resume")
                             "--rate" "free"))))
+
+(test programs.that-read-where-the-input-has-ended-are-told-so
+  "Nothing was typed, so no parenthesis is missing."
+  (dolist (form '("(read)" "(read-line)"))
+    (is-true (has-words-p (first (run-script form)) "line 1: The input has ended") "~A" form))
+  (is-true (has-words-p (first (run-script "(read-from-string \"(a\")")) "parenthesis")))

@@ -46,6 +46,9 @@ was more when the last of them was."))
     0)
   (:method ((stream typed-text)) (typed-count stream)))
 
+(defmethod of-lines-typed-p ((stream typed-text))
+  t)
+
 (defmethod typed-by-hand-p ((stream stream))
   (interactive-stream-p stream))
 

@@ -105,7 +105,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:ours-called)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
-           #:report-anyhow
+           #:report-anyhow #:of-lines-typed-p
            #:reading-trouble #:text-of-condition #:one-line-text #:point-in-text #:hundredths
            #:editors-output)
   ;; breaking-lines

@@ -85,6 +85,16 @@ streams that no user knows."
         "a number is too large, too small, or divided by 0"
         (format nil "~A~@[. ~A~]" (string-right-trim "." text) (naming-remedy text)))))
 
+(defgeneric of-lines-typed-p (stream)
+  (:documentation "True if STREAM reads the lines that a user types or pipes in.")
+  (:method (stream)
+    (declare (ignore stream))
+    nil))
+
+(defun input-ended-p (condition)
+  "True if CONDITION is that no more lines are typed."
+  (and (typep condition 'end-of-file) (of-lines-typed-p (stream-error-stream condition))))
+
 (defun own-text (condition)
   "Return what CONDITION says of itself, as much of it as can be printed; or what another object
 does, an empty text if it cannot."
@@ -139,6 +149,7 @@ too."
   "Return what CONDITION, which Lisp itself has signalled, means to a user, in words that are the
 same on every version of SBCL; NIL if we have none."
   (cond ((typep condition 'storage-condition) (storage-text condition))
+        ((input-ended-p condition) "The input has ended: there is nothing left to read.")
         ((reader-p condition)
          (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
         (t (lisp-error-text condition))))
