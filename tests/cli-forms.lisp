@@ -89,3 +89,10 @@ ok."
   (dolist (form '("(read)" "(read-line)"))
     (is-true (has-words-p (first (run-script form)) "line 1: The input has ended") "~A" form))
   (is-true (has-words-p (first (run-script "(read-from-string \"(a\")")) "parenthesis")))
+
+(test values.that-cannot-be-printed-are-told-as-such
+  (let ((name (symbol-name 'make-speechless)))
+    (loop for (form . words) in '(("(ars-magna.tests::~A)" "of type speechless")
+                                  ("(list 1 (ars-magna.tests::~A))" "of type cons"))
+          do (is-true (apply #'has-words-p (complaint (format nil form name))
+                             "cannot be printed: This cannot be printed" "PRINT-OBJECT" words)))))

@@ -78,10 +78,17 @@ what Lisp says of a full stack, of which users are told."
 (defun eval-placing (form)
   (call-placing-trouble (lambda () (eval-quietly form))))
 
+(defun reject-value (value trouble)
+  "Signal BAD-LINE, as VALUE cannot be printed because of TROUBLE."
+  (reject-line "The value, of type ~(~A~), cannot be printed: ~A. Perhaps a method for ~
+                PRINT-OBJECT fails."
+               (class-name (class-of value)) (one-line-text trouble)))
+
 (defun value-line (value)
-  "Return how VALUE is printed."
+  "Return how VALUE is printed. Signals BAD-LINE if it cannot be."
   (let ((*print-circle* (or *print-circle* (not (tree-p value)))))
-    (format nil "~S" (if (readtablep value) (readtable-name value) value))))
+    (handler-bind ((error (lambda (trouble) (reject-value value trouble))))
+      (format nil "~S" (if (readtablep value) (readtable-name value) value)))))
 
 (defun evaluate (session form)
   "Evaluate FORM and print its values, each on a line."
