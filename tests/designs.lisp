@@ -156,3 +156,19 @@
   (is (equal '("[[1.0, 8], [-1.2, 13]]" "[\"go\", 0.5, true, false, \"A \\\"b\\\" \\\\\"]" "FALSE")
              (mapcar #'experiment::value-text
                      '(((1.0 8) (-1.2 13)) (:go 1/2 t nil "A \"b\" \\") ())))))
+
+(test tables.have-no-characters-that-no-file-can-have
+  (is (string= "bad x" (experiment::plain-text (format nil "bad ~Cx" (code-char #xD800)))))
+  (with-directories (directory)
+    (define-for-test (:robots ars-worlds:dot) (:trials 2)
+      (:run (error "bad ~A" (code-char #xDC00))))
+    (experiment:run-experiment 'question :workers 1 :stream nil :directory directory)
+    (is (= 3 (length (table-lines directory))))))
+
+(test directories.are-called-as-told
+  (with-directories (directory)
+    (dolist (name '("a*b" "a?b" "[ab]" "a\\b"))
+      (let ((name (format nil "~A~A" (base:native-name (base:path-called directory)) name)))
+        (define-for-test (:robots ars-worlds:dot) (:trials 1) (:run t))
+        (experiment:run-experiment 'question :workers 1 :stream nil :directory name)
+        (is (= 2 (length (file-lines (base:native-path (format nil "~A/rows.csv" name))))))))))

@@ -41,7 +41,7 @@
         (t word)))
 
 (defun results-directory-p (word)
-  (and (uiop:directory-exists-p (uiop:parse-native-namestring word :ensure-directory t))
+  (and (uiop:directory-exists-p (native-path-of-directory word))
        (directories-with-rows word)))
 
 (defun results-meant (words options)

@@ -16,10 +16,15 @@
   "Return the pathname of what the operating system calls NAME, a string."
   (uiop:parse-native-namestring name))
 
+;; UIOP's own way to a directory puts a backslash before a star.
+(defun native-path-of-directory (name)
+  "Return the pathname of what the operating system calls NAME, a string, as of a directory."
+  (sb-ext:parse-native-namestring name nil *default-pathname-defaults* :as-directory t))
+
 (defun path-called (name &key directory)
   "Return the pathname that NAME, a string or pathname, stands for, of a file, or if DIRECTORY of a
 directory; ~ and ~/ are the home directory."
-  (flet ((path (name) (uiop:parse-native-namestring name :ensure-directory directory)))
+  (flet ((path (name) (if directory (native-path-of-directory name) (native-path name))))
     (cond ((pathnamep name) (if directory (uiop:ensure-directory-pathname name) name))
           ((string= "~" name) (user-homedir-pathname))
           ((starts-with-subseq "~/" name)

@@ -42,7 +42,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; printing
   (:export #:call-printing-plainly #:printing-plainly #:printing-words)
   ;; files, processes
-  (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
+  (:export #:native-name #:native-path #:native-path-of-directory #:path-called #:existing-path
+           #:missing-directory
            #:replace-file #:plain-file-p #:dangling-link-p
            #:unusable-file-text #:shown-name
            #:encoded #:decoded #:file-text #:cut-file

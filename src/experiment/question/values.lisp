@@ -41,10 +41,14 @@ if none does."
                    (setf i (or end (1+ i))))))
       text))
 
+(defun writable-char-p (char)
+  "True if CHAR can be seen, and be written to a file."
+  (and (graphic-char-p char) (not (<= #xD800 (char-code char) #xDFFF))))
+
 (defun plain-text (text)
-  "Return TEXT on one line, of bounded length, with nothing in it but what can be seen and is the
-same in each run."
-  (cut (one-line (without-addresses (substitute-if-not #\Space #'graphic-char-p text)))
+  "Return TEXT on one line, of bounded length, with nothing in it but what can be seen and written,
+and is the same in each run."
+  (cut (one-line (without-addresses (substitute-if-not #\Space #'writable-char-p text)))
        +longest-text+))
 
 (defun float-text (number)
