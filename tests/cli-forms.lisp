@@ -96,3 +96,9 @@ ok."
                                   ("(list 1 (ars-magna.tests::~A))" "of type cons"))
           do (is-true (apply #'has-words-p (complaint (format nil form name))
                              "cannot be printed: This cannot be printed" "PRINT-OBJECT" words)))))
+
+(test scripts.give-up-once-what-repeat-waits-for-too-long
+  "The next line does not wait for it again."
+  (let ((cli::*patience* 3))
+    (is (= 1 (count-if (lambda (line) (search "not completed within 3 ticks" line))
+                       (run-script (format nil "repeat 2 go-forward 50~%(list 1)")))))))

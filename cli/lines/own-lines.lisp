@@ -88,16 +88,10 @@ Signals BAD-LINE if that waits for RESUME. INBOX is what did so before."
   (let ((before (session-errands session)) (inbox (requests-waiting)))
     (run-text session cmd)
     (unless (session-visit session)
-      (unwind-protect
-           (await-repetition session cmd
-                             (remove-if (lambda (errand) (member errand before))
-                                        (session-errands session))
-                             inbox)
-        ;; What it has come to has been said.
-        (setf (session-errands session)
-              (remove-if (lambda (errand)
-                           (and (errand-over-p errand) (not (member errand before))))
-                         (session-errands session)))))))
+      (await-repetition session cmd
+                        (remove-if (lambda (errand) (member errand before))
+                                   (session-errands session))
+                        inbox))))
 
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :line "a command, with its arguments"))
