@@ -84,3 +84,20 @@
     (is (not (style-p)))
     (let ((*compile-file-truename* (or *compile-file-truename* #p"/x.lisp")))
       (is-true (style-p)))))
+
+;;; Warnings in files.
+
+(test warnings.of-a-map-read-its-file-once
+  (let ((told 0))
+    (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+      (format out "(in-package :ars-user)~%(defmap walled (60 60) (rect (0 0) (40 40) bricks 5)~%~
+                   ~{(obj t~D (0.5 0.5) ((:size 1)))~%~})~%"
+              (loop for i below 60 collect i))
+      :close-stream
+      (is (> 5 (calls-of 'base::look-for-definitions
+                         (lambda ()
+                           (handler-bind ((warning (lambda (warning)
+                                                     (incf told)
+                                                     (muffle-warning warning))))
+                             (load path)))))))
+    (is (<= 60 told))))

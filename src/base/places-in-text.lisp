@@ -42,7 +42,7 @@ ends; NIL if there is no list, or it cannot be read."
 is NIL or FILE cannot be read."
   (and place
        (ignore-errors
-         (let ((text (file-text file)))
+         (let ((text (text-of-file file)))
            (multiple-value-bind (start end) (bounds-of-place text place)
              (line-number text (or (form-position text form start end) start)))))))
 

@@ -110,9 +110,20 @@ code."
          (<= (+ position length) end)
          (string-equal word text :start2 (- end length) :end2 end))))
 
+;; A map has thousands of clauses, and each may have to be found: what was found last is kept.
+(defvar *last-positions* '("" nil ())
+  "A list of the text and form that DEFINITION-POSITIONS had last, and what it returned.")
+
 (defun definition-positions (text form)
   "Return a list of lists (start end same) for the forms in TEXT that have operator and name of
 FORM; SAME is true if it is FORM, word by word."
+  (destructuring-bind (last-text last-form positions) *last-positions*
+    (if (and (eq form last-form) (or (eq text last-text) (string= text last-text)))
+        positions
+        (third (setf *last-positions* (list text form (look-for-definitions text form)))))))
+
+(defun look-for-definitions (text form)
+  "Do what DEFINITION-POSITIONS says."
   (destructuring-bind (operator &optional name &rest clauses) form
     (declare (ignore clauses))
     (with-words (text)
@@ -132,13 +143,25 @@ first, and its number."
                     0)))
     (values (nth number positions) number)))
 
+(defvar *last-forms* '("" 0 0 ())
+  "A list of the text, start and end of which FORMS-BETWEEN was asked last, and the answer.")
+
+(defun forms-between (text start end)
+  "Return conses (position . form) for the forms in parentheses in TEXT between START and END."
+  (destructuring-bind (last-text last-start last-end forms) *last-forms*
+    (if (and (= start last-start) (= end last-end)
+             (or (eq text last-text) (string= text last-text)))
+        forms
+        (let ((forms (with-words (text)
+                       (loop for position in (openings text start end)
+                             collect (cons position (read-words position))))))
+          (setf *last-forms* (list text start end forms))
+          forms))))
+
 (defun form-position (text form start end)
   "Return where FORM, a list, stands in TEXT between START and END, or NIL."
-  (with-words (text)
-    (find-if (lambda (position)
-               (let ((found (read-words position)))
-                 (and found (same-words-p found form))))
-             (openings text start end))))
+  (loop for (position . found) in (forms-between text start end)
+        when (and found (same-words-p found form)) return position))
 
 (defun word-position (text form start end)
   "Return where the first word of FORM, or FORM itself, stands in TEXT, or NIL."
@@ -152,6 +175,17 @@ first, and its number."
 
 (defun line-number (text position)
   (1+ (count #\Newline text :end position)))
+
+(defvar *last-file* '(nil nil "")
+  "A list of the file of which TEXT-OF-FILE was asked last, when it was written, and its text.")
+
+(defun text-of-file (file)
+  "Return the text of FILE, as FILE-TEXT does, which is asked for again and again."
+  (let ((written (file-write-date file)))
+    (destructuring-bind (last-file last-written text) *last-file*
+      (if (and (equal file last-file) (eql written last-written))
+          text
+          (third (setf *last-file* (list file written (file-text file))))))))
 
 (defun line-of-clause (text form clause)
   "Return the line in TEXT on which CLAUSE of the definition FORM begins, that of the definition if
@@ -167,7 +201,7 @@ CLAUSE is not found in it, or NIL; and which of the definitions of that name it 
 
 (defun clause-line (file form clause)
   "Return what LINE-OF-CLAUSE does for the text in FILE; NIL if that cannot be read."
-  (ignore-errors (line-of-clause (file-text file) form clause)))
+  (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
 (defun part-in-file-p (file form part)
   "True if a form in FILE, as that is now, has operator and name of FORM, and PART, a list, in it."
