@@ -125,3 +125,31 @@ it expands all that is in it, as that does."
 
 (test iterate.a-users-macro-of-that-name-is-a-plans
   (is (= 1 (plan-value (iter (rpl:wait-time 1) (rpl:plan-time))))))
+
+;;; Macros that expand what is in them.
+
+(defmacro expanded (form &environment environment)
+  "Expand to what FORM expands to."
+  (macroexpand form environment))
+
+(defmacro expanded-once (form &environment environment)
+  "Expand to what FORM expands to at first."
+  (macroexpand-1 form environment))
+
+(test macroexpand.leaves-constructs-to-the-plan
+  (is (= 4 (plan-value (expanded (rpl:wait-time 4)) (rpl:plan-time))))
+  (is (= 4 (plan-value (expanded-once (rpl:wait-time 4)) (rpl:plan-time))))
+  (is (equal '(:in 5) (plan-value (list (expanded (rpl:seq (rpl:wait-time 5) :in))
+                                        (rpl:plan-time)))))
+  (is (= 2 (plan-value (expanded (expanded-once (rpl:par (rpl:wait-time 1) (rpl:wait-time 2))))
+                       (rpl:plan-time)))))
+
+(test macroexpand.of-a-construct-in-lisp-code-names-the-construct
+  (flet ((message (form)
+           (handler-case (progn (rpl:make-plan `(list ,form)) "")
+             (error (condition) (princ-to-string condition)))))
+    (dolist (operator '(expanded expanded-once))
+      (let ((text (message `(lambda () (,operator (rpl:wait-time 4))))))
+        (is (search "wait-time 4" text :test #'char-equal) "~A" text)
+        (is (not (search "construct-form" text :test #'char-equal)) "~A" text)
+        (is (not (search "in-plans-only" text :test #'char-equal)) "~A" text)))))

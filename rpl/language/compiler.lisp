@@ -127,6 +127,7 @@ the names of the variables there."
   (let* ((environment (scope-environment scope))
          (plan-form (find-plan-form form environment)))
     (cond ((symbolp form) (expansion-code form scope))
+          ((construct-behind form) (plan-code (construct-behind form) scope))
           (plan-form (funcall (plan-form-compiler plan-form) form scope))
           ((not (symbolp (first form))) (refuse-code form scope))
           ((assoc (first form) (scope-procedures scope)) (function-form-code form scope))

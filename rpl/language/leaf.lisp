@@ -101,6 +101,7 @@
          (note-own-text (macroexpand-1 form environment)))
         ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
         ((plan-in-leaf-p form) (values form t))
+        ((construct-behind form) (reject-in-lisp (construct-behind form)))
         ((look-at-operands form environment))
         (t (doubt-namesake form)
            (let ((meaning (if (local-function-p (first form) environment)

@@ -91,15 +91,32 @@ user's that is called as iterate's are is none."
                             :form form :container container :advice advice
                             :place (clause-place form))))))
 
-(defmacro in-plans-only (form)
+;;; What a construct expands to, where a macro of the author's asks.
+
+(defun reject-in-lisp (form)
   "Signal MISUSE: FORM, of the plan language, was met in ordinary Lisp code."
   (reject-use "~S is part of the plan language. Write it in a def-interp-proc, or outside of any ~
                lambda or Lisp form there that keeps plans from waiting."
               form))
 
-(defun misplaced (name arguments)
-  "Return what the construct called NAME with ARGUMENTS expands to in ordinary Lisp code."
-  (list 'in-plans-only (cons name arguments)))
+(defvar *own-conses* nil
+  "While a plan is compiled: a table of the conses of its text.")
+
+(defmacro in-plans-only (form)
+  "Expand to what plans take for FORM, of the plan language, while a plan is compiled. Signal MISUSE
+otherwise, as in ordinary Lisp code."
+  (if *own-conses* `(construct-form ',form) (reject-in-lisp form)))
+
+(defun construct-form (form)
+  "Signal MISUSE: FORM, of the plan language, was met where Lisp runs it."
+  (reject-in-lisp form))
+
+(defun construct-behind (form)
+  "Return the construct that FORM, what a macro of the author's has expanded it to, stands for; NIL
+if it stands for none."
+  (typecase form
+    ((cons (eql in-plans-only)) (second form))
+    ((cons (eql construct-form)) (second (second form)))))
 
 ;;; Names of operators.
 
@@ -145,9 +162,6 @@ user's that is called as iterate's are is none."
                        forms))))
 
 ;;; The plan's own text.
-
-(defvar *own-conses* nil
-  "While a plan is compiled: a table of the conses of its text.")
 
 (defun note-own-text (form)
   "Remember that FORM and all in it is the plan's own text. Return FORM."

@@ -133,6 +133,7 @@ LAMBDA."
                           form))
                      ((not (symbolp (first form))) (check-operator form) form)
                      ((plan-in-leaf-p form) (values form t))
+                     ((construct-behind form))
                      (t (check-own-form form environment)
                         (visit-call form environment (find-plan-form form environment)))))
              (visit-call (form environment plan-form)
