@@ -95,7 +95,8 @@
 (test values.come-back-from-texts
   (dolist (value '(0 -7 123456789012345678901234567890 0.1d0 -1d-7 1.5d20 1d100))
     (is (eql value (experiment::number-in (experiment::value-text value)))))
-  (dolist (text '("" "-" "1-2" "e" "1e" "#.(quit)" "1 2" "red" "1.2.3" "--1" "+" "1e5e5"))
+  (dolist (text '("" "-" "1-2" "e" "1e" "#.(quit)" "1 2" "red" "1.2.3" "--1" "+" "1e5e5" "e1"
+                  "-e1" "E+7" ".e1" "."))
     (is (null (experiment::number-in text)) "~S" text)))
 
 (test lines.with-quotes-and-commas-come-back

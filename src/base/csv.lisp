@@ -52,6 +52,8 @@
   (declare (type simple-string text))
   (and (plusp (length text))
        (digit-char-p (char text (1- (length text))))
+       ;; An exponent alone is a name.
+       (find (char text (sign-end text 0)) "0123456789.")
        (= (length text)
           (exponent-end text (fraction-end text (digits-end text (sign-end text 0)))))))
 

@@ -119,8 +119,10 @@ and is the same in each run."
   (and (csv-number-p text)
        (notany (lambda (char) (find char "/dDfFsS")) text)
        (char/= #\+ (char text 0))
-       (let ((*read-default-float-format* 'double-float))
-         (ignore-errors (values (read-from-string text))))))
+       ;; What begins with an exponent is a name.
+       (let* ((*read-default-float-format* 'double-float)
+              (value (ignore-errors (values (read-from-string text)))))
+         (and (realp value) value))))
 
 (defun text-before-p (a b)
   "True if the text A comes before B in a table: numbers by size, and before words."
