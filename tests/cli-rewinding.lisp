@@ -55,3 +55,20 @@
     (is-true (has-words-p text "1 waiting: dawdle") "~A" text)
     (is (null (search "was stopped" text))))
   (awaiting (null cli::*plan-errands*)))
+
+;;; Forks.
+
+(defun ends-and-errors (&rest lines)
+  "Return of the objects that a script of LINES makes with --json those of ends and errors."
+  (remove-if-not (lambda (object)
+                   (or (search "\"done\"" object) (search "\"kind\":\"error\"" object)))
+                 (objects-of-script (format nil "~{~A~%~}" lines))))
+
+(test fork.tells-of-errors-in-continuations-with-the-lines-that-asked
+  (let ((objects (ends-and-errors "fork"
+                                  "(robot-turn dot 1 (lambda (&rest r) r (error \"boo\")))"
+                                  "(+ 1 2)")))
+    (loop for words in '(("line\":1" "ok\":true") ("boo" "line\":2}") ("line\":2" "ok\":false")
+                         ("line\":3" "ok\":true"))
+          for object in objects
+          do (is-true (apply #'has-words-p object words) "~A: ~A" words objects))))

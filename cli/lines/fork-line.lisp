@@ -18,7 +18,7 @@
 (defun read-in-fork (session)
   "Read lines of SESSION until one leads out of the fork that is current, or it is over."
   (loop until (session-over-p session)
-        do (call-guarded session (lambda () (next-line session)))
+        do (call-guarded session (lambda () (next-line-inside session)))
            (call-guarded session (lambda () (show-messages session)))))
 
 (defun tell-fork (session)

@@ -71,6 +71,11 @@ outline, and the condition that says so."
           (t (setf (session-over-p session) t
                    (session-ended-p session) (not (terminal-p session)))))))
 
+(defun next-line-inside (session)
+  "Do what NEXT-LINE does, where the line under way is still another: nothing is asked for or told
+of on its behalf."
+  (let ((*asker* nil) (*told-of* nil)) (next-line session)))
+
 (defun stopped-p (session)
   "True if SESSION stops at an error, and there was one when all was done that it has asked for."
   (when (session-stop-p session)

@@ -75,7 +75,7 @@ to say of that."
                                (when (watched-p session)
                                  (loop until (typed-p session 1)))
                                (let ((*while-typing* #'answer-others))
-                                 (next-line session))))
+                                 (next-line-inside session))))
        (note-if-changed session visit before))
      (call-guarded session (lambda () (show-messages session)))
      (when (session-over-p session) (leave-visit session)))))
