@@ -153,3 +153,26 @@ it expands all that is in it, as that does."
         (is (search "wait-time 4" text :test #'char-equal) "~A" text)
         (is (not (search "construct-form" text :test #'char-equal)) "~A" text)
         (is (not (search "in-plans-only" text :test #'char-equal)) "~A" text)))))
+
+(defmacro meaning-of-y (&environment environment)
+  "Expand to what Y expands to, quoted."
+  `',(macroexpand-1 'y environment))
+
+(defmacro wait-for-y (&environment environment)
+  "Expand to a wait if Y is a symbol macro, else to Y."
+  (if (eq 'y (macroexpand-1 'y environment)) 'y '(rpl:wait-time 1)))
+
+(test symbol-macros.that-variables-shadow-are-none-for-macros
+  (is (eq 'y (plan-value (symbol-macrolet ((y (+ 1 2)))
+                           (let ((y 1)) (declare (ignorable y)) (meaning-of-y))))))
+  (is (equal '(y (+ 1 2) 3)
+             (plan-value (symbol-macrolet ((y (+ 1 2)))
+                           (list (funcall (lambda (y) (declare (ignorable y)) (meaning-of-y)) 1)
+                                 (meaning-of-y)
+                                 (funcall (lambda (y)
+                                            (declare (ignorable y))
+                                            (symbol-macrolet ((y 3)) (meaning-of-y)))
+                                          1))))))
+  (is (equal '(7 0) (plan-value (symbol-macrolet ((y (+ 1 2)))
+                                  (list (funcall (lambda (y) (wait-for-y)) 7)
+                                        (rpl:plan-time)))))))

@@ -110,7 +110,7 @@
              (if (and (eq meaning form)
                       (macro-function (first form) environment)
                       (not (lisps-own-p (first form))))
-                 (note-own-text (macroexpand-1 form environment))
+                 (note-own-text (expand-in-walk form environment))
                  meaning)))))
 
 (defun as-lisp (form scope)

@@ -60,6 +60,22 @@ of (name expander), :symbol-macro and a list of (name expansion)."
   (let ((sb-ext:*evaluator-mode* (if compile :compile :interpret)))
     (eval form)))
 
+;; Environments of a walk do not tell that variables which it has met shadow symbol macros.
+(defun expand-in-walk (form environment)
+  "Return what FORM, a macro call that a walk has met in ENVIRONMENT, expands to at first."
+  (let ((shadowing (remove :symbol-macro (variables-of-walk environment)
+                           :key (lambda (name) (variable-kind name environment))
+                           :test-not #'eq)))
+    (macroexpand-1 form (if shadowing
+                            (extended-environment environment :variable shadowing)
+                            environment))))
+
+(defun users-macro-p (form environment)
+  "True if FORM is a call of a macro in ENVIRONMENT that is not Lisp's."
+  (and (symbolp (first form))
+       (not (lisps-own-p (first form)))
+       (macro-function (first form) environment)))
+
 (defun walk-form (form environment visit)
   "Return FORM with each expression in it replaced by what VISIT returns for it and its environment,
 outermost first; what is put in place is visited in turn. A second value that is true keeps the
@@ -70,7 +86,9 @@ walk out of what is put there. What takes the place of an expression stands wher
                (walk-expressions form environment #'replacement))
              (inside (form environment)
                (setf entered form)
-               (values (keep-place (walk form environment) form) t))
+               (expanded form form environment))
+             (expanded (new form environment)
+               (values (keep-place (walk new environment) form) t))
              (replacement (form context environment)
                (cond ((not (eq context :eval)) form)
                      ((and (consp form) (eq form (shiftf entered nil))) form)
@@ -78,6 +96,8 @@ walk out of what is put there. What takes the place of an expression stands wher
                           (keep-place new form)
                           (cond (done (values new t))
                                 ((atom new) new)
-                                ((eq new form) (inside form environment))
-                                (t (values (keep-place (walk new environment) form) t))))))))
+                                ((not (eq new form)) (expanded new form environment))
+                                ((users-macro-p form environment)
+                                 (expanded (expand-in-walk form environment) form environment))
+                                (t (inside form environment))))))))
       (walk form environment))))

@@ -60,7 +60,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:local-function-p #:known-function-p #:macro-expander
            #:function-arguments #:lisps-own-p
            #:extended-environment #:evaluate-form #:form-behind-comma #:walk-form
-           #:bound-in-walk-p)
+           #:bound-in-walk-p #:expand-in-walk)
   ;; undefined
   (:export #:undefined-name #:still-undefined-p)
   ;; compiling

@@ -34,3 +34,12 @@ environment. FUNCTION's second value is true where the walk is not to enter the 
   ;; Variables of the environment that the walk began in are entries, others lists of these.
   (let ((found (internal (:sb-walker #:var-lexical-p) variable environment)))
     (and (consp found) (consp (first found)))))
+
+(defun variables-of-walk (environment)
+  "Return the names of the variables that forms bind which the walk that visits ENVIRONMENT has
+entered, but for those that are symbol macros there."
+  (loop for (name . kind) in (internal (:sb-walker #:env-lexical-variables) environment)
+        unless (member name seen)
+          collect name into seen
+          and when (equal '(:lexical-var) kind) collect name into variables
+        finally (return variables)))

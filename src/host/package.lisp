@@ -33,7 +33,7 @@ file. No other folder names such parts of SBCL.")
            #:source-at)
   ;; environments
   (:export #:function-arguments #:form-behind-comma #:user-type-p #:walk-expressions
-           #:bound-in-walk-p)
+           #:bound-in-walk-p #:variables-of-walk)
   ;; compiler
   (:export #:show-lambda-list #:nested-p #:place-of #:set-place #:call-with-current-place
            #:positions-of-forms #:edited-file #:error-context #:call-with-error-context
