@@ -209,3 +209,15 @@
            (is (/= (digest-of name) (digest-of other))))
   (is (= (digest-of nil) (digest-of "nil")))
   (is (= (digest-of "red") (digest-of (coerce "red" 'simple-base-string)))))
+
+(test digests.of-what-is-no-simulation-are-refused-by-name
+  (dolist (call (list (lambda () (run:state-digest nil t)) (lambda () (run:keep-forks t nil))))
+    (let ((text (handler-case (progn (funcall call) "")
+                  (base:wrong-argument (condition) (princ-to-string condition)))))
+      (is-true (or (search "state-digest: simulation is NIL" text)
+                   (search "keep-forks: simulation is NIL" text))
+               "~A" text))))
+
+(test digests.of-a-robot-are-those-of-its-run
+  (with-rover ()
+    (is (= (run:state-digest) (run:state-digest rover)))))
