@@ -279,6 +279,26 @@ line."
         (end-talk one)
         (end-talk two)))))
 
+(defvar *late-session* nil "The session of a prompt that is over.")
+
+(test sessions.that-are-over-write-to-no-stream-of-their-users
+  "Another thread may still want to: what is left to say stays for others. A stream of
+WITH-OUTPUT-TO-STRING is gone by then."
+  (in-studio (robot)
+    (let ((stream (make-string-output-stream)))
+      (cli:prompt :input (make-string-input-stream
+                          (format nil "(setf ars-magna.tests::*late-session* ~
+                                       ars-magna.cli::*session*)~%quit~%"))
+                  :output stream)
+      (get-output-stream-string stream)
+      (let ((session (shiftf *late-session* nil)))
+        (base:message-set "still said")
+        (cli::show-messages session)
+        (format (cli::session-console session) "late")
+        (finish-output (cli::session-console session))
+        (is (string= "" (get-output-stream-string stream)))
+        (is (find "still said" (base:take-messages) :key #'base:message-text :test #'search))))))
+
 (test sessions.are-told-of-their-own-runs-only
   "Also where several runs share a queue, as live ones do."
   (in-studio (first)

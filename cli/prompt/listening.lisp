@@ -10,10 +10,11 @@
 (defun show-messages (session)
   "Show all queued messages, in SESSION or in those that listen to the runs that they are of, and
 the prompts again. One whose user is not there any more leaves them to others."
-  (unless (or *showing-p* (session-abandoned-p session))
+  (unless *showing-p*
     (with-lock (*showing-lock*)
-      (let ((*showing-p* t))
-        (tell-hearers session (take-all-messages))))))
+      (unless (session-abandoned-p session)
+        (let ((*showing-p* t))
+          (tell-hearers session (take-all-messages)))))))
 
 ;;; What is said of a world as its file is loaded is said before there is a run to listen to.
 

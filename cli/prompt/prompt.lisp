@@ -137,12 +137,23 @@ that it waits, since time stands still."
                           (call-with-streams session (lambda () (call-holding-interrupts #'run))))))
   session)
 
-(defun prompt (&rest options &key input output batch patient echo lines color)
+;; A stream of WITH-OUTPUT-TO-STRING lies on this thread's stack: written to by the simulator's
+;; thread after its extent, it would spoil whatever is there then.
+(defun let-go-of-streams (session output)
+  "Let nothing be written for SESSION, which is over, to OUTPUT, which its user may close now. What
+is yet to be said is left to others."
+  (with-lock (*showing-lock*) (setf (session-abandoned-p session) t))
+  (unless (eq output (session-console session)) (let-go (session-console session))))
+
+(defun prompt (&rest options &key input (output *standard-output*) batch patient echo lines color)
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
 QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT,
 or headless, each command completes before the next is read; BATCH is that without a prompt; with
 ECHO, lines are shown as they are read; the list LINES is done first. COLOR is :AUTO (on a terminal,
 unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual A, E)."
-  (declare (ignore input output batch patient echo lines color))
-  (run-session (apply #'make-session options))
+  (declare (ignore input batch patient echo lines color))
+  (let ((session (apply #'make-session options)))
+    (in-any-case
+      (run-session session)
+      (let-go-of-streams session output)))
   (values))

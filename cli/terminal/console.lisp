@@ -37,7 +37,7 @@ the next. EDITED-P is true if the prompt edits what is typed, TYPED the drawn-li
 typed, or NIL. QUESTION is what stands there for the user to answer, or NIL; OVERWRITTEN-P is true
 if something was written after it. ASKED-P is true while a program, not the prompt, reads what is
 typed, ASKING-TOLD-P if the user has been told so since the prompt stood last. TROUBLE is the
-condition that what was written could not be delivered, or NIL. COLORED-P is true if its messages
+condition that what was written could not be delivered, :OVER after LET-GO, or NIL. COLORED-P is true if its messages
 and prompts have colours. While HELD-BACK-P is true, what is written is kept in HELD-BACK, a list of
 strings, newest first."))
 
@@ -60,6 +60,11 @@ now."
     (unless (console-trouble console)
       (handler-case (progn (funcall function (console-stream console)) nil)
         (stream-error (trouble) (setf (console-trouble console) trouble))))))
+
+(defun let-go (console)
+  "Let what is written to CONSOLE from now on be lost: the stream below may be gone. What another
+thread is writing is written first."
+  (with-lock ((console-lock console)) (setf (console-trouble console) :over)))
 
 (defun call-with-console (function console)
   "Call FUNCTION with the stream below CONSOLE, unless it has failed before."
