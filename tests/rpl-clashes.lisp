@@ -53,6 +53,11 @@
                  (rpl:interp-lambda ()  ; one at a time
                    (rpl:par (rpl:with-valve ((driver:rpl-robot-valve)) (turn-and-wait))
                             (rpl:with-valve ((driver:rpl-robot-valve)) (go-and-wait))))
+                 (rpl:interp-lambda ()  ; one that is more urgent
+                   (rpl:par (rpl:with-valve ((driver:rpl-robot-valve)) (turn-and-wait))
+                            (rpl:seq (rpl:wait-time 2)
+                                     (rpl:with-valve ((driver:rpl-robot-valve) :priority 1)
+                                       (go-and-wait)))))
                  (rpl:interp-lambda ()  ; several parts of the robot
                    (rpl:par (turn-and-wait) (driver:rpl-camera-turn 0 1)))))
     (is (null (clashes-told plan)))))

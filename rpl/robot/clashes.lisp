@@ -46,6 +46,11 @@ happens."
               (or (null common) (all-to-succeed-p common))
               (not (reacting-to-events-p newer common))))))
 
+(defun made-way-p (task interface)
+  "True if TASK was in what owned the robot's valve of INTERFACE, and gives way to a higher
+priority."
+  (some (lambda (loser) (part-of-p task loser)) (valve-losers (interface-valve interface))))
+
 (defun deed-text (deed)
   "Return in words what DEED is, and whose."
   (let ((task (deed-task deed)))
@@ -64,7 +69,8 @@ happens."
   "Say once if the deed NEWER of INTERFACE has interrupted the deed OLDER of a task beside its own."
   (when (and newer
              (clash-p (deed-task older) (deed-task newer))
-             (not (gentle-p newer)))
+             (not (gentle-p newer))
+             (not (made-way-p (deed-task older) interface)))
     (let ((interrupted (deed-text older)) (by (deed-text newer)))
       (warn-once (list :clash interrupted by)
                  (simulation-world (interface-simulation interface))

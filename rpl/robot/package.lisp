@@ -53,8 +53,9 @@
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure
-                #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
-                #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
+                #:plan-trace #:write-trace #:valve #:make-valve #:valve-losers #:note-command
+                #:with-answer #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks*
+                #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p
                 #:hear-of-trouble #:note-seen #:*realm*
                 #:give-back-all #:+root+

@@ -21,6 +21,15 @@
                         (eq task (task-top (deed-task deed)))))
                  (interface-deeds interface)))
 
+(defun unawaited-advice (deed)
+  "Return in a sentence what to do if DEED is not to be under way when its plan has succeeded; or
+NIL."
+  (if (eq :evaporated (task-state (deed-task deed)))
+      (format nil "What gave it was ended before, as by a deadline. ~
+                   If the command is to end as well, stop it: (rpl-robot-stop).")
+      (let ((wait (wait-text (deed-outcome deed) (deed-resource deed))))
+        (and wait (format nil "If the plan is to end with it, let it ~A." wait)))))
+
 (defun tell-of-unawaited (interface task)
   "Say once if commands of TASK, a plan of INTERFACE that has succeeded, are under way."
   (let ((deed (first (unawaited-deeds interface task))))
@@ -28,7 +37,7 @@
       (warn-once (list :unawaited (task-label task))
                  (simulation-world (interface-simulation interface))
                  (format nil "The plan ~A succeeded while its command rpl-~(~A~) was under way, ~
-                              which goes on.~@[ If the plan is to end with it, let it ~A.~]"
+                              which goes on.~@[ ~A~]"
                          (task-label task)
                          (command-name (deed-command deed))
-                         (wait-text (deed-outcome deed) (deed-resource deed)))))))
+                         (unawaited-advice deed))))))
