@@ -37,9 +37,9 @@ the next. EDITED-P is true if the prompt edits what is typed, TYPED the drawn-li
 typed, or NIL. QUESTION is what stands there for the user to answer, or NIL; OVERWRITTEN-P is true
 if something was written after it. ASKED-P is true while a program, not the prompt, reads what is
 typed, ASKING-TOLD-P if the user has been told so since the prompt stood last. TROUBLE is the
-condition that what was written could not be delivered, :OVER after LET-GO, or NIL. COLORED-P is true if its messages
-and prompts have colours. While HELD-BACK-P is true, what is written is kept in HELD-BACK, a list of
-strings, newest first."))
+condition that what was written could not be delivered, :OVER after LET-GO, or NIL. COLORED-P is
+true if its messages and prompts have colours. While HELD-BACK-P is true, what is written is kept
+in HELD-BACK, a list of strings, newest first."))
 
 (setf (documentation 'console-line 'function)
       "Return the drawn-line that is being typed on the console, or NIL. Can be set."

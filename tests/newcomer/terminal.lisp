@@ -162,8 +162,12 @@ it was written."
 which says that there is no FACT, a string. A machine that slept longer than the limit is no
 sign that something hangs, so the screen is asked once more at the end."
   (flet ((give-up ()
-           (error 'newcomer-stuck :fact fact
-                                  :screen (format nil "~{|~A~%~}" (screen-lines terminal)))))
+           (error 'newcomer-stuck
+                  :fact fact
+                  :screen (format nil "~{|~A~%~}with gone rows, column and row ~A, from row ~D"
+                                  (screen-lines terminal)
+                                  (multiple-value-list (cursor terminal))
+                                  (terminal-row terminal)))))
     (or (handler-case
             (host:with-deadline (*longest-wait*)
               (loop thereis (funcall function terminal)
