@@ -39,7 +39,8 @@
                  (:file "manners") (:file "copying") (:file "holding") (:file "fields")
                  (:file "contradictions")
                  (:file "given")
-                 (:file "argument-types") (:file "lisp-slips") (:file "operators")))
+                 (:file "argument-types") (:file "lisp-slips") (:file "tests-in-code")
+                 (:file "operators")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
                  (:file "intervals") (:file "angles")))
@@ -152,7 +153,7 @@
                  (:file "stillness") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "names") (:file "items")
-                 (:file "scope") (:file "suspension") (:file "checking")
+                 (:file "scope") (:file "suspension") (:file "checking") (:file "comparing")
                  (:file "known-fluents") (:file "leaf") (:file "compiler") (:file "expression")
                  (:file "construct") (:file "steps") (:file "binding") (:file "leaving")
                  (:file "branching") (:file "repeating") (:file "tags") (:file "calling")
@@ -488,6 +489,7 @@
                  (:file "beginners") (:file "beginners-more") (:file "beginners-slips")
                  (:file "beginners-words") (:file "beginners-ends")
                  (:file "beginners-unheard") (:file "beginners-hints") (:file "beginners-vain")
+                 (:file "beginners-tests")
                  (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t

@@ -13,6 +13,12 @@ for each part, or T if a fluent.")
   "Note that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string."
   (setf (gethash name *known-variables*) kind))
 
+(defvar *known-pulses* '() "The known variables whose fluents are pulsed, and never set.")
+
+(defun declare-pulse (name)
+  "Note that what the variable NAME holds is pulsed, and never set."
+  (pushnew name *known-pulses*))
+
 (defun known-fluent-variable-p (name)
   "True if the variable NAME is known to hold a fluent."
   (eq t (gethash name *known-variables*)))
@@ -25,6 +31,30 @@ for each part, or T if a fluent.")
   "Return the name of the kind of part for which the variable NAME holds fluents, or NIL."
   (let ((kind (gethash name *known-variables*)))
     (and (stringp kind) kind)))
+
+;;; In ordinary Lisp code, what is no plan, a fluent is an object like any other.
+
+(defun read-fluent (form)
+  "Return the variable of the fluent whose value FORM reads, or NIL."
+  (when (and (consp form) (consp (cdr form)) (eq 'fluent-value (first form)))
+    (let ((fluent (second form)))
+      (if (and (consp fluent) (consp (cdr fluent))) (second fluent) fluent))))
+
+(defun test-doubt (form)
+  "Return in a sentence why FORM, a test in Lisp code, is always true, or never; or NIL."
+  (cond ((and (typep form '(cons symbol (cons t null)))
+              (member (first form) '("NOT" "NULL") :test #'string=))
+         (test-doubt (second form)))
+        ((and (symbolp form) (known-fluent-variable-p form))
+         (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
+                      (fluent-value ~:*~(~A~))." form))
+        ((member (read-fluent form) *known-pulses*)
+         (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. Plans write ~
+                      (wait-for ~(~A~)); in Lisp, (await-idle), or (run-until (idle-p)) headless."
+                 form (read-fluent form)))))
+
+(defmethod value-behind ((fluent fluent))
+  "FLUENT-VALUE returns the value of a fluent.")
 
 (defun fluents-vector-p (object)
   (and (simple-vector-p object)

@@ -27,6 +27,7 @@
                (list* (remove-if #'symbolp parameters) body)
                (if *definition* (defining-form *definition*) form))
     (with-own-text (form)
+      (doubt-comparisons body)
       (multiple-value-bind (body documentation) (split-documentation body)
         (multiple-value-bind (scope entry) (procedure-parts parameters environment)
           `(progn
@@ -63,8 +64,10 @@ plans (manual D.2)."
 the variables around it, but not blocks, tags and local plans. Run it by CALL-PLAN."
   (let ((parameters (plain-parameters parameters (list* 'interp-lambda parameters body) environment
                                       (if *definition* (author) "interp-lambda")))
-        (form (list* 'interp-lambda parameters body)))
+        (form (list* 'interp-lambda parameters body))
+        (inside-p (and *own-conses* t)))
     (with-own-text (form)
+      (unless inside-p (doubt-comparisons body))
       (multiple-value-bind (scope entry) (procedure-parts parameters environment)
         `(anonymous-procedure ',parameters ,entry
                               ,(procedure-body-code nil form body scope)

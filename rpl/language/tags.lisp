@@ -111,5 +111,5 @@ WITH-TASK-SUSPENDED and by the loss of a valve (CRAM's words of 2009 and of 2020
   (check-argument task-status task (task-p task) "a task, as begin-plan returns")
   (or (task-status-fluent task)
       (setf (task-status-fluent task)
-            (create-fluent (or (task-name task) 'task)
+            (create-fluent (format nil "(task-status ~(~A~))" (or (task-name task) 'task))
                            (status-word task (task-state task))))))

@@ -23,7 +23,7 @@ if there is none."
 
 (defmacro define-fluents (kind &body definitions)
   "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation).
-Return their names."
+The documentation of those that are pulsed, and never set, begins so. Return their names."
   `(progn
      (fluent-kind ',kind)
      ,@(loop for (name text) in definitions
@@ -32,6 +32,7 @@ Return their names."
                                                  (unless (same-name-p kind 'robot)
                                                    (format nil " A vector, by ~(~A~)." kind))))
              collect `(note-fluent-variable ',name ',kind)
+             when (starts-with-subseq "Pulsed " text) collect `(declare-pulse ',name)
              collect `(declare-fluent-variable ',name ,(if (same-name-p kind 'robot)
                                                            t
                                                            (string-downcase kind)))

@@ -34,7 +34,8 @@
                 #:counterpart-here #:counterpart #:latest #:let-fork-be-kept #:note-doing
                 #:simulation-past #:simulation-journal #:remark #:unremark)
   (:import-from :ars-magna.rpl
-                #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
+                #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:declare-pulse
+                #:fluent-value
                 #:set-value #:pulse
                 #:apply-settings #:looked-at-p #:forget-looks
                 #:*home-in-use* #:*runner* #:post-call #:react-to-all

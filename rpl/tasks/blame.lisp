@@ -56,3 +56,6 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
             for number from 0
             until (engine-call-p call)
             do (format stream "    ~D: ~A~%" number (form-text call 100))))))
+
+(defmethod value-behind ((task task))
+  "BEGIN-PLAN returns the task of a plan that goes on; RUN-PLAN, the values of one that it runs.")

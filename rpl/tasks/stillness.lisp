@@ -34,10 +34,20 @@
                other forms in each tick."
           (form-text (task-form task))))
 
+(defun status-fluent-p (fluent)
+  "True if FLUENT is called as TASK-STATUS calls those that it returns."
+  (starts-with-subseq "(task-status " (fluent-text fluent)))
+
 (defun split-fluents (fluents)
-  "Return a list of those of FLUENTS that the robot changes, and of the others."
+  "Return a list of those of FLUENTS that the robot changes, of the status of tasks, and of the
+others."
   (values (remove-if-not #'robots-fluent-p fluents)
-          (remove-if #'robots-fluent-p fluents)))
+          (remove-if-not #'status-fluent-p fluents)
+          (remove-if #'status-fluent-p (remove-if #'robots-fluent-p fluents))))
+
+(defun status-text (fluent)
+  "Return in words what FLUENT, of the status of a task, says at last."
+  (format nil "~A is ~(~S~)" (fluent-text fluent) (fluent-value fluent)))
 
 (defun end-elsewhere (name part tasks)
   "Return in words how to wait for the end of the command NAME on PART, unless TASKS do that."
@@ -106,16 +116,18 @@
 (defun advice-on-stillness (tasks)
   "Return in sentences what could be done about it that TASKS wait and nothing will wake them."
   (let ((valueless (find-if #'waits-for-no-fluent-p tasks)))
-    (multiple-value-bind (robots others) (split-fluents (fluents-awaited tasks))
+    (multiple-value-bind (robots states others) (split-fluents (fluents-awaited tasks))
       (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is under way: ~
                    give one before you wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
-                   ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~A~]~@[ ~A~]"
+                   ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~{~A~^, ~}, and ~
+                   stays so: no task goes on.~]~@[ ~A~]~@[ ~A~]"
               (and valueless (no-fluent-advice valueless))
               (and robots
                    (format nil "~{~A~^, ~} change~:[s~;~]"
                            (mapcar #'fluent-text robots) (rest robots)))
               (and robots (command-advice tasks))
               (remove-duplicates (mapcar #'fluent-text others) :test #'string=)
+              (mapcar #'status-text states)
               (missed-pulses-text tasks)
               (endless-advice tasks)))))
 

@@ -123,14 +123,16 @@ none; and true. Return false as a third value for other types."
                              (variables-known-to (symbol-package name))))))
     (and meant (string-downcase (unqualified-text meant)))))
 
+(define-global *error-codes* '() "The error codes of commands, keywords.")
+
 (defun note-error-code (code)
   "Remember that CODE, a keyword, is an error code of commands."
-  (setf (get code 'error-code-p) t))
+  (pushnew code *error-codes*))
 
 (defun code-slip (name)
   "Return in words the error code that is called like NAME, which has no value; or NIL."
   (let ((code (find-symbol (symbol-name name) "KEYWORD")))
-    (and (get code 'error-code-p) (format nil "~(~S~)" code))))
+    (and (member code *error-codes*) (format nil "~(~S~)" code))))
 
 (defun named-text (condition)
   "Return our text for CONDITION, that a name means nothing, or NIL."

@@ -113,9 +113,20 @@ elsewhere, as at the prompt, or NIL.")
 
 ;;; Types.
 
+(defgeneric value-behind (datum)
+  (:documentation "Return in a sentence how to get what somebody may have meant who gave DATUM where
+it is of no use; or NIL.")
+  (:method (datum)
+    (declare (ignore datum))
+    nil))
+
 (defun type-slip-text (datum type)
   "Return in a sentence how to have an object of TYPE, for somebody who gave DATUM; NIL if there is
 no more to say."
+  (or (type-remedy datum type) (value-behind datum)))
+
+(defun type-remedy (datum type)
+  "Return in a sentence what is wrong with DATUM for the argument type TYPE, or NIL."
   (let* ((type (and (symbolp type) (find-argument-type type nil)))
          (trouble (and type (argument-type-trouble type))))
     (when (and trouble (funcall trouble datum))

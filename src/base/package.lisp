@@ -102,8 +102,11 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*heir*
            #:*debugger-refused-p*)
   ;; lisp-errors
-  (:export #:note-error-code #:note-dispatch-character #:variable-slip #:*function-meant*
+  (:export #:note-error-code #:note-dispatch-character #:variable-slip #:value-behind
+           #:*function-meant*
            #:ours-called)
+  ;; tests-in-code
+  (:export #:*test-doubt* #:map-comparisons #:code-doubt)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
            #:report-anyhow #:of-lines-typed-p

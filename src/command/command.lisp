@@ -102,6 +102,7 @@ parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
   (let ((name (command-name command)))
     (setf (get name 'command) command)
     (register *commands* name command)
+    (mapc #'note-error-code (mapcar #'error-code-keyword (command-errors command)))
     (define-operator name
         (cons (spec-type (command-resource command))
               (mapcar #'spec-type (command-parameters command)))

@@ -29,6 +29,15 @@ is to be done."
              (doubt-definition "continuation: ~S are its parameters, and nothing is done. Write ~
                                 (continuation (err &rest results) ~:*~S)." shown))))))
 
+(defun doubt-codes (variable body)
+  "Warn of what BODY, of a CONTINUATION, compares VARIABLE, its first parameter, with and that is no
+error code."
+  (map-comparisons (lambda (subject word form)
+                     (declare (ignore form))
+                     (cl:let ((doubt (and (eq subject variable) (code-doubt word))))
+                       (when doubt (doubt-definition "continuation: ~A" doubt))))
+                   body))
+
 (public continuation)
 (defmacro continuation (lambda-list &body body)
   "Return a function for a robot command to call with an error code (NIL: none) and what else it
@@ -36,6 +45,7 @@ reports. Like LAMBDA, but types may follow the parameters and unused ones are no
 (manual 3.1.1; reading 39)."
   (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
     (check-continuation lambda-list body)
+    (doubt-codes (first lambda-list) body)
     `#'(lambda ,lambda-list
          (declare (ignorable ,@(lambda-list-variables lambda-list)))
          ,@body)))

@@ -4,10 +4,17 @@
 
 ;;; From here on IF and LOOP mean ours in this package; both expand to Common Lisp's at once.
 
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun doubt-test (operator test)
+    "Warn if TEST, of OPERATOR in Lisp code, is not what is meant."
+    (cl:let ((doubt (funcall *test-doubt* test)))
+      (when doubt (doubt-definition "~(~A~): ~A" operator doubt)))))
+
 (public if)
 (defmacro if (test then &rest else)
   "Evaluate THEN if TEST is true, otherwise the forms ELSE, of which there may be any number
 (manual, Figure D.5; reading 40)."
+  (doubt-test 'if test)
   `(cl:if ,test ,then ,@(cl:if (rest else) `((progn ,@else)) else)))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
@@ -19,12 +26,18 @@ keyword but compound forms or nothing."
          (or (null (cddr forms)) (consp (third forms)))
          (find (first forms) '(:until :while) :test #'string=))))
 
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun test-first-p (forms)
+    "True if FORMS, of a loop, begin with UNTIL or WHILE."
+    (and (symbolp (first forms)) (member (first forms) '(:until :while) :test #'string=))))
+
 (public loop)
 (defmacro loop (&rest forms)
   "Evaluate the body forms again and again: (loop UNTIL test body...) until the test is true
 before a round, (loop WHILE test body...) while it is. Other FORMS mean what they mean to CL:LOOP
 (manual, Figure D.3)."
   (cl:let ((keyword (loop-keyword forms)))
+    (when (test-first-p forms) (doubt-test 'loop (second forms)))
     (if (and keyword (cddr forms))
         `(cl:loop ,keyword ,(second forms) :do (progn ,@(cddr forms)))
         `(cl:loop ,@forms))))

@@ -258,11 +258,18 @@ CLAUSES vary, and what the clause KEY names."
     (:seed (check-number-clause definition clause #'integerp))
     (:run (unless (rest clause) (reject definition clause))
      (check-runs definition clause))
-    ((:thinking :until :success) (unless (= 2 (length clause)) (reject definition clause)))
+    (:thinking (unless (= 2 (length clause)) (reject definition clause)))
+    ((:until :success) (check-test definition clause))
     ((:measure :each-tick)
      (check-each definition clause
                  (lambda (part) (and (proper-list-p part) (= 2 (length part))
                                      (symbolp (first part)) (first part)))))))
+
+(defun check-test (definition clause)
+  "Signal MALFORMED-DEFINITION unless CLAUSE has one form, and warn if that is no test."
+  (unless (= 2 (length clause)) (reject definition clause))
+  (let ((doubt (funcall *test-doubt* (second clause))))
+    (when doubt (doubt-definition "~A: ~(~S~): ~A" definition (first clause) doubt))))
 
 (defun check-whole (definition name clauses)
   "Signal MALFORMED-DEFINITION unless CLAUSES make an experiment."

@@ -1,0 +1,93 @@
+;;;; beginners-tests.lisp -- what code tests and what is never so, or always.
+
+(in-package :ars-magna.tests)
+
+(in-suite beginners)
+
+;;; Error codes.
+
+(defun told-of-code (test)
+  "Return the warnings of a continuation whose first parameter, CODE, is in the form TEST."
+  (warning-about `(nisp:continuation (code) (when ,test (print 1)))))
+
+(test continuations.warn-of-codes-that-no-command-has
+  (is-true (has-words-p (told-of-code '(eq code :blocked))
+                        "no command ends with :blocked. Did you mean :robot-blocked?"))
+  (is-true (has-words-p (told-of-code '(case code ((nil) 1) ((:interrupted :interrupt) 2)))
+                        ":interrupted. Did you mean :interrupt?"))
+  (is-true (has-words-p (told-of-code '(member code '(:robot-blocked :no-cornr)))
+                        ":no-cornr. Did you mean :no-corner?"))
+  (is-true (has-words-p (told-of-code '(equal :done code))
+                        ":done: its error code is NIL if it succeeds"))
+  (dolist (test '((eq code :robot-blocked) (case code (:interrupt 1) (t 2)) (eq other :blocked)
+                  (eq code :spilt-the-milk) (eq code 'blocked) '(eq code :blocked)
+                  (member code codes) (eq code . :blocked)))
+    (is (not (search "no command" (princ-to-string (ignore-errors (told-of-code test))))))))
+
+(test plans.warn-of-codes-that-no-command-has
+  (flet ((told (test) (warnings-of-procedure 'robot `(if ,test (turn-once) (wait-time 1)))))
+    (is-true (has-words-p (told '(eq (rpl:fluent-value driver:robot-movement-error*) :blocked))
+                          "Did you mean :robot-blocked?"))
+    (is-true (has-words-p (told '(eq driver:robot-movement-error* :robot-bloked))
+                          "Did you mean :robot-blocked?"))
+    (is-true (has-words-p (told '(eql (rpl:fluent-value (nisp:vref driver:camera-error* 0)) :ok))
+                          "its error code is NIL"))
+    (dolist (test '((eq driver:robot-movement-error* :robot-blocked) (eq robot :blocked)
+                    (eq (rpl:fluent-value (nisp:vref driver:camera-error* 0)) :not-tracking)))
+      (is (not (search "no command" (told test)))))))
+
+;;; States of tasks.
+
+(test plans.warn-of-states-that-no-task-has
+  (flet ((told (word)
+           (warnings-of-procedure 'robot `(rpl:par (:tag walk (turn-once))
+                                                   (rpl:wait-for (eq (rpl:task-status walk)
+                                                                     ,word))))))
+    (is-true (has-words-p (told :succeded) "never :succeded. Did you mean :succeeded?"))
+    (is-true (has-words-p (told :done) "never :done. It is one of :created, :running"))
+    (dolist (word '(:succeeded :blocked :evaporated))
+      (is (not (search "never" (told word)))))))
+
+(test deadlocks.say-how-the-tasks-are-that-are-waited-for
+  (let ((text (rover-writes ()
+                (driver:run-plan
+                 (rpl:make-plan '(rpl:seq (:tag walk (rpl:wait-time 1))
+                                  (rpl:wait-for (eq (rpl:task-status walk) :failed))))))))
+    (is-true (has-words-p text "(task-status walk) is :succeeded, and stays so") "~A" text)
+    (is (not (search "SET-VALUE" text)))))
+
+;;; Fluents in Lisp.
+
+(test lisp.warns-of-fluents-as-tests
+  (is-true (has-words-p (warning-about '(lambda () (nisp:if driver:robot-stopped* 1 2)))
+                        "robot-stopped* is a fluent, which is true in Lisp"))
+  (is-true (has-words-p (warning-about '(lambda () (nisp:loop until (not driver:robot-place*)
+                                                              do (run:run-ticks 1))))
+                        "(fluent-value robot-place*)"))
+  (is (string= "" (warning-about '(lambda ()
+                                   (nisp:if (rpl:fluent-value driver:robot-place*) 1 2)))))
+  (is (string= "" (warnings-of-plan (if driver:robot-place* 1 2)))))
+
+(test lisp.warns-of-loops-that-wait-for-pulses
+  (is-true (has-words-p (warning-about '(lambda ()
+                                         (nisp:loop until (rpl:fluent-value driver:robot-stopped*)
+                                                    do (run:run-ticks 1))))
+                        "never true: the fluent is pulsed" "(await-idle)"))
+  (is-true (has-words-p (warning-about '(lambda ()
+                                         (nisp:loop while (not (rpl:fluent-value
+                                                                (nisp:vref driver:hand-moved* 0)))
+                                                    do (run:run-ticks 1))))
+                        "never true")))
+
+(test experiments.warn-of-fluents-as-success
+  (is-true (has-words-p (warning-about '(experiment:defexperiment never-so (:robots rover) (:run t)
+                                         (:success (not driver:robot-stopped*))))
+                        ":success: robot-stopped* is a fluent")))
+
+(test lisp.says-what-a-task-or-fluent-is-good-for
+  (flet ((told (datum) (base:text-of-condition
+                        (make-condition 'type-error :datum datum :expected-type 'number))))
+    (run:with-simulation (rover)
+      (is-true (has-words-p (told (driver:begin-plan (rpl:make-plan '(rpl:wait-time 1))))
+                            "RUN-PLAN, the values of one that it runs")))
+    (is-true (has-words-p (told *level*) "FLUENT-VALUE returns the value"))))
