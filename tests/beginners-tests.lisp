@@ -91,3 +91,16 @@
       (is-true (has-words-p (told (driver:begin-plan (rpl:make-plan '(rpl:wait-time 1))))
                             "RUN-PLAN, the values of one that it runs")))
     (is-true (has-words-p (told *level*) "FLUENT-VALUE returns the value"))))
+
+;;; What policies keep.
+
+(test policies.warn-of-what-no-clause-keeps
+  (flet ((told (&rest clauses) (warning-about `(rpl:make-policy () ,@clauses))))
+    (is-true (has-words-p (told '(:init (rpl:policy-setf 'start 1) t)
+                                '(:recover (print (rpl:policy-get 'strat))))
+                          "(policy-get 'strat) returns NIL, as no clause keeps that. Kept: 'start"))
+    (is-true (has-words-p (told '(:recover (rpl:policy-get 'start))) "no clause keeps that"))
+    (is (string= "" (told '(:init (rpl:policy-setf 'start 1) t)
+                          '(:recover (rpl:policy-get 'start)))))
+    (is (string= "" (told '(:init (dolist (name '(a b) t) (rpl:policy-setf name 1)))
+                          '(:recover (rpl:policy-get 'a)))))))

@@ -122,9 +122,27 @@ an :INIT, which sees whether the arguments are right."
          (macroexpand-1 `(interp-lambda (,+use-variable+ ,@parameters) ,@(rest clause))
                         environment))))
 
+(defun names-in-calls (operator form)
+  "Return the forms for the names in the calls of OPERATOR, POLICY-GET or POLICY-SETF, in FORM."
+  (when (consp form)
+    (append (and (eq operator (first form)) (consp (rest form)) (list (second form)))
+            (loop for rest = form then (cdr rest)
+                  while (consp rest) append (names-in-calls operator (car rest))))))
+
+(defun doubt-memory (definition clauses)
+  "Warn if CLAUSES ask for what none of them keeps."
+  (let ((kept (names-in-calls 'policy-setf clauses)))
+    (when (every #'constantp kept)
+      (dolist (name (set-difference (names-in-calls 'policy-get clauses) kept :test #'equal))
+        (when (constantp name)
+          (doubt-definition "~A: (policy-get ~(~S~)) returns NIL, as no clause keeps that.~
+                             ~@[ Kept: ~{~(~S~)~^, ~}.~]"
+                            definition name kept))))))
+
 (defun policy-code (definition name parameters clauses environment)
   "Return code that makes the policy NAME."
   (check-policy-clauses definition clauses)
+  (doubt-memory definition clauses)
   (let ((parameters (plain-parameters parameters parameters environment definition)))
     `(%make-policy ',name ',parameters
                    ,@(loop for kind in '(:init :check :recover :clean-up)
