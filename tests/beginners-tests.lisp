@@ -104,3 +104,13 @@
                           '(:recover (rpl:policy-get 'start)))))
     (is (string= "" (told '(:init (dolist (name '(a b) t) (rpl:policy-setf name 1)))
                           '(:recover (rpl:policy-get 'a)))))))
+
+;;; Waits for what does not end.
+
+(test await-idle.says-what-did-not-end
+  (rover-writes ()
+    (driver:begin-plan (rpl:make-plan '(loop (rpl:wait-time 1))))
+    (run:run-ticks 2)
+    (is-false (run::tell-of-vain-wait (time:current-simulation) 60))
+    (is-true (has-words-p (displayed) "await-idle has waited for 60 s, and gives up"
+                          "the plan (loop (wait-time 1)) did not end"))))

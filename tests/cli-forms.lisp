@@ -102,3 +102,15 @@ ok."
   (let ((cli::*patience* 3))
     (is (= 1 (count-if (lambda (line) (search "not completed within 3 ticks" line))
                        (run-script (format nil "repeat 2 go-forward 50~%(list 1)")))))))
+
+(test scripts.that-only-define-a-robot-are-told-apart
+  (flet ((only-defines-p (text)
+           (uiop:with-temporary-file (:pathname file :stream out :type "lisp")
+             (write-string text out)
+             :close-stream
+             (cli::only-defines-p file))))
+    (is-true (only-defines-p "(in-package :ars-user)
+(defmap pen (8 8)) (defrobot bo (pen (2 2) 0))"))
+    (dolist (text '("(defmap pen (8 8))" "(defrobot bo (pen (2 2) 0)) turn 1" "(defrobot bo" ""
+                    "(defrobot bo (pen (2 2) 0)) (print 1)"))
+      (is-false (only-defines-p text)))))

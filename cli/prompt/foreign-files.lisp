@@ -34,6 +34,18 @@ lines; or NIL."
   (ignore-errors (let ((text (file-text path)))
                    (values (read-from-string text t nil :start (form-start text 0))))))
 
+(defun only-defines-p (path)
+  "True if the file PATH defines a robot, and has nothing but definitions."
+  (ignore-errors
+   (let ((text (file-text path)) (robot-p nil))
+     (loop for (form end) = (multiple-value-list
+                             (read-from-string text nil text :start (or end 0)))
+           until (eq form text)
+           do (when (same-name-p (first form) 'defrobot) (setf robot-p t))
+           always (or (starts-with-subseq "DEF" (symbol-name (first form)))
+                      (starts-with-subseq "IN-" (symbol-name (first form))))
+           finally (return robot-p)))))
+
 (defun check-typed-load (form)
   "Signal BAD-LINE if FORM, as typed, loads a file that cannot be Lisp."
   (when (typep form '(cons (eql load) (cons string)))

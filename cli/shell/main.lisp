@@ -164,7 +164,14 @@ value."
   "Run SCRIPT with the options in ARGUMENTS. Return the status to exit with."
   (let ((text (and (script-path script) (foreign-text (script-path script)))))
     (when text (reject-usage "~A" text)))
-  (run-options (list* (list :script script) (parse-options arguments))))
+  (let ((options (list* (list :script script) (parse-options arguments))))
+    (prog1 (run-options options)
+      (when (and (script-path script)
+                 (null (option-value :world options))
+                 (only-defines-p (script-path script)))
+        (say-on-error-output
+         (format nil "~A only defines things. It was run as a script of lines; for the robot in ~
+                      it: ars-magna --world ~:*~A." script))))))
 
 (defun usage-wanted-p (arguments)
   (intersection arguments '("--help" "-h") :test #'string=))

@@ -74,19 +74,29 @@ place. Return SIMULATION."
   simulation)
 
 (addition await-idle)
-(defun await-idle (&optional (simulation (current-simulation)) (seconds 60))
+(defun await-idle (&optional (simulation (current-simulation)) (seconds 60 given-p))
   "Wait until nothing that comes to an end is left to do in the live SIMULATION, at most SECONDS.
-True if so. Things that have kickers go on by themselves, and are not waited for, nor are tracks. Of
-one that is not live, return at once whether nothing is left at all. Signals WRONG-ARGUMENT unless
-SECONDS is a number from 0 to 1e9, and MISUSE if the simulator has failed and is paused for that: it
-would wait in vain."
+True if so; else a warning says what goes on, unless SECONDS are given. Things that have kickers go
+on by themselves, and are not waited for, nor are tracks. Of one that is not live, return at once
+whether nothing is left at all. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and
+MISUSE if the simulator has failed and is paused for that: it would wait in vain."
   (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
   (let ((simulation (simulation-meant simulation 'await-idle)))
     (cond ((not (live-p simulation)) (idle-p simulation))
           ((eq (current-thread) (simulation-thread simulation))
            (reject-use "await-idle: the simulator would wait for itself. Go on in a continuation."))
-          (t (wait-until-idle simulation seconds)))))
+          ((wait-until-idle simulation seconds))
+          ((and (not given-p) (live-p simulation)) (tell-of-vain-wait simulation seconds)))))
+
+(defun tell-of-vain-wait (simulation seconds)
+  "Queue a warning that AWAIT-IDLE has waited SECONDS for SIMULATION in vain. Return NIL."
+  (let ((names (remove-duplicates (unfinished-in-participants simulation) :test #'string=))
+        (*message-queue* (simulation-messages simulation)))
+    (warn-at-once (format nil "await-idle has waited for ~A s, and gives up, as ~:[something is ~
+                               still to be done~;~:*~{~A~^ and ~} did not end~]."
+                          seconds names))
+    nil))
 
 ;; Plans first: what they have asked for by the time that they rest is seen then.
 (defun all-still-p (simulation)
