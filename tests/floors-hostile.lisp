@@ -137,7 +137,7 @@
     (signals base:wrong-argument (ars:export-map 5 "room.yaml"))
     (signals base:wrong-argument (ars:export-map 'plain-room "room.pgm"))
     (signals base:wrong-argument (ars:export-map 'plain-room 5))
-    (signals base:unknown-name (ars:export-map 'plain-room "room.yaml" :unknown 'glass))
+    (signals base:unknown-name (ars:export-map 'plain-room "room.yaml" :unknown 'glas))
     (signals ars:unusable-floor (ars:export-map 'plain-room "/no/such/directory/room.yaml"))))
 
 (defun spoiled-text (text dice)

@@ -9,10 +9,13 @@
   :documentation "How bright, from 0 to 255, pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+ are.")
 
 (defun number-of-substance (map substance)
-  "Return the number that the name SUBSTANCE has in MAP. Signals UNKNOWN-NAME."
+  "Return the number that the name SUBSTANCE has in MAP, or NIL if that has no walls of it. Signals
+UNKNOWN-NAME if nobody has defined it either."
   (let ((names (map-substance-types map)))
     (or (position substance names :start 1 :test #'same-name-p)
-        (reject-name "substance of walls in the map" substance (rest (coerce names 'list))))))
+        (unless (find-substance substance nil)
+          (reject-name "substance" substance
+                       (append (rest (coerce names 'list)) (defined-names *substances*)))))))
 
 (defun unknown-wall-test (map unknown)
   "Return a function that says of a substance's number and a parameter whether walls of these in MAP
@@ -22,7 +25,7 @@ stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals 
       (destructuring-bind (name &optional parameter) (ensure-list unknown)
         (let ((wanted (number-of-substance map name)))
           (lambda (number value)
-            (and (= number wanted)
+            (and (eql number wanted)
                  (or (null parameter) (= value parameter))))))))
 
 (defun map-grid (map unknown)
@@ -107,8 +110,8 @@ file FILE, a string or pathname whose name ends in .yaml or .yml, and beside it 
 is called the same. ~/ is the home directory. A pixel is a cell, as wide as MAP-FRAME says, and
 IMPORT-MAP makes the same cells of it. UNKNOWN says, as for IMPORT-MAP, which walls are written as
 what nobody knows: a substance, or a list of that and a parameter, such as (glass 5); NIL and :WALLS
-say none. Substances and things are not written. Files of these names are replaced. Return the
-truenames of both. Signals UNUSABLE-FLOOR, WRONG-ARGUMENT and UNKNOWN-NAME."
+say none; a substance that MAP has no walls of is for no pixel. Substances and things are not
+written. Files of these names are replaced. Return the truenames of both. Signals UNUSABLE-FLOOR, WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-said-p unknown)
                   "the name of a substance, or a list of that and a parameter, as in (glass 5)")
