@@ -70,6 +70,19 @@
   ;; Two numbers: 12.706 times half their distance.
   (is-printed 3 '("-5.853" "6.853") (stats:student-interval #(0 1) :confidence 95/100)))
 
+(test statistics.of-very-small-numbers-are-those-of-others-made-small
+  "Though the squares of these are nothing to double-floats. A power of two changes no digit."
+  (let* ((numbers '(1d0 2d0 4d0 4.5d0 5d0 9d0)) (small (scale-float 1d0 -600))
+         (less (mapcar (lambda (number) (* small number)) numbers)))
+    (flet ((agree (function &rest options)
+             (is (equal (mapcar (lambda (bound) (* small bound))
+                                (multiple-value-list (apply function numbers options)))
+                        (multiple-value-list (apply function less options))))))
+      (agree 'stats:deviation)
+      (agree 'stats:student-interval)
+      (agree 'stats:bootstrap-interval))
+    (is (plusp (stats:deviation (list 0 least-positive-double-float))))))
+
 (test mean-difference.is-that-of-the-differences
   (let ((firsts '(188 96 168 176 153 172 177 163 146 173 186 168 177 184 96))
         (seconds '(139 163 160 160 147 149 149 122 132 144 130 144 102 124 144)))

@@ -51,10 +51,11 @@ and Tibshirani 1993, formula 14.15, of groups if SAMPLE is large)."
          (left (coerce (loop for group below groups
                              collect (funcall function (sample-without sample group groups)))
                        'doubles))
-         (mean (mean-of left)) (squares 0d0) (cubes 0d0))
-    (loop for value across left
-          do (incf squares (expt (- mean value) 2))
-             (incf cubes (* (expt (- mean value) 2) (- mean value))))
+         (mean (mean-of left)) (squares 0d0) (cubes 0d0)
+         (influences (map 'doubles (lambda (value) (- mean value)) left)))
+    (loop for influence across (magnified influences (magnification influences))
+          do (incf squares (expt influence 2))
+             (incf cubes (* (expt influence 2) influence)))
     (if (zerop squares) 0d0 (/ cubes (* 6 (* squares (sqrt squares)))))))
 
 (defun bias (values found)

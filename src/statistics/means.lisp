@@ -8,7 +8,7 @@
         (values nil nil)
         (let ((mean (mean-of sample))
               (reach (* (student-reach confidence (double (1- size)))
-                        (sqrt (/ (variance-of sample) size)))))
+                        (deviation-of sample size))))
           (values (- mean reach) (+ mean reach))))))
 
 (addition student-interval)

@@ -33,6 +33,26 @@ Golub and LeVeque 1983, formula 1.7)."
              (incf rest deviation))
     (/ (max 0d0 (- squares (/ (* rest rest) size))) (- size 1))))
 
+;;; Squares and cubes of very small numbers are 0. Multiplied by a power of two these lose nothing.
+
+(defun magnification (sample)
+  "Return the power of two to multiply the numbers of SAMPLE by before they are squared or cubed: 1
+unless all are very small."
+  (let ((largest (reduce #'max sample :key #'abs :initial-value 0d0)))
+    (if (< 0d0 largest 1d-75)
+        (scale-float 1d0 (min 1000 (- (nth-value 1 (decode-float largest)))))
+        1d0)))
+
+(defun magnified (sample factor)
+  (declare (type doubles sample) (type double-float factor))
+  (if (= 1 factor) sample (map 'doubles (lambda (x) (* factor x)) sample)))
+
+(defun deviation-of (sample &optional (size 1))
+  "Return the standard deviation of the mean of SIZE numbers such as those of SAMPLE, of two or
+more."
+  (let ((factor (magnification sample)))
+    (/ (sqrt (/ (variance-of (magnified sample factor)) size)) factor)))
+
 ;;; The system's SORT takes ten times as long, which a bootstrap of the median would feel.
 
 (defun merge-runs (from to start middle end)
@@ -86,9 +106,10 @@ Signals WRONG-ARGUMENT unless they are numbers from -1e15 to 1e15."
     (when (< 1 (length sample)) (variance-of sample))))
 
 (defun deviation (numbers)
-  "Return the standard deviation of NUMBERS, the root of their VARIANCE; NIL of fewer than two."
-  (let ((variance (variance numbers)))
-    (when variance (sqrt variance))))
+  "Return the standard deviation of NUMBERS, the root of their VARIANCE; NIL of fewer than two.
+Signals WRONG-ARGUMENT unless they are numbers from -1e15 to 1e15."
+  (let ((sample (sample 'deviation 'numbers numbers)))
+    (when (< 1 (length sample)) (deviation-of sample))))
 
 (defun quantile (numbers share)
   "Return the number that a SHARE, from 0 to 1, of NUMBERS, a list or vector, is below, in between
