@@ -157,6 +157,16 @@ of no account."
                                                                  (octets-as-string '(0 254))))
                                     "mode: scale"))))
 
+(test png.transparency-of-16-bits-is-read
+  "The value that is transparent is all of it; how opaque the others are is their high eight bits."
+  (is (string= "#u." (states-of-png (png-file 3 0 '((0 0 1 254 2 254 3)) :depth 16
+                                              :chunks (png-chunk "tRNS"
+                                                                 (octets-as-string '(254 2))))
+                                    "mode: scale")))
+  (is (string= "#u." (states-of-png (png-file 3 4 '((0 0 9 255 255 254 9 127 255 254 9 255 255))
+                                              :depth 16)
+                                    "mode: scale"))))
+
 (test png.filters-are-undone
   "The same rows by each filter: nothing, the left, above, their mean, the likeliest of three."
   (let ((expected (states-with '(0 254 205 254))))

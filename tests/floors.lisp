@@ -271,6 +271,15 @@ one."
     (dolist (wrong '(5 (glass heavy) ((glass)) "glass"))
       (signals base:wrong-argument (ars:export-map 'there "room.yaml" :unknown wrong)))))
 
+(test import.warns-of-keys-that-look-like-others
+  (flet ((said (&rest lines)
+           (with-floor (yaml (pgm-text '((0 254))) (apply #'floor-text lines))
+             (warnings-of (lambda () (ars:import-map yaml))))))
+    (is (search "floor.yaml, line 1: the key moed is not read; did you mean mode?"
+                (first (said "moed: scale"))))
+    (is (search "did you mean image?" (first (said "Image: other.pgm"))))
+    (is (null (said "mode: trinary" "cost: 3" "map_id: 7" "width: 5" "free_cost: 1")))))
+
 (test import.warns-of-a-floor-where-nothing-is-free
   (with-floor (yaml (pgm-text '((0 128 200))) (floor-text "mode: scale" "free_thresh: 0.1"))
     (is (search "no cell is free" (first (warnings-of (lambda () (ars:import-map yaml)))))))

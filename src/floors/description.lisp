@@ -3,7 +3,8 @@
 (in-package :ars-magna.floors)
 
 ;;; The keys and what they mean are those of ROS's map_server (wiki.ros.org/map_server) and of
-;;; nav2_map_server after it. All but mode must be there; others are nobody's business here.
+;;; nav2_map_server after it. All but mode must be there; others are nobody's business here, unless
+;;; they look like one of these.
 
 (defconstant +most-octets+ 65536 "How many bytes the description of a floor has at most.")
 
@@ -103,10 +104,21 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
                                            them, as savers write 0.196 and 0.65"
                   (decimal free) (decimal occupied))))
 
+(defun warn-of-key (file entry)
+  "Warn if the key of ENTRY, of FILE, is none that is read, but may be a slip for one."
+  (let* ((known (cons "mode" (mapcar #'car *example-lines*))) (key (entry-key entry))
+         (like (unless (member key known :test #'string=)
+                 (find-if (lambda (other) (or (string-equal key other) (resembles-p key other)))
+                          known))))
+    (when like
+      (warn-of-definition "~A, line ~D: the key ~A is not read; did you mean ~A?"
+                          (native-name file) (entry-line entry) key like))))
+
 (defun description-from (file entries)
   "Return the description that ENTRIES, of FILE, come to."
   (flet ((entry (key) (required-entry file key entries)))
     (dolist (line *example-lines*) (entry (car line)))
+    (dolist (entry entries) (warn-of-key file entry))
     (let ((free (threshold-in file (entry "free_thresh")))
           (occupied (threshold-in file (entry "occupied_thresh"))))
       (check-thresholds file free occupied (entry "free_thresh"))
