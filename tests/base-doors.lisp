@@ -28,6 +28,15 @@
                    (princ-to-string condition))))
     (:no-error (path) (is (null path)))))
 
+(test files.whose-names-stand-for-many-are-refused-for-that
+  "Also those that Lisp cannot take for a pathname."
+  (dolist (name '("a*b" "no/such/x?" "a[b" "a?[b"))
+    (handler-case (base:write-file-anew (lambda (out) (write-string "x" out)) name "the picture")
+      (base:misuse (condition)
+        (is (search (format nil "written to ~A: its name stands for many files; write" name)
+                    (princ-to-string condition))))
+      (:no-error (path) (is (null path))))))
+
 (test files.that-the-system-refuses-are-told-of-without-its-own-names
   "A file that is made for a while, and a stream, are nothing that a user knows."
   (flet ((reason (function)
@@ -39,6 +48,16 @@
                  (reason (lambda ()
                            (with-open-file (out "/dev/full" :direction :output :if-exists :append)
                              (write-string "x" out))))))))
+
+(test errors.show-control-characters-as-codes
+  "What a terminal would obey, of a file or typed. Tabs and line ends stay."
+  (let ((text (coerce '(#\Esc #\[ #\m #\Rubout #\Tab #\Newline #\Return #\a) 'string))
+        (shown (format nil "\\x1B[m\\x7F~C~%\\x0Da" #\Tab)))
+    (is (search shown (princ-to-string (make-condition 'base:misuse :text text))))
+    (is (search shown (base:text-of-condition (make-condition 'simple-error
+                                                              :format-control text))))
+    (is (string= "X" (base:text-of-condition (make-condition 'simple-error
+                                                             :format-control "X"))))))
 
 (defun exit-in-thread ()
   "Return what is said, a string, when another thread would end this Lisp."

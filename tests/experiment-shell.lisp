@@ -234,6 +234,21 @@ output, and what to the error output."
                   (append (uiop:directory-files path) (uiop:subdirectories path)))
           #'string<)))
 
+(test experiments.say-which-of-their-files-cannot-be-written
+  (in-place
+    (ensure-directories-exist (base:native-path (placed "out/summary.txt/")))
+    (is-true (has-words-p (said-by (lambda () (run-stroll "--out" (placed "out"))))
+                          "summary.txt" "it is a directory or a device" "remove it"))
+    (is (= 25 (lines-in "out/rows.csv")))))
+
+(test experiments.show-no-control-characters-of-damaged-tables
+  (in-place
+    (is (eql 0 (run-stroll "--out" (placed "out"))))
+    (write-file "out/rows.csv" "~C[31mcondition,seed~%" #\Esc)
+    (let ((said (said-by (lambda () (run-stroll "--out" (placed "out"))))))
+      (is (null (find #\Esc said)))
+      (is-true (search "\\x1B[31m" said)))))
+
 (test pictures.are-drawn-where-that-is-wanted
   (in-place
     (run-stroll "--out" (placed "out") "--plot")

@@ -74,6 +74,12 @@
       (is (search ":trials" (princ-to-string condition))))
     (:no-error (name) (fail "~A was defined" name))))
 
+(test definition.says-which-values-are-one-in-the-table
+  (handler-case (define-for-test (:robots ars-worlds:dot) (:run size) (:vary (size 1 2 "a" 'a)))
+    (base:malformed-definition (condition)
+      (is (search "the third and the fourth are both \"a\"" (princ-to-string condition))))
+    (:no-error (name) (fail "~A was defined" name))))
+
 (test definition.doubts-what-is-varied-and-not-used
   (signals base:definition-warning
     (define-for-test (:robots ars-worlds:dot) (:run t) (:vary (motion-nois* 0 1)))))

@@ -62,7 +62,8 @@
           (replace-file old path)
           (say "~A was there, and different; it is ~A now." (native-name path)
                (native-name old))))
-      (call-replacing-file (lambda (out) (write-string text out)) path))
+      (write-file-anew (lambda (out) (write-string text out)) path "the script"
+                       :remedy "remove it, or give another directory"))
     path))
 
 (defun spread (experiment words options script template settings)

@@ -31,9 +31,14 @@ directory; ~ and ~/ are the home directory."
            (merge-pathnames (path (subseq name 2)) (user-homedir-pathname)))
           (t (path name)))))
 
+(defun many-files-p (name)
+  "True if NAME, a pathname or string, stands for many files, or has a [ that nothing closes."
+  (handler-case (wild-pathname-p name)
+    (error () t)))
+
 (defun shown-name (file)
   "Return FILE, a pathname or string, as the operating system writes it; an empty name in quotes."
-  (let ((name (if (and (pathnamep file) (not (wild-pathname-p file))) (native-name file) file)))
+  (let ((name (if (and (pathnamep file) (not (many-files-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
 (defun existing-path (path)
@@ -44,7 +49,7 @@ directory; ~ and ~/ are the home directory."
   "Return the name of the directory that PATH, a pathname or string, is in if there is none such, or
 NIL."
   (let ((directory (uiop:pathname-directory-pathname (merge-pathnames path))))
-    (unless (or (wild-pathname-p directory) (uiop:directory-exists-p directory))
+    (unless (or (many-files-p directory) (uiop:directory-exists-p directory))
       (native-name directory))))
 
 (defun replace-file (file by)
@@ -71,10 +76,12 @@ nothing."
     (and (ignore-errors (sb-posix:lstat name))
          (not (ignore-errors (sb-posix:stat name))))))
 
+(defparameter *many-files-text*
+  "its name stands for many files; write \\\\ before each * ? and [ in a string of Lisp")
+
 (defun unusable-file-text (path)
   "Return why PATH, a pathname or string, is the name of no file of bytes, in words, or NIL."
-  (cond ((wild-pathname-p path)
-         "its name stands for many files; write \\\\ before each * ? and [ in a string of Lisp")
+  (cond ((many-files-p path) *many-files-text*)
         ((string= "" (native-name path)) "that is no name; give the name of a file")
         ((not (ignore-errors (sb-posix:stat (native-name path))))
          "there is no such file, or none that may be seen")

@@ -43,7 +43,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:call-printing-plainly #:printing-plainly #:printing-words)
   ;; files, processes
   (:export #:native-name #:native-path #:native-path-of-directory #:path-called #:existing-path
-           #:missing-directory
+           #:missing-directory #:many-files-p
            #:replace-file #:plain-file-p #:dangling-link-p
            #:unusable-file-text #:shown-name
            #:encoded #:decoded #:file-text #:cut-file

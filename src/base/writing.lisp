@@ -6,6 +6,7 @@
   "Return the absolute path of the file that is to be written for FILE: where a link leads to, if it
 is one. Signals an error if there is something that is no file of bytes, or no directory for it, or
 the name is illegible."
+  (when (many-files-p file) (error *many-files-text*))
   (check-name-legible file)
   (when (dangling-link-p file)
     (error "it is a link to a file that there is not"))
@@ -13,7 +14,7 @@ the name is illegible."
                   (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
     (when (and (probe-file path) (not (plain-file-p path)))
       (error "it is a directory or a device"))
-    (unless (probe-file (uiop:pathname-directory-pathname path))
+    (unless (uiop:directory-exists-p (uiop:pathname-directory-pathname path))
       (error "there is no such directory"))
     path))
 
@@ -48,13 +49,15 @@ Lisp says only the system's own words, without streams and names that its user d
           ((and words (notany (lambda (char) (find char "\"/")) words)) (string-downcase words))
           (t "no file can be made in that directory"))))
 
-(defun write-file-anew (function file what &key (check #'identity))
-  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals MISUSE if WHAT, such as
-\"the run\", cannot be written there; then FILE is as it was."
+(defun write-file-anew (function file what
+                        &key (check #'identity)
+                          (remedy "give the name of a file that you may write"))
+  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals MISUSE, with the REMEDY, if
+WHAT, such as \"the run\", cannot be written there; then FILE is as it was."
   (handler-case (call-replacing-file function file :check check)
     (ars-magna-error (trouble) (error trouble))
     (error (trouble)
-      (reject-use "~@(~A~) cannot be written to ~A: ~A. What was there is as before; give the name ~
-                   of a file that you may write."
+      (reject-use "~@(~A~) cannot be written to ~A: ~A. What was there is as before; ~A."
                   what (cut (princ-to-string (shown-name file)) 200)
-                  (cut (unwritten-reason trouble) 200)))))
+                  (cut (unwritten-reason trouble) 200)
+                  remedy))))

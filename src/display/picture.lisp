@@ -88,7 +88,7 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
 picture there; then it says that a name has one of ENDINGS."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
-    (when (wild-pathname-p file)
+    (when (many-files-p file)
       (reject "the name of one file; write \\\\ before each * ? and [ in a string of Lisp"))
     (let ((missing (missing-directory file)))
       (when missing (reject (format nil "a name in a directory that there is; make ~A first"

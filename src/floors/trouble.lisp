@@ -24,7 +24,7 @@
 (defun shown-file (file)
   "Return FILE as the operating system writes it; a name that stands for no file, as Lisp does."
   (cond ((equal file "") "\"\"")
-        ((and (pathnamep file) (wild-pathname-p file)) (princ-to-string file))
+        ((and (pathnamep file) (many-files-p file)) (princ-to-string file))
         (t (native-name file))))
 
 (defun reject-floor (file line control &rest arguments)

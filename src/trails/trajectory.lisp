@@ -45,7 +45,7 @@
 
 (defun check-trajectory (file every until robots journal)
   (check-argument save-trajectory file
-                  (and (typep file '(or string pathname)) (not (wild-pathname-p file))
+                  (and (typep file '(or string pathname)) (not (many-files-p file))
                        (pathname-name file))
                   "the name of a file, such as \"run.csv\"; before each * ? and [ in it write \\\\")
   (check-argument save-trajectory every (whole-p every 1)

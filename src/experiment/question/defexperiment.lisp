@@ -172,14 +172,23 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
       (reject-clause definition part
                      (format nil "robots of one map, not of ~{~(~A~)~^ and ~}" maps)))))
 
+(defun check-values-differ (definition part texts)
+  "Signal MALFORMED-DEFINITION if two of TEXTS, those of the values of PART in the table, are equal."
+  (loop for (text . others) on texts
+        for first from 1
+        for place = (position text others :test #'string=)
+        when place
+          do (reject-clause definition part
+                            (format nil "values that differ in the table, where the ~:R and the ~
+                                         ~:R are both ~S"
+                                    first (+ 1 first place) (cut text 60)))))
+
 (defun check-values (definition part values)
   "Signal MALFORMED-DEFINITION unless VALUES are one at least, and differ in the table."
   (unless (and (proper-list-p values) values)
     (reject-clause definition part "one value at least, in a list"))
   (dolist (value values) (check-value definition part value))
-  (let ((texts (mapcar #'value-text values)))
-    (unless (= (length texts) (length (remove-duplicates texts :test #'string=)))
-      (reject-clause definition part "values that differ in the table"))))
+  (check-values-differ definition part (mapcar #'value-text values)))
 
 (defun check-sampled (definition part choices)
   "Signal MALFORMED-DEFINITION unless what the ranges of the design PART are of can have the values

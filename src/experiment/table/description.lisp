@@ -98,10 +98,10 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
 
 (defun write-checked-text (text file)
   "Let FILE have TEXT, and its check sum."
-  (call-replacing-file (lambda (stream)
-                         (write-string text stream)
-                         (write-string (check-line text) stream))
-                       file))
+  (write-file-anew (lambda (stream)
+                     (write-string text stream)
+                     (write-string (check-line text) stream))
+                   file "the description" :remedy "remove it, or give another directory"))
 
 ;;; Rows that were refused stay so, whoever reads them later.
 

@@ -131,9 +131,7 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
                    (open file :direction :output :if-exists :append :if-does-not-exist :create
                               :external-format :utf-8))
                  file)))
-    (when new
-      (write-string (csv-line columns) stream)
-      (finish-output stream))
+    (when new (write-table-line (csv-line columns) stream))
     stream))
 
 (defparameter *machine-columns*

@@ -150,7 +150,8 @@ fingerprint and one value of each thing that varies."
   "Call FUNCTION with a stream to a file that takes the place of the table FILE, once CHECK has been
 called with its path. Signals DAMAGED-TABLE if that cannot be written; FILE is then as it was."
   (handler-case (call-replacing-file function file :check check)
-    ((or stream-error file-error) (condition)
+    (ars-magna-error (condition) (error condition))
+    (error (condition)
       (reject-table file nil "it cannot be written anew (~A). It is as it was."
                     (unwritten-reason condition)))))
 

@@ -25,7 +25,7 @@ table ROWS."
   "Put the tables of what differs from run to run into one, in any order."
   (let ((files (remove-if-not #'existing-path (mapcar #'machine-file directories))))
     (when files
-      (call-replacing-file
+      (call-replacing-table
        (lambda (out)
          (write-string (csv-line *machine-columns*) out)
          (dolist (file files)
