@@ -44,10 +44,14 @@
              (error (trouble) (base:unwritten-reason trouble)))))
     (is (string= "no file can be made in that directory"
                  (reason (lambda () (open "/proc/self/x-tmp" :direction :output)))))
-    (is (string= "no space left on device"
-                 (reason (lambda ()
-                           (with-open-file (out "/dev/full" :direction :output :if-exists :append)
-                             (write-string "x" out))))))))
+    (flet ((fill-device ()
+             (with-open-file (out "/dev/full" :direction :output :if-exists :append)
+               (write-string "x" out))))
+      (is (string= "no space left on device" (reason #'fill-device)))
+      (handler-case (fill-device)
+        (error (trouble)
+          (is (string= "The file /dev/full cannot be written: no space left on device."
+                       (base:text-of-condition trouble))))))))
 
 (test errors.show-control-characters-as-codes
   "What a terminal would obey, of a file or typed. Tabs and line ends stay."

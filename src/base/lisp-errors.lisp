@@ -169,6 +169,16 @@ them is ours; or NIL."
   "True if CONDITION is that no clause of ECASE or the like was for a value."
   (string= "CASE-FAILURE" (type-of condition)))
 
+;; What Lisp says shows the stream.
+(defun unwritten-text (condition)
+  "Return our text for the stream error CONDITION if the system refuses output; NIL of others."
+  (let* ((text (one-line (princ-to-string condition))) (place (search ": " text :from-end t))
+         (file (ignore-errors (pathname (stream-error-stream condition)))))
+    (when (and place (starts-with-subseq "Couldn't write to" text))
+      (format nil "~:[The output~*~;The file ~A~] cannot be written: ~A."
+              file (and file (native-name file))
+              (string-downcase (string-right-trim "." (subseq text (+ 2 place))))))))
+
 (defun lisp-error-text (condition)
   "Return our text for CONDITION if it is one of Common Lisp's own errors; NIL if there is none."
   (ignore-errors
@@ -177,4 +187,5 @@ them is ours; or NIL."
        (arithmetic-error (arithmetic-text condition))
        (sb-ext:name-conflict (conflict-text condition))
        ((or undefined-function unbound-variable) (named-text condition))
+       (stream-error (unwritten-text condition))
        (type-error (unless (case-failure-p condition) (type-error-text condition)))))))
