@@ -141,6 +141,10 @@
   (signals ars-magna.base:wrong-argument
     (rpl:set-value (ars-magna.rpl.lifted:not (fluent)) t))
   (signals ars-magna.base:wrong-argument (rpl:set-value 3 t))
+  (let ((fluent (rpl:state 'itself)) (other (rpl:state 'other)))
+    (signals ars-magna.base:wrong-argument (rpl:set-value fluent fluent))
+    (signals ars-magna.base:wrong-argument (rpl:pulse fluent fluent))
+    (is (eq other (rpl:set-value fluent other)) "another fluent can be a value"))
   (signals ars-magna.base:wrong-argument (rpl:pulse nil)))
 
 (test set-value.is-not-for-networks-to-do

@@ -166,7 +166,12 @@ says what has happened."
 
 ;; A fluent is allowed as the value of another.
 (defun check-no-circle (operator fluent value)
-  "Signal WRONG-ARGUMENT if VALUE, which OPERATOR is to give FLUENT, is a network of it."
+  "Signal WRONG-ARGUMENT if VALUE, which OPERATOR is to give FLUENT, is that or a network of it."
+  (when (eq value fluent)
+    (reject-argument operator 'value value
+                     (format nil "a value, not the fluent itself that is to have it; ~
+                                  (fluent-value ...) of ~A is its value now"
+                             (fluent-text fluent))))
   (when (and (derived-p value) (depends-p value (here fluent)))
     (reject-argument operator 'value value
                      (format nil "a value, not a network of ~A itself. In the network write ~
@@ -213,8 +218,8 @@ function, and the fluent and value that it is called with; or NIL.")
 (defun set-value (fluent value)
   "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
 is in, hear of it if that changed something (EQL) and the outcome is true. FLUENT must not be a
-network, nor VALUE one of FLUENT. From outside of plans, in any thread, it is heard as soon as the
-plans at work have come to a pause (manual D.2)."
+network, nor VALUE be FLUENT or a network of it. From outside of plans, in any thread, it is heard
+as soon as the plans at work have come to a pause (manual D.2)."
   (check-settable 'set-value fluent)
   (check-no-circle 'set-value fluent value)
   (note-outside #'set-value fluent value)
