@@ -14,6 +14,19 @@
   (is (= 0 (geo:norm (pt 0 0))))
   (signals base:wrong-argument (geo:norm (pt 1.7d308 1.7d308))))
 
+(test operations.tell-of-their-own-operands
+  "Also those that use another one."
+  (loop for (function . operands) in `((geo:mul ,(box 1 2 1 2) 1d308) (geo:mul ,(pt 1 1d300) 1d300)
+                                       (geo:add ,(span 1 1.7d308) 1.7d308)
+                                       (geo:subtract ,(span 1 1.7d308) -1.7d308)
+                                       (geo:dist ,(span 1 1.7d308) -1.7d308)
+                                       (geo:grow-interval ,(span 1 1d308) 1.7d308)
+                                       (geo:interval-overlap-width ,(span 1 2) ,(pt 1 2))
+                                       (geo:interval-overlap-width 1 a))
+        do (handler-case (progn (apply function operands) (fail "~A has a result" function))
+             (base:wrong-argument (condition)
+               (is (eq function (base::wrong-argument-operator condition)))))))
+
 (test boxes.are-changed-whole-or-not-at-all
   (flet ((left-p (function &rest arguments)
            (let ((box (box 1 2 1d308 1.5d308)))

@@ -75,8 +75,12 @@ diagonal (manual, Table 3.2; reading 45)."
 (defun interval-overlap-width (a b)
   "Return the width of what the intervals A and B have in common; 0 if
 nothing (manual, Table 3.2; reading 47)."
-  (let ((common (interval-intersect a b)))
-    (if common (interval-width common) 0d0)))
+  (flet ((width ()
+           (let ((common (interval-intersect a b)))
+             (if common (interval-width common) 0d0))))
+    (dispatch interval-overlap-width (a b) "two intervals or two point intervals"
+      ((span span) (width))
+      ((region region) (width)))))
 
 (public nominal)
 (defun nominal (interval)

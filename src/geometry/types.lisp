@@ -16,12 +16,17 @@
   "Signal WRONG-ARGUMENT unless PLACE is a number that a double-float can stand for."
   `(check-argument ,operator ,place (finite-p ,place) +finite-text+))
 
+(define-condition beyond-floats (wrong-argument)
+  ()
+  (:default-initargs :expected "operands whose result is not beyond 1.7e308 either way")
+  (:documentation "The operands of an operation have a result that no double-float stands for."))
+
+;; An operation that uses another one tells of its own operands.
 (defmacro within-floats ((operator operand) &body body)
   "Evaluate BODY. Signal WRONG-ARGUMENT about OPERAND, a variable, if a number overflows."
   `(handler-case (progn ,@body)
-     (floating-point-overflow ()
-       (reject-argument ',operator ',operand ,operand
-                        "operands whose result is not beyond 1.7e308 either way"))))
+     ((or floating-point-overflow beyond-floats) ()
+       (error 'beyond-floats :operator ',operator :name ',operand :value ,operand))))
 
 ;;; Points.
 
