@@ -166,9 +166,13 @@ same on every version of SBCL; NIL if we have none."
 
 (defun coordinate-text (number)
   "Return NUMBER, a coordinate in metres, as text: to a tenth of a millimetre, and without the zeros
-that end it, so that what was typed as 23.2 is not 23.200000762939453."
+that end it, so that what was typed as 23.2 is not 23.200000762939453. What is not 0, but smaller
+than that, is written with an exponent."
   (let ((text (string-right-trim "0" (format nil "~,4F" number))))
-    (if (ends-with #\. text) (format nil "~A0" text) text)))
+    (cond ((< 0 (abs number) 5d-5)
+           (let ((*read-default-float-format* 'double-float)) (prin1-to-string (double number))))
+          ((ends-with #\. text) (format nil "~A0" text))
+          (t text))))
 
 (defun point-in-text (x y)
   "Return the point at X, Y, in metres, as text."
