@@ -59,10 +59,10 @@
                                (-3 "-3.0"))
         do (is (string= text (base::coordinate-text number)))))
 
-(test errors.show-control-characters-as-codes
+(test errors.show-control-characters
   "What a terminal would obey, of a file or typed. Tabs and line ends stay."
   (let ((text (coerce '(#\Esc #\[ #\m #\Rubout #\Tab #\Newline #\Return #\a) 'string))
-        (shown (format nil "\\x1B[m\\x7F~C~%\\x0Da" #\Tab)))
+        (shown (format nil "^[[m?~C~%^Ma" #\Tab)))
     (is (search shown (princ-to-string (make-condition 'base:misuse :text text))))
     (is (search shown (base:text-of-condition (make-condition 'simple-error
                                                               :format-control text))))

@@ -12,6 +12,8 @@
          (session (cli:make-session :input input :output output)))
     (run:call-with-simulation (lambda () (cli:run-session session)) '(ars-user::butler)
                               :clean t)
+    ;; As PROMPT does: other threads may still have something to say.
+    (cli::let-go-of-streams session output)
     (lines-of (get-output-stream-string output))))
 
 (defun without-prompts (line)

@@ -41,24 +41,6 @@
 
 ;;; Lines.
 
-(defun obeyed-p (char)
-  "True if a terminal does something else with CHAR than to show it."
-  (let ((code (char-code char)))
-    (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
-
-(defun visible (text)
-  "Return TEXT with ^ and a letter, or a question mark, for each character that a terminal would
-obey, but for newlines and tabs."
-  (if (some #'obeyed-p text)
-      (with-output-to-string (out)
-        (loop for char across text
-              do (cond ((or (not (obeyed-p char)) (find char '(#\Newline #\Tab)))
-                        (write-char char out))
-                       ((< (char-code char) 32)
-                        (format out "^~C" (code-char (+ 64 (char-code char)))))
-                       (t (write-char #\? out)))))
-      text))
-
 (defparameter *longest-complaint* 1000 "How many characters are shown of what goes wrong, at most.")
 
 (defun complaint-text (text)

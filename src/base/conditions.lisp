@@ -13,32 +13,33 @@
   ()
   (:documentation "The root of every error that ARS MAGNA signals."))
 
-;;; Reports quote files and what was typed, where there may be anything. A terminal would obey some
-;;; of it: control characters are shown as what they are, as in \x1B.
+;;; Reports quote files and what was typed, where there may be anything.
 
-(defun control-char-p (char)
-  "True if CHAR is a control character, but no tab and no line end."
+(defun obeyed-p (char)
+  "True if a terminal does something else with CHAR than to show it."
   (let ((code (char-code char)))
-    (and (or (< code 32) (<= 127 code 159))
-         (not (member char '(#\Tab #\Newline))))))
+    (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
 
-(defun harmless (text)
-  "Return TEXT with each control character, but tabs and line ends, as its code, such as \\x1B."
-  (if (find-if #'control-char-p text)
+(defun visible (text)
+  "Return TEXT with ^ and a letter, or a question mark, for each character that a terminal would
+obey, but for newlines and tabs."
+  (if (some #'obeyed-p text)
       (with-output-to-string (out)
         (loop for char across text
-              do (if (control-char-p char)
-                     (format out "\\x~2,'0X" (char-code char))
-                     (write-char char out))))
+              do (cond ((or (not (obeyed-p char)) (find char '(#\Newline #\Tab)))
+                        (write-char char out))
+                       ((< (char-code char) 32)
+                        (format out "^~C" (code-char (+ 64 (char-code char)))))
+                       (t (write-char #\? out)))))
       text))
 
 (defmethod print-object :around ((condition ars-magna-error) stream)
-  "Let no control characters come to STREAM; what a report that fails has written comes."
+  "Let nothing that a terminal obeys come to STREAM; what a report that fails has written comes."
   (if *print-escape*
       (call-next-method)
       (let ((out (make-string-output-stream)))
         (unwind-protect (call-next-method condition out)
-          (write-string (harmless (get-output-stream-string out)) stream)))))
+          (write-string (visible (get-output-stream-string out)) stream)))))
 
 (addition wrong-argument)
 (define-condition wrong-argument (ars-magna-error)

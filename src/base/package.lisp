@@ -71,7 +71,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; abridging
   (:export #:abridged #:unqualified-text #:+more+)
   ;; conditions
-  (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
+  (:export #:visible #:obeyed-p
+           #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
            #:malformed-definition
            #:malformed-definition-place
            #:definition-warning #:definition-warning-text #:warn-of-definition #:doubt-definition

@@ -157,7 +157,7 @@ same on every version of SBCL; NIL if we have none."
 (defun text-of-condition (condition)
   "Return what CONDITION says, or what it is if it cannot say that."
   (let ((text (or (printing-words () (our-text condition)) (own-text condition))))
-    (if (string= text "") (string-downcase (type-of condition)) (harmless text))))
+    (if (string= text "") (string-downcase (type-of condition)) (visible text))))
 
 (defun hundredths (number)
   "Return NUMBER, to be written with two decimals: 0 if it is nearer to that than these can tell, as

@@ -111,7 +111,8 @@ is called the same. ~/ is the home directory. A pixel is a cell, as wide as MAP-
 IMPORT-MAP makes the same cells of it. UNKNOWN says, as for IMPORT-MAP, which walls are written as
 what nobody knows: a substance, or a list of that and a parameter, such as (glass 5); NIL and :WALLS
 say none; a substance that MAP has no walls of is for no pixel. Substances and things are not
-written. Files of these names are replaced. Return the truenames of both. Signals UNUSABLE-FLOOR, WRONG-ARGUMENT and UNKNOWN-NAME."
+written. Files of these names are replaced. Return the truenames of both. Signals UNUSABLE-FLOOR,
+WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-said-p unknown)
                   "the name of a substance, or a list of that and a parameter, as in (glass 5)")

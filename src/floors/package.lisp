@@ -8,7 +8,8 @@ chipz.")
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-frame
                 #:map-substances #:map-substance-types #:map-parameters #:+wall+ #:find-map
-                #:defmap #:*substances* #:find-substance #:substance-name #:substance-parameter #:bricks)
+                #:defmap #:*substances* #:find-substance #:substance-name #:substance-parameter
+                #:bricks)
   ;; trouble
   (:export #:unusable-floor #:unusable-floor-file #:unusable-floor-line #:unusable-floor-reason)
   ;; frames

@@ -173,7 +173,7 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
                      (format nil "robots of one map, not of ~{~(~A~)~^ and ~}" maps)))))
 
 (defun check-values-differ (definition part texts)
-  "Signal MALFORMED-DEFINITION if two of TEXTS, those of the values of PART in the table, are equal."
+  "Signal MALFORMED-DEFINITION if two of TEXTS, of the values of PART in the table, are equal."
   (loop for (text . others) on texts
         for first from 1
         for place = (position text others :test #'string=)
