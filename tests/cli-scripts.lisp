@@ -41,6 +41,17 @@ written."
           (call-as-process (list* name "--world" "tiny" options))
         (values (mapcar (lambda (line) (with-script-named name line)) lines) status errors)))))
 
+(test scripts.tell-of-plans-that-their-end-cuts-off
+  "In the words of the prompt: what lets ticks pass there is a line."
+  (flet ((told (&rest lines)
+           (nth-value 2 (run-script (joined lines)))))
+    (let ((begin "(begin-plan (interp-lambda () (wait-time 50)))"))
+      (dolist (said (list (told begin) (told "turn 90 deg" begin) (told begin "step 3")))
+        (is-true (has-words-p said "the plan" "STEP N lets N ticks pass"))
+        (is (null (search "with-simulation" said)))
+        (is (null (search "run-ticks" said))))
+      (is (string= "" (told begin "step 60"))))))
+
 (defparameter *small-script*
   (joined '("#!/usr/bin/env ars-magna" "# a comment" "turn 90 deg" "(+ 1" "  2)" "frobnicate"
             "turn 1")))

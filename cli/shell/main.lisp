@@ -39,7 +39,10 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
   (call-by-name (robots-beside robot-name))
-  (call-with-simulation (lambda () (run-session session)) (robots-beside robot-name)
+  (call-with-simulation (lambda ()
+                          (note-lines-typed *simulation*)
+                          (run-session session))
+                        (robots-beside robot-name)
                         :seed seed :journal t :keep *forks-to-keep*)
   (session-next-robot session))
 

@@ -254,45 +254,6 @@ has been told is told, or signalled, as its message queue says."
                                         (not (eq message (message-queue-unsignalled queue))))))))
       (signal-trouble queue))))
 
-(defun undone-text (simulation)
-  "Return in words what was asked for in SIMULATION and has not begun, and a remedy; NIL if there is
-nothing."
-  (let* ((plans (unfinished-in-participants simulation))
-         (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
-                         ;; What plans have asked for is said of plans.
-                         when (and (request-name request) (not (request-forked-p request)))
-                           collect (string-downcase (request-name request))))
-         (undone (remove-duplicates (append (reverse requests) plans)
-                                    :test #'string= :from-end t)))
-    (when undone
-      (format nil "~{~A~^, ~} did nothing. Call (run-ticks N) or (run-until TEST)~:[~; in it, or ~
-                   (run-plan ...) instead of (begin-plan ...)~]."
-              undone plans))))
-
-(defun cut-off-text (simulation)
-  "Return in sentences what the end of SIMULATION cuts off, and a remedy; NIL if there is nothing,
-or the program has looked itself at what was under way."
-  (let ((cut-off (and (not (looked-after-p (simulation-world simulation)))
-                      (loop for participant in (simulation-participants simulation)
-                            append (participant-cut-off participant)))))
-    (when cut-off
-      (format nil "At the end of with-simulation, at tick ~D, ~{~A~^, ~} had not ended and ~
-                   ~:[was~;were~] cut off. Call (run-ticks N) with more ticks, or (run-plan ...) ~
-                   instead of (begin-plan ...)."
-              (simulation-tick simulation) cut-off (rest cut-off)))))
-
-(defun text-at-end (simulation)
-  "Return in sentences what was asked for in SIMULATION, which ends, and came to nothing; or NIL."
-  (if (zerop (simulation-tick simulation))
-      (let ((undone (undone-text simulation)))
-        (and undone (format nil "No ticks have passed in with-simulation, so ~A" undone)))
-      (and (eq :report (message-queue-error-policy (simulation-messages simulation)))
-           (eq simulation (latest simulation))
-           (or (too-late-text simulation)
-               ;; Who reads messages looks after the plans.
-               (and (not (message-queue-read-p (simulation-messages simulation)))
-                    (cut-off-text simulation))))))
-
 (defun look-at-end (simulation left-p)
   "Say so if something was asked for in SIMULATION, whose run is to end, and no tick has passed, or
 too few have; but not if the run is LEFT-P, as by an error, or ticks may have passed in a fork."

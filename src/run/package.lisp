@@ -46,7 +46,7 @@ takes part in it. Manual 2.3 and appendix A.")
   (:export #:definitions-of #:definition-entry)
   ;; tick, headless
   (:export #:tick #:run-ticks #:run-until #:step-ticks #:with-simulation #:call-with-simulation
-           #:simulation-errors #:undone-text
+           #:simulation-errors #:undone-text #:note-lines-typed
            #:*simulation-variables* #:variables-among)
   ;; live
   (:export #:simulator #:stop-simulator #:start-clock #:stop-clock #:await-idle #:doubt-wait
