@@ -223,6 +223,24 @@
                           "right waits for the valve hand that left has"))
     (is (null (rpl:valve-owner hand)))))
 
+(test with-valve.a-circle-that-closes-when-a-part-ends-is-reported-then
+  "As long as a part of the owner goes on, it may be what helps."
+  (let ((base:*message-queue* (base:make-message-queue))
+        (hand (rpl:make-valve 'hand)) (eye (rpl:make-valve 'eye)))
+    (rpl:run-plan-alone
+     (rpl:interp-lambda ()
+       (rpl:pursue (rpl:par (rpl:with-valve (hand)
+                              (rpl:par (rpl:wait-time 5)
+                                       (:tag left (rpl:wait-time 1) (rpl:with-valve (eye) 1))
+                                       (rpl:wait-time 3)))
+                            (:tag right (rpl:with-valve (eye)
+                                          (rpl:wait-time 2) (rpl:with-valve (hand) 1))))
+                   (rpl:wait-time 9))))
+    (let ((texts (mapcar #'base:message-text (base:take-messages))))
+      (is (= 1 (length texts)))
+      (is-true (has-words-p (first texts) "Deadlock at tick 5" "left waits for the valve eye"
+                            "right waits for the valve hand")))))
+
 (test with-valve.a-part-that-waits-for-another-is-reported
   (let ((base:*message-queue* (base:make-message-queue)) (hand (rpl:make-valve 'hand)))
     (rpl:run-plan-alone

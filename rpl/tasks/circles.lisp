@@ -34,13 +34,17 @@ frames, is about.")
         (loop for child in children append (working-parts child))
         (list task))))
 
+(defun obstacles (task)
+  "Return the tasks without which TASK, which is no more than one task, cannot go on; NIL if that is
+unknown."
+  (or (and (task-awaiting task) (hinderers (task-awaiting task)))
+      (those-who-took-from task)))
+
 (defun stuck-tasks (task)
   "Return TASK and the tasks that wait for each other with it, or NIL if some of them can go on."
   (let ((stuck '()) (open (list task)))
     (loop while open
-          do (let* ((next (pop open))
-                    (others (or (and (task-awaiting next) (hinderers (task-awaiting next)))
-                                (those-who-took-from next))))
+          do (let* ((next (pop open)) (others (obstacles next)))
                (unless others (return-from stuck-tasks '()))
                (pushnew next stuck)
                (dolist (part (mapcan #'working-parts others))
@@ -67,10 +71,38 @@ frames, is about.")
         (format nil "~A waits until ~{~A~^ and ~} gives back what it took"
                 (task-label task) (mapcar #'task-label (those-who-took-from task))))))
 
+(defun tell-of-circle (tasks)
+  "Queue an error message: TASKS wait for each other."
+  (error-set "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
+             (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
+             ". None can go on."))
+
 (defun report-circle (task)
   "Queue an error message if TASK, which has come to wait, waits in a circle."
   (let ((tasks (stuck-tasks task)))
-    (when tasks
-      (error-set "Deadlock at tick " (runner-tick (task-runner task)) ": "
-                 (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
-                 ". None can go on."))))
+    (when tasks (tell-of-circle tasks))))
+
+;;; As long as a part of a task goes on, the task is not stuck. A circle through it may close when
+;;; that part ends.
+
+(defun first-working-part (task)
+  "Return the first of the WORKING-PARTS of TASK."
+  (let ((child (loop for child = (task-newest-child task) then (task-older child)
+                     while child
+                     when (<= (task-level child) (task-level task)) return child)))
+    (if child (first-working-part child) task)))
+
+(defun hinders-p (task others)
+  "True if TASK, or one that it is part of, is an obstacle to one of OTHERS."
+  (some (lambda (other)
+          (some (lambda (obstacle) (part-of-p task obstacle)) (obstacles other)))
+        others))
+
+(defun report-circle-left (task)
+  "Queue an error message if the parts that TASK is left with, as one has ended, wait in a circle
+through it."
+  (when (and (task-newest-child task) (null (task-signal task)))
+    (let* ((part (first-working-part task))
+           (tasks (and (or (task-awaiting part) (plusp (task-blocked part)))
+                       (stuck-tasks part))))
+      (when (hinders-p task tasks) (tell-of-circle tasks)))))

@@ -39,7 +39,8 @@
   (let ((parent (task-parent task)))
     (cond (parent
            (unlink-child task)
-           (child-over parent task how result))
+           (child-over parent task how result)
+           (report-circle-left parent))
           (t (let ((runner (task-runner task)))
                (setf (runner-roots runner) (remove task (runner-roots runner)))
                (funcall (runner-on-end runner) task))))))
