@@ -10,10 +10,8 @@
          (input (make-instance 'cli::typed-text :by-hand-p t
                                :octets (make-string-input-stream (joined lines))))
          (session (cli:make-session :input input :output output)))
-    (run:call-with-simulation (lambda () (cli:run-session session)) '(ars-user::butler)
-                              :clean t)
-    ;; As PROMPT does: other threads may still have something to say.
-    (cli::let-go-of-streams session output)
+    (run:call-with-simulation (lambda () (cli:run-session session)) '(ars-user::butler) :clean t)
+    (cli::let-go-of-streams session output) ; other threads may have something to say
     (lines-of (get-output-stream-string output))))
 
 (defun without-prompts (line)
