@@ -57,8 +57,8 @@ nothing."
       (format nil "~{~A~^, ~} did nothing. ~A" undone
               (if (lines-typed-p simulation)
                   *lines-remedy*
-                  (format nil "Call (run-ticks N) or (run-until TEST)~:[~; in it, or (run-plan ...) ~
-                               instead of (begin-plan ...)~]."
+                  (format nil "Call (run-ticks N) or (run-until TEST)~:[~; in it, or ~
+                               (run-plan ...) instead of (begin-plan ...)~]."
                           plans))))))
 
 (defun cut-off-in (simulation)
@@ -73,8 +73,8 @@ itself at what was under way. What a prompt does for its user always looks at th
   (let ((cut-off (cut-off-in simulation)) (typed (lines-typed-p simulation)))
     (when cut-off
       (format nil "At the end~:[ of with-simulation~;~], at tick ~D, ~{~A~^, ~} had not ended and ~
-                   ~:[was~;were~] cut off. ~:[Call (run-ticks N) with more ticks, or (run-plan ...) ~
-                   instead of (begin-plan ...).~;~A~]"
+                   ~:[was~;were~] cut off. ~:[Call (run-ticks N) with more ticks, or ~
+                   (run-plan ...) instead of (begin-plan ...).~;~A~]"
               typed (simulation-tick simulation) cut-off (rest cut-off) typed *lines-remedy*))))
 
 (defun text-at-end (simulation)
