@@ -192,6 +192,16 @@ leads to both."
         (is (member "Go there   go-to 3.50 4.50" rows :test #'equal))
         (is (find "obj-desig 0 non-local ((:color red))" rows :test #'search))))))
 
+(test pointing.offers-names-as-the-prompt-reads-them
+  "Also those that users have written between bars, and with what means something to FORMAT."
+  (in-window (window robot)
+    (dolist (color '(ars-user::|LIGHT RED| ars-user::|dark~red| ars-user::red))
+      (let* ((image (display::make-thing-image :attributes `((:color ,color)) :x 1d0 :y 1d0))
+             (line (second (first (window::search-offers image window))))
+             (typed (subseq line (search "((" line))))
+        (is (string= color (second (first (let ((*package* (find-package :ars-user)))
+                                            (read-from-string typed))))))))))
+
 (test pointing.what-is-next-to-the-robot-is-looked-for-there
   "A hand grasps only what a local designator denotes."
   (in-window (window robot)

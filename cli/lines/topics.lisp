@@ -38,8 +38,8 @@
 
 (defun value-words (value)
   (destructuring-bind (value attribute) value
-    (format nil "OBJ-DESIG 1 non-local ((~(~S ~A~))) searches for things that are so."
-            (attribute-name attribute) value)))
+    (format nil "OBJ-DESIG 1 non-local ((~A ~A)) searches for things that are so."
+            (text-as-typed (attribute-name attribute)) (text-as-typed value))))
 
 (defun substance-words (substance)
   (format nil "A camera sees ~A where a wall or thing is of it, unless that says otherwise."

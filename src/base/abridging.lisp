@@ -81,3 +81,8 @@
   "Return how DATUM, abridged, is written, but for the packages of its symbols."
   (let ((*print-gensym* nil))
     (prin1-to-string (without-packages (abridged datum)))))
+
+(defun text-as-typed (datum)
+  "Return how DATUM, a symbol or the like, is typed, in lower case: between bars where it has to be,
+as with blanks in it."
+  (let ((*print-case* :downcase)) (unqualified-text datum)))

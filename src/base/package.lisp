@@ -69,7 +69,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; wrapping
   (:export #:wrap-function)
   ;; abridging
-  (:export #:abridged #:unqualified-text #:+more+)
+  (:export #:abridged #:unqualified-text #:text-as-typed #:+more+)
   ;; conditions
   (:export #:visible #:obeyed-p
            #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument

@@ -18,12 +18,13 @@
 (defun go-there (x y)
   (list "Go there" (format nil "go-to ~A ~A" (coordinate-text x) (coordinate-text y))))
 
-(defun camera-offers (window title line)
-  "Return an offer for each camera of the robot of WINDOW; TITLE and LINE are format strings for its
-number."
+(defun camera-offers (window title line &rest arguments)
+  "Return an offer for each camera of the robot of WINDOW; TITLE is a format string for its number,
+LINE for that and ARGUMENTS."
   (loop for camera in (robot-image-cameras (window-robot window))
         for index = (camera-image-index camera)
-        collect (list (format nil title index) (format nil line index))))
+        collect (list (format nil title index)
+                      (apply #'format nil line index arguments))))
 
 ;;; Looking into.
 
@@ -51,7 +52,7 @@ connected, if there is one."
 (defun looks-of (image)
   "Return a specification, as text, of what the thing of IMAGE looks like."
   (let ((color (assoc :color (thing-image-attributes image))))
-    (if color (format nil "((:color ~(~A~)))" (second color)) "()")))
+    (if color (format nil "((:color ~A))" (text-as-typed (second color))) "()")))
 
 (defun next-to-robot-p (image window)
   "True if the thing of IMAGE lies where it is local to the robot of WINDOW, as what a hand grasps."
@@ -65,9 +66,9 @@ connected, if there is one."
   "Return the offers to look for what looks as the thing of IMAGE does, from afar or next to it."
   (if (next-to-robot-p image window)
       (camera-offers window "Look next to the robot for such a thing with camera ~D"
-                     (format nil "obj-desig ~~D local ~A" (looks-of image)))
+                     "obj-desig ~D local ~A" (looks-of image))
       (camera-offers window "Look for such a thing with camera ~D"
-                     (format nil "obj-desig ~~D non-local ~A" (looks-of image)))))
+                     "obj-desig ~D non-local ~A" (looks-of image))))
 
 (defun cameras-tracking (numbers window)
   "Return the indices of the cameras that track one of the designators with NUMBERS."
@@ -201,11 +202,12 @@ bin."
 ;;; Robots and cells.
 
 (defmethod offers ((image robot-image) window)
-  (let ((form (format nil "(find-robot '~(~A~))" (robot-image-name image))))
+  (let ((form (format nil "(find-robot '~A)" (text-as-typed (robot-image-name image)))))
     (append (if (shown-robot-p window image)
                 '(("How is it?" "status") ("Stop" "stop") ("Turn about" "about-face")
                   ("What place is this?" "place"))
-                (list (list "Command it" (format nil "robot ~(~A~)" (robot-image-name image)))))
+                (list (list "Command it"
+                                (format nil "robot ~A" (text-as-typed (robot-image-name image))))))
             (looking-into form))))
 
 (defun cell-middle (cell)

@@ -109,8 +109,8 @@ robot at its middle, whatever it stands on, or what is smallest there."
   (:method ((image robot-image) x y window)
     (if (shown-robot-p window image)
         (format nil "pos ~A ~A" x y)
-        (format nil "(place-robot (find-robot '~(~A~)) ~A ~A ~,3F)" (robot-image-name image) x y
-                (robot-image-angle image)))))
+        (format nil "(place-robot (find-robot '~A) ~A ~A ~,3F)"
+                (text-as-typed (robot-image-name image)) x y (robot-image-angle image)))))
 
 (defun drop-subject (pane subject x y)
   "Ask the prompt to put SUBJECT at X, Y of PANE."
