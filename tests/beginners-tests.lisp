@@ -114,3 +114,20 @@
     (is-false (run::tell-of-vain-wait (time:current-simulation) 60))
     (is-true (has-words-p (displayed) "await-idle has waited for 60 s, and gives up"
                           "the plan (loop (wait-time 1)) did not end"))))
+
+(test valves.a-circle-that-a-deadline-ends-is-no-error
+  (let ((text (rover-writes ()
+                (let ((a (rpl:make-valve 'a)) (b (rpl:make-valve 'b)))
+                  (is (equal 2 (driver:run-plan
+                                (plan-of
+                                  (rpl:par
+                                   (rpl:handle-failure ((rpl:deadline-missed () (return 1)))
+                                     (rpl:with-deadline (5)
+                                       (rpl:with-valve (a)
+                                         (rpl:wait-time 1)
+                                         (rpl:with-valve (b) 1))))
+                                   (rpl:with-valve (b)
+                                     (rpl:wait-time 1)
+                                     (rpl:with-valve (a) 2)))))))))))
+    (is-true (has-words-p text "*WARNING* -> Deadlock at tick" "until one of them is ended")
+             "~A" text)))

@@ -384,3 +384,16 @@ output."
               (world:new-thing marker-11 (arena 3 3) ())
               (dolist (name '(marker-10 zebra "MARKER-11#7" nil))
                 (world:find-thing name))))))
+
+(test plans.tell-of-cleanups-that-are-given-up
+  (is-true (has-words-p (rover-writes ()
+                          (driver:run-plan (plan-of (rpl:evap-protect 1 (rpl:wait-time 9)
+                                                                      :limit 3))))
+                        "The cleanup (wait-time 9)" "it took longer than its limit")))
+
+(test deadlocks.tell-of-tasks-that-are-suspended
+  (let ((text (rover-writes ()
+                (driver:run-plan
+                 (plan-of (rpl:with-tags
+                            (:tag o (rpl:seq (rpl:suspend o) (rpl:wait-time 1)))))))))
+    (is-true (has-words-p text "somebody to let o go on, as by WAKE-UP") "~A" text)))

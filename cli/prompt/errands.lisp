@@ -204,6 +204,10 @@ function that returns what HOW-ENDED does."
       (dolist (errand errands) (setf (errand-apart-p errand) t))
       (lambda () (how-ended errands lisp-p)))))
 
+(defun time-stands-still-p ()
+  "True if no ticks pass by themselves."
+  (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
+
 (defun unended-p (session)
   "True if what SESSION has issued, itself or by Lisp, has not ended, as time stands still."
   (and *simulation*

@@ -110,7 +110,7 @@ that it waits, since time stands still."
 
 (defun tell-of-unended (session)
   "Say so if what SESSION, in which nobody sits, has asked for has not ended, as time stands still."
-  (when (unended-p session)
+  (when (and (unended-p session) (time-stands-still-p))
     (complain session (format nil "Time stands still, so not all that was asked for has ended. ~
                                    RESUME lets it go on."))
     (when (session-account session) (give-up-waiting-lines (session-account session)))))

@@ -28,10 +28,10 @@
   "Record that FAILURE happened while TASK was cleaning up because of FIRST."
   (if (typep first 'plan-failure)
       (push failure (failure-suppressed first))
-      (warning-set "A cleanup failed in " (task-label task) ": " (failure-text failure))))
+      (warn-notably "A cleanup failed in " (task-label task) ": " (failure-text failure))))
 
 (defun report-given-up (cleanup)
-  (warning-set "The cleanup " (form-text cleanup) " in " (task-label (current-task))
+  (warn-notably "The cleanup " (form-text cleanup) " in " (task-label (current-task))
                " was given up at tick " (plan-time) ": it took longer than its limit."))
 
 (defun cleanup-form (cleanup limit)

@@ -325,8 +325,9 @@ those who lost it last."
           collect (outermost-rival valve (claim-task claim))))
 
 (defmethod hindrance-text ((claim claim))
-  (format nil "the ~A that ~{~A~^ and ~} has" (awaited-text claim)
-          (remove-duplicates (mapcar #'task-label (hinderers claim)) :test #'string=)))
+  (let ((names (remove-duplicates (mapcar #'task-label (hinderers claim)) :test #'string=)))
+    (format nil "the ~A that ~{~A~^ and ~} ~:[has~;have~]" (awaited-text claim) names
+            (rest names))))
 
 (defmethod taken-from (task (claim claim))
   (remove nil (mapcar (lambda (valve) (outermost-rival valve (claim-task claim)))

@@ -48,7 +48,7 @@ the same words whichever of them it is that takes it."
     (unless (and said (< tick (+ (cdr said) +takeover-warning-ticks+)))
       (setf (interface-warned interface)
             (acons text tick (remove said (interface-warned interface))))
-      (warning-set text ". They go on with the ticks. Let one at a time have it: see "
+      (warn-notably text ". They go on with the ticks. Let one at a time have it: see "
                    "RPL-ROBOT-VALVE."))))
 
 (defun cut-short (runner older newer)

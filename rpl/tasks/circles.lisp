@@ -68,17 +68,18 @@ unknown."
   (let ((awaiting (task-awaiting task)))
     (if (and awaiting (hinderers awaiting))
         (format nil "~A waits for ~A" (task-label task) (hindrance-text awaiting))
-        (format nil "~A waits until ~{~A~^ and ~} gives back what it took"
-                (task-label task) (mapcar #'task-label (those-who-took-from task))))))
+        (let ((names (mapcar #'task-label (those-who-took-from task))))
+          (format nil "~A waits until ~{~A~^ and ~} ~:[gives~;give~] back what was taken from it"
+                  (task-label task) names (rest names))))))
 
 (defun tell-of-circle (tasks)
-  "Queue an error message: TASKS wait for each other."
-  (error-set "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
-             (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
-             ". None can go on."))
+  "Queue a warning: TASKS wait for each other. What they are parts of may still end one of them."
+  (warn-notably "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
+                (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
+                ". None can go on until one of them is ended, as by a deadline."))
 
 (defun report-circle (task)
-  "Queue an error message if TASK, which has come to wait, waits in a circle."
+  "Queue a warning if TASK, which has come to wait, waits in a circle."
   (let ((tasks (stuck-tasks task)))
     (when tasks (tell-of-circle tasks))))
 
@@ -99,7 +100,7 @@ unknown."
         others))
 
 (defun report-circle-left (task)
-  "Queue an error message if the parts that TASK is left with, as one has ended, wait in a circle
+  "Queue a warning if the parts that TASK is left with, as one has ended, wait in a circle
 through it."
   (when (and (task-newest-child task) (null (task-signal task)))
     (let* ((part (first-working-part task))

@@ -215,7 +215,7 @@ Signals WRONG-ARGUMENT."
 
 (defun give-up-cleanup (task)
   "Let the cleanup that TASK is at end now, undone. Queue a warning."
-  (warning-set "The cleanup " (form-text (task-form task)) " in " (task-label task)
+  (warn-notably "The cleanup " (form-text (task-form task)) " in " (task-label task)
                " was given up at tick " (runner-tick (task-runner task)) ".")
   (setf (task-doomed task) t)
   (let ((*asker* "the limit of its cleanup"))

@@ -172,7 +172,21 @@ and which nobody means to wait for."
   "Return in words which plans TASKS are, as the subject of a sentence, and what they wait for."
   (format nil "the plan~P ~{~A~^, ~} wait~:[s~;~] for ~A"
           (length tasks) (mapcar #'task-label tasks) (rest tasks)
-          (or (text-of-waits (mapcan #'waiting-parts tasks)) "what cannot come")))
+          (or (text-of-waits (mapcan #'waiting-parts tasks))
+              (text-of-blocks tasks)
+              "what cannot come")))
+
+(defun blocked-parts (task)
+  "Return those of TASK and its parts that are blocked, outermost first."
+  (append (and (plusp (task-blocked task)) (list task))
+          (mapcan #'blocked-parts (task-children task))))
+
+(defun text-of-blocks (tasks)
+  "Return in words who has to let parts of TASKS go on that are blocked; NIL if none is."
+  (let ((blocked (mapcan #'blocked-parts tasks)))
+    (and blocked
+         (format nil "somebody to let ~{~A~^ and ~} go on, as by WAKE-UP,"
+                 (mapcar #'task-label blocked)))))
 
 (defun report-stillness (runner)
   "Queue a warning that says that the tasks of RUNNER wait for what only somebody outside of them

@@ -158,6 +158,12 @@ it otherwise."
   (queue-message (make-message :warning stuff) *message-queue*)
   (values))
 
+(defun warn-notably (&rest stuff)
+  "Queue a warning made of the items STUFF that is shown like an error if nobody reads it. Return
+nothing."
+  (queue-message (make-message :warning stuff :notable-p t) *message-queue*)
+  (values))
+
 (defun warn-at-once (&rest stuff)
   "Queue a warning made of the items STUFF that is shown as it comes if nobody listens. Return
 nothing."

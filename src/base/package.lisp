@@ -160,7 +160,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
   ;; messages
-  (:export #:error-set #:warning-set #:warn-at-once #:message-set #:error-display
+  (:export #:error-set #:warning-set #:warn-at-once #:warn-notably #:message-set #:error-display
            #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-read-p #:message-queue-listener

@@ -54,7 +54,7 @@ first and the last are needed."
   "Say, once, that CONDITION keeps SIMULATION, of PAST, from keeping a fork."
   (unless (past-warned-p past)
     (setf (past-warned-p past) t)
-    (warning-set (format nil "What is so at tick ~D cannot be kept for REWIND: ~A."
+    (warn-notably (format nil "What is so at tick ~D cannot be kept for REWIND: ~A."
                          (simulation-tick simulation)
                          (string-right-trim "." (brief-text condition))))))
 
@@ -69,7 +69,7 @@ first and the last are needed."
   "Forget all that PAST has of SIMULATION if that is too much."
   (when (and (finite-p *journal-limit*) (> (past-count past) *journal-limit*))
     (setf (past-forks past) '() (past-acts past) '() (past-count past) 0)
-    (warning-set (format nil "So much has been asked of this run that REWIND can go back to tick ~
+    (warn-notably (format nil "So much has been asked of this run that REWIND can go back to tick ~
                               ~D at most; see *JOURNAL-LIMIT*."
                          (simulation-tick simulation)))))
 

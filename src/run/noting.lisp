@@ -6,7 +6,7 @@
   "Let JOURNAL end at TICK, and say so."
   (setf (journal-full-p journal) t
         (journal-end journal) tick)
-  (warning-set (format nil "The journal is full: with ~D entries it ends at tick ~D. The run goes ~
+  (warn-notably (format nil "The journal is full: with ~D entries it ends at tick ~D. The run goes ~
                             on, and can be repeated up to there; see *JOURNAL-LIMIT*."
                        (journal-length journal) tick)))
 

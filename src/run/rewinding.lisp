@@ -78,9 +78,9 @@ had been asked of it by then and not yet been done."
 
 (defun warn-of-straying (run tick)
   (let ((*message-queue* (simulation-messages run)))
-    (warning-set (format nil "Not all is as it was: a plan goes another way than it went from tick ~
-                              ~D on, as it may if it depends on what is outside of its run."
-                         tick))))
+    (warn-notably (format nil "Not all is as it was: a plan goes another way than it went from ~
+                               tick ~D on, as it may if it depends on what is outside of its run."
+                          tick))))
 
 (defun repeat-past (past asked tick)
   "Return a run that is what the one of PAST was at the end of TICK, when ASKED had been asked of
