@@ -83,7 +83,9 @@ elsewhere, as at the prompt, or NIL.")
   (loop for registry in *registries*
         for entry = (and (not (registry-fixed-p registry)) (lookup-entry name registry))
         when (and entry (not (entry-variable entry)))
-          return (format nil "It is a ~A: '~(~A~)." (usual-name registry) (unqualified-text name))))
+          return (format nil "It is the name of ~:[a~;an~] ~A: '~(~A~)."
+                          (find (char (usual-name registry) 0) "aeiou")
+                          (usual-name registry) (unqualified-text name))))
 
 (defun variable-slip-text (name)
   "Return in a sentence what NAME, which has no value, may be a slip for, or NIL."

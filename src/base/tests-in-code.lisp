@@ -7,25 +7,34 @@
   "A function of a form, a test in Lisp code: it returns in a sentence why that is not what is
 meant, or NIL.")
 
-;;; Keywords that something is compared with.
+;;; Words that something is compared with: keywords, and what may be meant for one.
+
+(defun word-p (object)
+  "True if OBJECT, a constant, may be meant for a word such as an error code."
+  (or (stringp object) (and (symbolp object) (not (member object '(nil t otherwise))))))
 
 (defun words-in (object)
-  "Return the keywords that OBJECT, a keyword or a list of keys, has."
+  "Return the words among OBJECT, a key or a list of keys."
   (if (consp object)
-      (remove-if-not #'keywordp (ldiff object (cdr (last object))))
-      (and (keywordp object) (list object))))
+      (remove-if-not #'word-p (ldiff object (cdr (last object))))
+      (and (word-p object) (list object))))
+
+(defun constant-word (form)
+  "Return the word that FORM, a constant, stands for; or NIL."
+  (cond ((typep form '(cons (eql quote) (cons symbol null))) (second form))
+        ((or (keywordp form) (stringp form)) form)))
 
 (defun compared-words (form)
-  "Return the keywords that FORM compares something with, and the form of that; NIL if it does not."
+  "Return the words that FORM compares something with, and the form of that; NIL if it does not."
   (let ((arguments (rest form)))
     (flet ((is (count &rest names)
              (and (member (first form) names)
                   (proper-list-p arguments)
                   (= count (length arguments)))))
-      (cond ((and (is 2 'eq 'eql 'equal) (keywordp (second arguments)))
-             (values (words-in (second arguments)) (first arguments)))
+      (cond ((and (is 2 'eq 'eql 'equal) (constant-word (second arguments)))
+             (values (words-in (constant-word (second arguments))) (first arguments)))
             ((is 2 'eq 'eql 'equal)
-             (values (words-in (first arguments)) (second arguments)))
+             (values (words-in (constant-word (first arguments))) (second arguments)))
             ((and (is 2 'member) (typep (second arguments) '(cons (eql quote) (cons t null))))
              (values (words-in (second (second arguments))) (first arguments)))
             ((and (member (first form) '(case ecase ccase)) (proper-list-p arguments))
@@ -34,8 +43,8 @@ meant, or NIL.")
                      (first arguments)))))))
 
 (defun map-comparisons (function form)
-  "Call FUNCTION with each form in FORM, code, that is compared with a keyword, that keyword, and
-the form that compares them."
+  "Call FUNCTION with each form in FORM, code, that is compared with a word, that word, and the form
+that compares them."
   (when (and (consp form) (not (eq 'quote (first form))))
     (multiple-value-bind (words subject) (compared-words form)
       (dolist (word words) (funcall function subject word form)))
@@ -59,6 +68,13 @@ the form that compares them."
 
 (defun code-doubt (word)
   "Return in a sentence why no command ends with the error code WORD, or NIL if one may."
+  (if (keywordp word)
+      (unknown-code-doubt word)
+      (let ((code (find word *error-codes* :test #'string-equal)))
+        (and code
+             (format nil "~(~S~) is no error code: they are keywords. Write ~(~S~)." word code)))))
+
+(defun unknown-code-doubt (word)
   (unless (member word *error-codes*)
     (if (member word +words-of-success+)
         (format nil "no command ends with ~(~S~): its error code is NIL if it succeeds." word)

@@ -41,12 +41,22 @@
   (list* 'err (spec-name (command-resource command))
          (mapcar #'spec-name (command-results command))))
 
+(defun misplaced-p (continuation told)
+  "True if CONTINUATION calls a parameter by the name of what comes in another place of TOLD."
+  (multiple-value-bind (list unknown-p) (lambda-list-of continuation)
+    (unless unknown-p
+      (loop for name in (parse-ordinary-lambda-list list)
+            for place from 0
+            for other = (position name told :test #'same-name-p)
+            thereis (and other (/= place other))))))
+
 (defun doubt-continuation (command world continuation &optional (told (told-at-end command)))
   "Say once if CONTINUATION cannot be called with what COMMAND tells at its end, which is TOLD."
   (let ((*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
-               (not (callable-with-p continuation (length told))))
+               (or (not (callable-with-p continuation (length told)))
+                   (misplaced-p continuation told)))
       (warn-once (list :continuation (command-name command)) world
                  (format nil "~(~A~): the continuation takes ~(~:A~), and is called with ~(~A~). ~
                               Write (continuation ~:*~(~A~) ...)."
