@@ -146,3 +146,11 @@
                           "takes (robot angle err), and is called with (err robot angle)"))
     (is (string= "" (told (lambda (code who angle) (list code who angle)))))
     (is (string= "" (told (lambda (err robot turned) (list err robot turned)))))))
+
+(test experiments.warn-of-the-value-of-a-plan-as-success
+  (flet ((told (run) (warning-about `(experiment:defexperiment taken-for-true
+                                       (:robots rover) (:run ,run)))))
+    (is-true (has-words-p (told '(if (driver:run-plan 'turn-once) t nil))
+                          "a plan that fails has its failure as the value" "Write only"))
+    (is (string= "" (told '(driver:run-plan 'turn-once))))
+    (is (string= "" (told '(if (driver:run-plan 'turn-once) :hit :missed))))))

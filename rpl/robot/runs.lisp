@@ -211,7 +211,8 @@ commands that since RPL-INIT-ROBOT. Return what
 it returns, or the failure with which it failed, and how it ended: :succeeded, :failed, :evaporated,
 :deadlock (headless; it waits for what can never come; live somebody may still bring that about, and
 there is a warning), :limit (*PLAN-LIMIT* ticks have passed, headless) or :stopped (the simulator
-was stopped or started anew, the robot defined anew, or the run rewound by another thread).
+was stopped or started anew, the robot defined anew, or the run rewound by another thread). Whether
+it succeeded the second value says: a failure is true, and the value of a good plan may be NIL.
 Failures, deadlocks and limits are reported. A plan that is not over when RUN-PLAN returns or is
 left, as by an abort, ends, but one of a run that was rewound goes on in the run that takes its
 place. Signals UNKNOWN-NAME and MISUSE."

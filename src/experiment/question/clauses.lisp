@@ -231,6 +231,16 @@ CLAUSES vary, and what the clause KEY names."
   "True if VALUE is how many seconds something may take."
   (and (quantity-p value) (<= 1/1000 value +largest+)))
 
+(defun doubt-truth-of-plan (form)
+  "Warn if FORM, the last one of :run, is true if a plan's value is, as that of a failed one is."
+  (when (and (typep form '(cons symbol (cons (cons symbol) (cons (eql t) (or null (cons null))))))
+             (same-name-p 'if (first form))
+             (same-name-p 'run-plan (first (second form))))
+    (let ((*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 10000))
+      (doubt-definition ":run: a plan that fails has its failure as the value, which is true, so ~
+                         that ~S is T then. Write only ~S, whose second value says how it ended, ~
+                         or a clause (:success form)." (abridged form) (abridged (second form))))))
+
 (defun check-clause (definition clause)
   "Signal MALFORMED-DEFINITION unless CLAUSE has the right shape."
   (ecase (first clause)
@@ -290,4 +300,5 @@ CLAUSES vary, and what the clause KEY names."
   (doubt-unnamed :measure clauses)
   (doubt-unnamed :each-tick clauses)
   (doubt-nested-run (clause-called :run clauses))
+  (doubt-truth-of-plan (first (last (clause-called :run clauses))))
   (doubt-unused clauses))
