@@ -260,3 +260,16 @@
     (is (mentions-p (third (experiment:comparison-verdicts
                             (experiment:compare-conditions results 1 2 :stream nil)))
                     "at most 0.14. This bound is right about 95 times in 100."))))
+
+(test compare.takes-for-equal-only-what-rounding-parts
+  "Whole numbers are what they are, however large; floats, but for their last digits."
+  (flet ((means (firsts seconds)
+           (let ((difference (experiment::mean-difference "x" firsts seconds)))
+             (list (experiment::paired-same-p difference)
+                   (experiment::paired-first difference)
+                   (experiment::paired-second difference)))))
+    (is (equalp '(nil 1700000010 1700000000)
+                (means (make-list 30 :initial-element 1700000010)
+                       (make-list 30 :initial-element 1700000000))))
+    (is-false (first (means '(1d9 2d9) '(1000000000.5d0 2000000000.25d0))))
+    (is-true (first (means (list (+ .1d0 .2d0 .3d0) 1) (list (+ .3d0 .2d0 .1d0) 1))))))

@@ -83,11 +83,13 @@ of booleans, are true."
 can be does not depend on it."
   (max 1000 (min 10000 (floor 200000000 (max 1 trials)))))
 
-;; Who adds the same numbers in another order gets another last digit: that is no difference.
-(defconstant +grain+ 1d-8 "What two numbers differ in less than by this share of them are equal.")
+;; Who adds the same floats in another order gets other last digits: that is no difference. Whole
+;; numbers and ratios have none.
+(defconstant +grain+ 1d-12 "What two floats differ in less than by this share of them are equal.")
 
 (defun equal-but-for-rounding-p (a b)
-  (<= (abs (- a b)) (* +grain+ (max (abs a) (abs b)))))
+  (and (or (floatp a) (floatp b))
+       (<= (abs (- a b)) (* +grain+ (max (abs a) (abs b))))))
 
 (defun without-rounding (firsts seconds)
   "Return FIRSTS with the numbers of SECONDS in place of those that are equal but for rounding."
