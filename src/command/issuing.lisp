@@ -45,10 +45,11 @@
   "True if CONTINUATION calls a parameter by the name of what comes in another place of TOLD."
   (multiple-value-bind (list unknown-p) (lambda-list-of continuation)
     (unless unknown-p
-      (loop for name in (parse-ordinary-lambda-list list)
+      (loop for name in list
             for place from 0
-            for other = (position name told :test #'same-name-p)
-            thereis (and other (/= place other))))))
+            until (member name lambda-list-keywords)
+            do (let ((other (position name told :test #'string=)))
+                 (when (and other (/= place other)) (return t)))))))
 
 (defun doubt-continuation (command world continuation &optional (told (told-at-end command)))
   "Say once if CONTINUATION cannot be called with what COMMAND tells at its end, which is TOLD."
