@@ -31,13 +31,13 @@ lines; or NIL."
 
 (defun first-form-of (path)
   "Return the first form in the file PATH; NIL if there is none that can be read."
-  (ignore-errors (let ((text (file-text path)))
+  (ignore-errors (let ((text (file-text path)) (*read-eval* nil))
                    (values (read-from-string text t nil :start (form-start text 0))))))
 
 (defun only-defines-p (path)
   "True if the file PATH defines a robot, and has nothing but definitions."
   (ignore-errors
-   (let ((text (file-text path)) (robot-p nil))
+   (let ((text (file-text path)) (robot-p nil) (*read-eval* nil))
      (loop for (form end) = (multiple-value-list
                              (read-from-string text nil text :start (or end 0)))
            until (eq form text)

@@ -139,10 +139,7 @@ each form."
   (let ((form (task-form task)) (runner (task-runner task)))
     (unless (member form (runner-warned runner) :test #'eq)
       (push form (runner-warned runner))
-      (queue-message (make-message :warning (list "In the plan " (task-label (task-top task)) ", "
-                                                  text)
-                                   :notable-p t)
-                     *message-queue*))))
+      (warn-notably "In the plan " (task-label (task-top task)) ", " text))))
 
 (defun warn-of-no-fluent (task)
   "Queue a warning that TASK, which has come to wait, was given no fluent, once for each form."
@@ -185,21 +182,16 @@ and which nobody means to wait for."
   "Return in words who has to let parts of TASKS go on that are blocked; NIL if none is."
   (let ((blocked (mapcan #'blocked-parts tasks)))
     (and blocked
-         (format nil "somebody to let ~{~A~^ and ~} go on, as by WAKE-UP,"
+         (format nil "somebody to let ~{~A~^ and ~} go on, as by WAKE-UP"
                  (mapcar #'task-label blocked)))))
 
 (defun report-stillness (runner)
   "Queue a warning that says that the tasks of RUNNER wait for what only somebody outside of them
 and of the simulator can bring about, and what could be done. Somebody waits for one of them."
   (let ((tasks (mapcan #'waiting-parts (plan-runner-tasks runner))))
-    (queue-message (make-message :warning
-                                 (list "At tick " (runner-tick runner) " all plans wait for what "
-                                       "neither the robot nor time will bring about, but somebody "
-                                       "may, by SET-VALUE or WAKE-UP. Control-C ends this wait."
-                                       (advice-on-stillness tasks) t
-                                       (tree-text runner))
-                                 :notable-p t)
-                   *message-queue*)))
+    (warn-notably "At tick " (runner-tick runner) " all plans wait for what neither the robot nor "
+                  "time will bring about, but somebody may, by SET-VALUE or WAKE-UP. Control-C "
+                  "ends this wait." (advice-on-stillness tasks) t (tree-text runner))))
 
 (defun report-deadlock (runner)
   "Queue an error message that says that no task of RUNNER can go on: the plans, what they wait for,
