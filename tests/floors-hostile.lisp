@@ -140,6 +140,20 @@
     (signals base:unknown-name (ars:export-map 'plain-room "room.yaml" :unknown 'glas))
     (signals ars:unusable-floor (ars:export-map 'plain-room "/no/such/directory/room.yaml"))))
 
+(test export.refused-leaves-the-image-as-it-was
+  (with-own-definitions
+    (eval '(world:defmap plain-room (6 5) (rect (0 0) (5 4) slate 1)))
+    (uiop:with-temporary-file (:pathname file :type "pgm" :stream out)
+      (write-string "another map" out)
+      :close-stream
+      (let* ((description (make-pathname :type "yaml" :defaults file))
+             (folder (uiop:ensure-directory-pathname (base:native-name description))))
+        (ensure-directories-exist folder)
+        (unwind-protect
+             (signals ars:unusable-floor (ars:export-map 'plain-room description))
+          (uiop:delete-empty-directory folder))
+        (is (equal '("another map") (uiop:read-file-lines file)))))))
+
 (defun spoiled-text (text dice)
   "Return TEXT with some characters changed, left out or put in, as DICE say."
   (dotimes (i (1+ (base:roll-index 4 dice)) text)

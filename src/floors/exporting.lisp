@@ -86,9 +86,11 @@ stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals 
                  occupied_thresh: 0.65~%free_thresh: 0.196~%"
             (name-as-value image) (decimal size) (mapcar #'decimal origin))))
 
-(defun write-floor-file (file format function)
-  "Let FUNCTION write FILE, at one stroke. Signals UNUSABLE-FLOOR if that cannot be."
-  (handler-case (call-replacing-file function file :external-format format)
+(defun write-floor-file (file format function &key (check #'identity))
+  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals UNUSABLE-FLOOR if that is
+not possible."
+  (handler-case (call-replacing-file function file :external-format format :check check)
+    (unusable-floor (condition) (error condition))
     (error (condition)
       (reject-floor file nil "it cannot be written, and is as it was: ~A. Give the name of a file ~
                               that you may write"
@@ -120,7 +122,13 @@ WRONG-ARGUMENT and UNKNOWN-NAME."
     (check-description-name file path)
     (let* ((grid (map-grid map unknown))
            (image (make-pathname :type "pgm" :defaults path))
-           (written (write-floor-file image :latin-1 (lambda (out) (write-image grid out)))))
-      (values (write-floor-file path :utf-8
-                                (lambda (out) (write-description map (image-name image) out)))
-              written))))
+           (written nil))
+      (flet ((write-beside (description)
+               (declare (ignore description))
+               (setf written (write-floor-file image :latin-1
+                                               (lambda (out) (write-image grid out))))))
+        ;; The image takes its place when the description is ready to take its own.
+        (values (write-floor-file path :utf-8
+                                  (lambda (out) (write-description map (image-name image) out))
+                                  :check #'write-beside)
+                written)))))
