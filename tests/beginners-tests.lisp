@@ -97,6 +97,42 @@
                             "RUN-PLAN, the values of one that it runs")))
     (is-true (has-words-p (told *level*) "FLUENT-VALUE returns the value"))))
 
+;;; What plans use, and never get.
+
+(defmacro told-of-plan (&body body)
+  "Return the warnings of a plan whose text is BODY."
+  `(warning-about '(rpl:interp-lambda () ,@body)))
+
+(test plans.warn-of-tests-of-pulses
+  (dolist (warning (list (told-of-plan (if driver:robot-stopped* 1 2))
+                         (told-of-plan (unless (and t (not (rpl:fluent-value
+                                                            driver:robot-stopped*)))
+                                         1))
+                         (told-of-plan (cond (driver:robot-stopped* 1)))
+                         (told-of-plan (loop UNTIL driver:robot-stopped* (rpl:wait-time 1)))
+                         (told-of-plan (rpl:wait-until
+                                        (rpl:fluent-value driver:robot-stopped*)))))
+    (is-true (has-words-p warning "robot-stopped* is never true" "(wait-for robot-stopped*)")))
+  (is-true (has-words-p (told-of-plan (when (nisp:vref driver:camera-moved* 0) 1))
+                        "(wait-for (vref camera-moved* 0))"))
+  (is (string= "" (told-of-plan (rpl:wait-until driver:robot-stopped*)
+                                (rpl:wait-for (or driver:robot-stopped* *level*))
+                                (loop UNTIL (rpl:fl-pulsed driver:robot-stopped*)
+                                      (rpl:wait-time 1))
+                                (if driver:robot-movement-error* '(if driver:robot-stopped* 1))))))
+
+(test plans.warn-of-values-of-commands
+  (dolist (warning (list (told-of-plan (let ((view (driver:rpl-camera-view 0))) (print view)))
+                         (told-of-plan (print (driver:rpl-camera-view 0)))
+                         (told-of-plan (let (view) (setf view (driver:rpl-camera-view 0)) view))
+                         (told-of-plan (when (driver:rpl-camera-view 0) 1))))
+    (is-true (has-words-p warning "rpl-camera-view returns nothing" "(vref camera-input* 0)"
+                          "in (vref camera-views* 0)")))
+  (is (string= "" (told-of-plan (rpl:seq (driver:rpl-robot-turn 1) (driver:rpl-camera-view 0))
+                                (if driver:robot-movement-error* (driver:rpl-robot-turn 1))
+                                (let ((n 1)) (driver:rpl-robot-turn n))
+                                (rpl:par (driver:rpl-robot-turn 1) (driver:rpl-robot-stop))))))
+
 ;;; What policies keep.
 
 (test policies.warn-of-what-no-clause-keeps

@@ -19,6 +19,10 @@ for each part, or T if a fluent.")
   "Note that what the variable NAME holds is pulsed, and never set."
   (pushnew name *known-pulses*))
 
+(defun known-pulse-p (name)
+  "True if what the variable NAME holds is pulsed, and never set."
+  (and (symbolp name) (member name *known-pulses*) t))
+
 (defun known-fluent-variable-p (name)
   "True if the variable NAME is known to hold a fluent."
   (eq t (gethash name *known-variables*)))
@@ -48,7 +52,7 @@ for each part, or T if a fluent.")
         ((and (symbolp form) (known-fluent-variable-p form))
          (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
                       (fluent-value ~:*~(~A~))." form))
-        ((member (read-fluent form) *known-pulses*)
+        ((known-pulse-p (read-fluent form))
          (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. Plans write ~
                       (wait-for ~(~A~)); in Lisp, (await-idle), or (run-until (idle-p)) headless."
                  form (read-fluent form)))))

@@ -31,7 +31,7 @@ no plan.")
            #:home-attended-p #:home-on-change #:home-wrapper #:home-backlog #:at-home
            #:call-at-home #:in-use-p #:post #:next-entry #:posted-p)
   ;; known
-  (:export #:declare-fluent-variable #:declare-pulse #:known-fluent-variable-p
+  (:export #:declare-fluent-variable #:declare-pulse #:known-pulse-p #:known-fluent-variable-p
            #:known-vector-variable-p #:test-doubt
            #:robots-fluent-p #:one-fluent #:truth-value)
   ;; propagation

@@ -28,6 +28,7 @@
                (if *definition* (defining-form *definition*) form))
     (with-own-text (form)
       (doubt-comparisons body)
+      (doubt-values body)
       (multiple-value-bind (body documentation) (split-documentation body)
         (multiple-value-bind (scope entry) (procedure-parts parameters environment)
           `(progn
@@ -67,7 +68,9 @@ the variables around it, but not blocks, tags and local plans. Run it by CALL-PL
         (form (list* 'interp-lambda parameters body))
         (inside-p (and *own-conses* t)))
     (with-own-text (form)
-      (unless inside-p (doubt-comparisons body))
+      (unless inside-p
+        (doubt-comparisons body)
+        (doubt-values body))
       (multiple-value-bind (scope entry) (procedure-parts parameters environment)
         `(anonymous-procedure ',parameters ,entry
                               ,(procedure-body-code nil form body scope)

@@ -130,13 +130,15 @@ and PARAMETERS, lists (variable type text)."
   "Note that the fluents in VARIABLES say how a command called COMMAND-NAME ended."
   (setf (get command-name 'result-fluents) variables))
 
+(defun fluent-in-plan (variable part)
+  "Return how plans write the fluent in VARIABLE; of a vector, that of PART."
+  (if (second (assoc variable *fluent-variables*)) `(vref ,variable ,part) variable))
+
 (defun fluent-form (kind clauses part)
   "Return the form of the fluent that CLAUSES, of a command on PART, the name of its argument, say
 in a clause of KIND (:pulse, which tells of its end, or :error) is the first to be set; or NIL."
   (let ((fluent (second (assoc kind clauses))))
-    (cond ((null fluent) nil)
-          ((second (assoc fluent *fluent-variables*)) `(vref ,fluent ,part))
-          (t fluent))))
+    (and fluent (fluent-in-plan fluent part))))
 
 (defmacro define-outcome (commands (&rest results) &body clauses)
   "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
@@ -157,7 +159,9 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
                                  ',(fluent-form :pulse clauses (first parameters))
                                  ',(fluent-form :error clauses (first parameters))
                                  (mapcar #'error-code-keyword
-                                         (command-errors (find-command ',command-name))))
+                                         (command-errors (find-command ',command-name)))
+                                 ',(loop for fluent in (clause-fluents clauses '(:set))
+                                         collect (fluent-in-plan fluent (first parameters))))
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
                                       fluents. (Manual C.)"

@@ -2,12 +2,13 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(defun note-twin (name call wait &optional fluent codes)
+(defun note-twin (name call wait &optional fluent codes results)
   "Note that plans write CALL, with the names of its arguments, of which the first is a part if
 there are several of them, instead of a call of NAME; and that (wait-for WAIT) then waits for the
-end, unless WAIT is NIL. FLUENT, a form, or NIL, then has one of CODES if something went wrong."
+end, unless WAIT is NIL. FLUENT, a form, or NIL, then has one of CODES if something went wrong, and
+RESULTS, forms of fluents, what was found."
   (setf (get name 'twin) (list call wait)
-        (get (first call) 'end) (list (second call) wait)
+        (get (first call) 'end) (list (second call) wait results)
         (get (first call) 'codes) (list fluent codes)))
 
 (defun plan-function-p (name)
@@ -36,8 +37,16 @@ NIL if it never does."
 (defun end-text (name part)
   "Return in words how plans wait for the end of what NAME, a plan's function, has begun on the part
 numbered PART, or NIL if nothing tells of that."
-  (destructuring-bind (&optional variable wait) (get name 'end)
+  (destructuring-bind (&optional variable wait results) (get name 'end)
+    (declare (ignore results))
     (wait-form-text (subst part variable wait))))
+
+(defun results-of-command (name part)
+  "Return the forms of the fluents that have what NAME, a plan's function, has found out by the part
+numbered PART."
+  (destructuring-bind (&optional variable wait results) (get name 'end)
+    (declare (ignore wait))
+    (subst part variable results)))
 
 (defgeneric last-command (client task)
   (:documentation "Return the name of the plan's function that the plan TASK is of has called last,

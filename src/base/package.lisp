@@ -107,7 +107,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:*function-meant*
            #:ours-called)
   ;; tests-in-code
-  (:export #:*test-doubt* #:map-comparisons #:code-doubt)
+  (:export #:*test-doubt* #:map-calls #:map-comparisons #:code-doubt)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
            #:report-anyhow #:of-lines-typed-p

@@ -42,14 +42,20 @@ meant, or NIL.")
                            when (consp clause) append (words-in (first clause)))
                      (first arguments)))))))
 
+(defun map-calls (function form)
+  "Call FUNCTION with each list in FORM, code, that may be a call: none that is quoted."
+  (when (and (consp form) (not (eq 'quote (first form))))
+    (funcall function form)
+    (loop for rest = form then (cdr rest)
+          while (consp rest) do (map-calls function (car rest)))))
+
 (defun map-comparisons (function form)
   "Call FUNCTION with each form in FORM, code, that is compared with a word, that word, and the form
 that compares them."
-  (when (and (consp form) (not (eq 'quote (first form))))
-    (multiple-value-bind (words subject) (compared-words form)
-      (dolist (word words) (funcall function subject word form)))
-    (loop for rest = form then (cdr rest)
-          while (consp rest) do (map-comparisons function (car rest)))))
+  (map-calls (lambda (call)
+               (multiple-value-bind (words subject) (compared-words call)
+                 (dolist (word words) (funcall function subject word call))))
+             form))
 
 ;;; Error codes of commands.
 

@@ -1,0 +1,79 @@
+;;;; no-values.lisp -- values that a plan uses and never gets: of pulses, and of its commands.
+
+(in-package :ars-magna.rpl.language)
+
+;;; Tests.
+
+(defun tests-in-loop (form)
+  "Return the tests after UNTIL and WHILE in FORM, a LOOP or N-TIMES."
+  (loop for (word test) on (rest form)
+        when (and (symbolp word) (member word '("UNTIL" "WHILE") :test #'string=))
+          collect test))
+
+(defun tests-in (form)
+  "Return the tests that FORM, a call in a plan's text, makes of values."
+  (cond ((not (proper-list-p form)) '())
+        ((operator-in-p form '("IF" "WHEN" "UNLESS")) (list (second form)))
+        ((operator-in-p form '("COND")) (mapcar #'first (remove-if #'atom (rest form))))
+        ((operator-in-p form '("LOOP" "N-TIMES")) (tests-in-loop form))))
+
+;;; Pulses take no time: between two waits nobody finds them true.
+
+(defun pulse-in-test (test)
+  "Return the form of a fluent that is only pulsed if TEST reads one by value; or NIL."
+  (cond ((known-pulse-p test) test)
+        ((not (proper-list-p test)) nil)
+        ((operator-in-p test '("VREF")) (and (known-pulse-p (second test)) test))
+        ((operator-in-p test '("FLUENT-VALUE" "NOT" "NULL" "AND" "OR"))
+         (some #'pulse-in-test (rest test)))))
+
+(defun pulse-read (form)
+  "Return the form of the pulsed fluent that a test in FORM, a call in a plan's text, reads; or NIL."
+  (if (and (operator-in-p form '("WAIT-UNTIL")) (proper-list-p form))
+      ;; It waits for what gives a fluent.
+      (and (operator-in-p (second form) '("FLUENT-VALUE")) (pulse-in-test (second form)))
+      (some #'pulse-in-test (tests-in form))))
+
+(defun doubt-pulse-read (form)
+  "Warn if FORM, a call in a plan's text, tests the value of a fluent that is only pulsed."
+  (let ((pulse (pulse-read form)))
+    (when pulse
+      (doubt-own-form form "the test of ~A is never true: a pulse takes no time. (wait-for ~:*~A) ~
+                            waits for the next one. A view that is made first, (fl-pulsed ~:*~A), ~
+                            is true if there was one since." pulse))))
+
+;;; Commands return nothing.
+
+(defun values-used-in (form)
+  "Return the forms whose values FORM, a call in a plan's text, uses."
+  (let ((name (first form)))
+    (cond ((not (and (symbolp name) (proper-list-p form))) '())
+          ((operator-in-p form '("LET" "LET*"))
+           (loop for binding in (and (listp (second form)) (second form))
+                 when (typep binding '(cons t (cons t null))) collect (second binding)))
+          ((operator-in-p form '("SETQ" "SETF"))
+           (loop for (nil value) on (rest form) by #'cddr collect value))
+          ((operator-in-p form '("CASE" "ECASE" "WAIT-FOR" "WHENEVER" "WAIT-UNTIL"))
+           (list (second form)))
+          ((operator-in-p form '("OUT")) (rest form))
+          ((and (fboundp name) (not (macro-function name)) (not (special-operator-p name)))
+           (rest form))
+          (t (tests-in form)))))
+
+(defun command-used (form)
+  "Return the call of a command whose value FORM, a call in a plan's text, uses; or NIL."
+  (find-if (lambda (used) (and (consp used) (plan-function-p (first used)))) (values-used-in form)))
+
+(defun doubt-command-used (form)
+  "Warn if FORM, a call in a plan's text, uses the value of one of the robot's commands."
+  (let ((command (command-used form)))
+    (when command
+      (destructuring-bind (name &optional part &rest arguments) command
+        (declare (ignore arguments))
+        (doubt-own-form form "~A returns nothing: its command only begins. Write it alone~@[, then ~A~]~
+                              ~@[; what it has found is then in ~{~A~^, ~}~]."
+                        name (end-text name part) (results-of-command name part))))))
+
+(defun doubt-values (form)
+  "Warn of values that FORM, the text of a plan, uses and never gets."
+  (map-calls (lambda (call) (doubt-pulse-read call) (doubt-command-used call)) form))
