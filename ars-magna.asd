@@ -182,7 +182,7 @@
                  (:file "wishes") (:file "reacting") (:file "forking") (:file "handles") (:file "rewinding")
                  (:file "watching") (:file "thread") (:file "starting") (:file "accessors")
                  (:file "outcomes") (:file "commands") (:file "runs") (:file "stranded")
-                 (:file "cut-off")
+                 (:file "cut-off") (:file "outside")
                  (:file "seeing")))
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")

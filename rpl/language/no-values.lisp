@@ -28,7 +28,7 @@
          (some #'pulse-in-test (rest test)))))
 
 (defun pulse-read (form)
-  "Return the form of the pulsed fluent that a test in FORM, a call in a plan's text, reads; or NIL."
+  "Return the form of the pulsed fluent that a test in FORM, a call of a plan's, reads; or NIL."
   (if (and (operator-in-p form '("WAIT-UNTIL")) (proper-list-p form))
       ;; It waits for what gives a fluent.
       (and (operator-in-p (second form) '("FLUENT-VALUE")) (pulse-in-test (second form)))
@@ -49,7 +49,7 @@
   (let ((name (first form)))
     (cond ((not (and (symbolp name) (proper-list-p form))) '())
           ((operator-in-p form '("LET" "LET*"))
-           (loop for binding in (and (listp (second form)) (second form))
+           (loop for binding in (and (proper-list-p (second form)) (second form))
                  when (typep binding '(cons t (cons t null))) collect (second binding)))
           ((operator-in-p form '("SETQ" "SETF"))
            (loop for (nil value) on (rest form) by #'cddr collect value))
@@ -62,7 +62,9 @@
 
 (defun command-used (form)
   "Return the call of a command whose value FORM, a call in a plan's text, uses; or NIL."
-  (find-if (lambda (used) (and (consp used) (plan-function-p (first used)))) (values-used-in form)))
+  (find-if (lambda (used)
+             (and (consp used) (proper-list-p used) (plan-function-p (first used))))
+           (values-used-in form)))
 
 (defun doubt-command-used (form)
   "Warn if FORM, a call in a plan's text, uses the value of one of the robot's commands."
@@ -70,8 +72,8 @@
     (when command
       (destructuring-bind (name &optional part &rest arguments) command
         (declare (ignore arguments))
-        (doubt-own-form form "~A returns nothing: its command only begins. Write it alone~@[, then ~A~]~
-                              ~@[; what it has found is then in ~{~A~^, ~}~]."
+        (doubt-own-form form "~A returns nothing: its command only begins. Write it ~
+                              alone~@[, then ~A~]~@[; what it has found is then in ~{~A~^, ~}~]."
                         name (end-text name part) (results-of-command name part))))))
 
 (defun doubt-values (form)

@@ -42,6 +42,7 @@ been told since which robot it commands")
   (:memory
    (eras '() list "which tasks are of which era, the newest first; see handles.lisp")
    (warned '() list "what was said of takeovers, and at which tick")
+   (outside nil symbol "the command that the robot carries out and no plan has given, or NIL")
    (last-command '() list "the plan, the function and the part of the command given last")
    (unread '() list "how commands ended of which plans have not looked at how; see unread.lisp")
    (next-tick nil (or null real (eql :ready))

@@ -9,7 +9,7 @@
                 #:warn-once
                 #:said-p #:note-looked-after)
   (:import-from :ars-magna.time
-                #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
+                #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
                 #:timeline-tick #:check-not-secluded
                 #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
@@ -50,7 +50,8 @@
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
                 #:waiting-parts #:failure-text #:lisp-failure
                 #:text-of-plans #:advice-on-stillness #:fluents-awaited
-                #:fluent-text #:note-twin #:has-twin-p #:last-command #:endless-advice
+                #:fluent-text #:note-twin #:has-twin-p #:twin-text #:pulse-of-command
+                #:last-command #:endless-advice
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure

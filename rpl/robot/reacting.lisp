@@ -92,6 +92,7 @@ wait, and for something else. True if so. Most ticks are like that."
 
 ;; If plans have a thread only that lets them react: one may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)
+  (look-for-outside interface)
   (cond ((thread-of interface)
          (when (or (time-to-wake-p interface) (not (thread-wanted-p interface)))
            (wake interface)))

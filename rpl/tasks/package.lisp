@@ -60,7 +60,7 @@ plans nor a simulator.")
   (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; twins
   (:export #:note-twin #:has-twin-p #:twin-text #:end-text #:last-command #:plan-function-p
-           #:results-of-command #:teller-of-code)
+           #:results-of-command #:pulse-of-command #:teller-of-code)
   ;; procedure
   (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list
            #:reject-lisp-call #:all-procedures #:procedures-to-offer #:anonymous-procedure

@@ -28,6 +28,10 @@ NIL if it never does."
 (defun wait-form-text (wait)
   (let ((*print-pretty* nil)) (and wait (format nil "(wait-for ~(~A~))" wait))))
 
+(defun pulse-of-command (name)
+  "Return the form of the fluent that is pulsed when a command called NAME of a plan ends, or NIL."
+  (second (get name 'twin)))
+
 (defun twin-text (name)
   "Return in words what plans write instead of a call of NAME."
   (destructuring-bind (call wait) (get name 'twin)
