@@ -174,7 +174,14 @@
                                         (driver:rpl-hand-insert-bin 0 0)
                                         (rpl:wait-for (svref driver:hand-moved* 0))))
                         "rpl-hand-insert-bin ended with :different-location"
-                        "(fluent-value (vref hand-error* 0))")))
+                        "(fluent-value (vref hand-error* 0))"))
+  (is-true (has-words-p (told-of-ends (driver:rpl-camera-get-object-designator
+                                       0 :non-local '((:color violet)))
+                                      (rpl:wait-for (svref driver:camera-input* 0)))
+                        "ended with :designator-not-found"))
+  (is-true (has-words-p (told-of-ends (driver:rpl-robot-go-distance 1000)
+                                      (rpl:wait-for driver:robot-stopped*))
+                        "rpl-robot-go-distance ended with :robot-blocked")))
 
 (test plans.that-look-at-how-a-command-ended-are-not-told
   (macrolet ((quiet (&body body)

@@ -7,8 +7,10 @@
 ;;; count as looking; being blocked and interrupted are left out, as plans make use of both.
 
 (defparameter *codes-of-no-trouble*
-  '(:interrupt :robot-blocked :not-moving :goto-local :designator-not-found :already-tracking
+  '(:interrupt :not-moving :goto-local :already-tracking
     :lost-track :grasping :not-grasping :grasp-lost :not-inside :bin-open
+    (robot-go-forward . :robot-blocked) (robot-goto-wall . :robot-blocked)
+    (robot-follow-wall . :robot-blocked)
     (camera-untrack . :not-tracking) (storage-bin-close . :bin-closed)
     (storage-bin-close . :bin-jammed))
   "Codes, or conses (command . code), with which commands end that have done what they are for, or
