@@ -490,7 +490,7 @@
                  (:file "beginners") (:file "beginners-more") (:file "beginners-slips")
                  (:file "beginners-words") (:file "beginners-ends")
                  (:file "beginners-unheard") (:file "beginners-hints") (:file "beginners-vain")
-                 (:file "beginners-tests")
+                 (:file "beginners-tests") (:file "beginners-forms")
                  (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t

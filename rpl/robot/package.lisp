@@ -48,7 +48,7 @@
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
-                #:waiting-parts #:failure-text #:lisp-failure
+                #:waiting-parts #:failure-text #:missed-text #:lisp-failure
                 #:text-of-plans #:advice-on-stillness #:fluents-awaited
                 #:fluent-text #:note-twin #:has-twin-p #:twin-text #:pulse-of-command
                 #:last-command #:endless-advice

@@ -199,9 +199,11 @@ but somebody outside can let plans go on, say so, once."
                 (live-p simulation)
                 (not (eq :report (message-queue-error-policy (simulation-messages simulation)))))
       (warn-once (list :failed (task-label task)) (simulation-world simulation)
-                 (format nil "The plan ~A failed: ~A. The second value of RUN-PLAN says so, ~
-                              :FAILED; the first is the failure, which is true."
-                         (task-label task) (failure-text (task-result task)))))))
+                 (format nil "The plan ~A failed: ~A~@[; ~A~]. The second value of RUN-PLAN says ~
+                              so, :FAILED; the first is the failure, which is true."
+                         (task-label task)
+                         (failure-text (task-result task))
+                         (missed-text (task-result task)))))))
 
 (addition run-plan)
 (defun run-plan (plan &rest arguments)

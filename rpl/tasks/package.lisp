@@ -73,7 +73,7 @@ plans nor a simulator.")
   ;; blame
   (:export #:*failure-hook* #:failure-of #:plan-backtrace)
   ;; report
-  (:export #:*plan-end-hooks* #:report-end #:report-failure
+  (:export #:*plan-end-hooks* #:report-end #:report-failure #:missed-text
            #:task-awaits #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
            #:write-task-tree)
   ;; engine

@@ -62,6 +62,34 @@ waits for its own parts."
                     on"
                (form-text (failure-passed-on-by failure)))))
 
+(defun clause-types (form)
+  "Return what the clauses of FORM, an expression of a plan, are for, if it handles failures."
+  (and (typep form '(cons symbol (cons list)))
+       (member (first form) '("HANDLE-FAILURE" "WITH-FAILURE-HANDLING") :test #'string=)
+       (loop for (type) in (second form)
+             append (remove-if-not #'symbolp (ensure-list type)))))
+
+(defun slip-for-p (type class)
+  "True if TYPE, a symbol that is not called like CLASS, may be meant for it: they differ in more
+than in digits."
+  (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name))))
+    (and (resembles-p type class)
+         (string-not-equal (letters type) (letters class)))))
+
+(defun missed-clause (failure)
+  "Return what a clause around FAILURE is for that was most likely meant for its class, which is the
+second value; NIL if there is none."
+  (let* ((own (failure-class failure))
+         (class (if (and own (symbolp own)) own (type-of failure))))
+    (loop for form in (failure-plan-backtrace failure)
+          for type = (find-if (lambda (type) (slip-for-p type class)) (clause-types form))
+          when type return (values type class))))
+
+(defun missed-text (failure)
+  "Return in words that a clause around FAILURE is not for its class, but like it; or NIL."
+  (multiple-value-bind (type class) (missed-clause failure)
+    (and type (format nil "a clause is for ~(~S~), but the class is ~(~S~)" type class))))
+
 (defun write-failure-report (failure stream)
   (format stream "~A~%  at tick ~D in ~A~%  task: ~A~%"
           (brief-failure-text failure) (failure-tick failure) (form-text (failure-form failure))
@@ -70,7 +98,7 @@ waits for its own parts."
   (write-some "    ~A~%" (mapcar #'form-text (failure-plan-backtrace failure)) stream)
   (when (failure-cause failure)
     (format stream "  while handling: ~A~%" (brief-failure-text (failure-cause failure))))
-  (format stream "~@[  ~A~%~]" (passed-on-text failure))
+  (format stream "~@[  ~A~%~]~@[  ~A~%~]" (passed-on-text failure) (missed-text failure))
   (write-some "  and in a cleanup: ~A~%"
               (mapcar #'brief-failure-text (failure-suppressed failure)) stream)
   (when (and (typep failure 'lisp-failure) (string/= "" (lisp-failure-backtrace failure)))
@@ -79,12 +107,13 @@ waits for its own parts."
 (defun failure-story (failure)
   "Return in a line what FAILURE is, when and where it happened, and after what."
   (format nil "~A~@[ at tick ~D~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]~
-               ~@[; ~A~]"
+               ~@[; ~A~]~@[; ~A~]"
           (one-line (brief-failure-text failure))
           (failure-tick failure)
           (mapcar (lambda (form) (form-text form 40)) (failure-plan-backtrace failure))
           (and (failure-cause failure) (one-line (brief-failure-text (failure-cause failure))))
-          (passed-on-text failure)))
+          (passed-on-text failure)
+          (missed-text failure)))
 
 ;; What a REPL shows of the value of a plan that failed.
 (defmethod print-object ((failure plan-failure) stream)
