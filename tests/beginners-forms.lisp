@@ -4,6 +4,20 @@
 
 (in-suite beginners)
 
+;;; Commands in plans.
+
+(test plans.warn-of-commands-with-another-number-of-arguments
+  (is-true (has-words-p (warnings-of-procedure '(driver:rpl-robot-turn robot 1))
+                        "rpl-robot-turn takes (angle), not 2 arguments"
+                        "the robot and the continuation are left out"
+                        "(rpl-robot-turn angle) (wait-for robot-stopped*)"))
+  (is-true (has-words-p (warnings-of-procedure '(list robot) '(driver:rpl-robot-turn))
+                        "rpl-robot-turn takes (angle), not 0 arguments."))
+  (is-true (has-words-p (warnings-of-procedure '(driver:rpl-robot-stop robot))
+                        "rpl-robot-stop takes no argument, not 1 argument."))
+  (is (string= "" (warnings-of-procedure '(driver:rpl-robot-turn robot) '(driver:rpl-robot-stop)
+                                         '(driver:rpl-camera-view 0)))))
+
 ;;; Clauses for failures.
 
 (defmacro failure-told (&body plan)

@@ -140,6 +140,15 @@ in a clause of KIND (:pulse, which tells of its end, or :error) is the first to 
   (let ((fluent (second (assoc kind clauses))))
     (and fluent (fluent-in-plan fluent part))))
 
+(defun doubt-count-in-plan (name command-name parameters forms)
+  "Warn if FORMS, the arguments in a call of NAME, of plans for a command, are not as many as
+PARAMETERS."
+  (unless (= (length parameters) (length forms))
+    (doubt-definition "~(~A~) takes ~:[no argument~;~:*~(~A~)~], not ~D argument~:P.~:[~; In ~
+                       plans the robot and the continuation are left out: ~A.~]"
+                      name parameters (length forms)
+                      (< (length parameters) (length forms)) (twin-text command-name))))
+
 (defmacro define-outcome (commands (&rest results) &body clauses)
   "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
 its error code and RESULTS to its results: (:set fluent form), (:error fluent), which sets the
@@ -171,7 +180,10 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
                                            (declare (ignore more)
                                                     (ignorable resource err ,@results))
                                            (append ,@(mapcar #'clause-form clauses)))
-                                         (list ,@parameters))))))
+                                         (list ,@parameters)))
+             collect `(define-compiler-macro ,name (&whole form &rest arguments)
+                        (doubt-count-in-plan ',name ',command-name ',parameters arguments)
+                        form))))
 
 ;;; A command of users' has a function in plans only when it is known what becomes of its end.
 
