@@ -18,6 +18,25 @@
   (is (string= "" (warnings-of-procedure '(driver:rpl-robot-turn robot) '(driver:rpl-robot-stop)
                                          '(driver:rpl-camera-view 0)))))
 
+;;; One simulation inside of another.
+
+(test with-simulation.says-that-a-command-was-given-inside-of-another
+  (flet ((told (ticks &rest more)
+           (error-output
+             (run:with-simulation (rover)
+               (run:run-ticks ticks)
+               (run:with-simulation (rover-in-kitchen)
+                 (command:robot-turn rover 1)
+                 (run:run-ticks 10))
+               (mapc #'funcall more)))))
+    (dolist (ticks '(0 5))
+      (is-true (has-words-p (told ticks) "robot-turn did nothing"
+                            "asked for inside of another with-simulation")))
+    (is (string= "" (told 1 (lambda () (run:run-ticks 30)))))
+    (is-true (has-words-p (told 1 (lambda () (run:run-ticks 30))
+                                (lambda () (command:robot-turn rover 1)))
+                          "Call (run-ticks N)"))))
+
 ;;; Clauses for failures.
 
 (defmacro failure-told (&body plan)

@@ -65,6 +65,28 @@
                          (lambda-list-of continuation)
                          told)))))
 
+;;; One simulation inside of another.
+
+(defvar *asked-elsewhere* nil
+  "A cons of the world, and its tick, in which a program last asked for something while inside of a
+simulation of another; or NIL.")
+
+(defun asked-elsewhere-p (world)
+  "True if a program has last asked for something in WORLD inside of a simulation of another, since
+ticks of WORLD passed."
+  (equal *asked-elsewhere* (cons world (world-tick world))))
+
+(defun note-asked-elsewhere (world)
+  "Remember if a program asks for something in WORLD, which waits for ticks, inside of a simulation
+of another."
+  (let ((timeline (world-timeline world)))
+    (when (and *simulation*
+               (by-program-p)
+               (not (eq timeline (timeline-of *simulation*)))
+               (not (live-p timeline))
+               (not (timeline-passing-p timeline)))
+      (setf *asked-elsewhere* (cons world (world-tick world))))))
+
 ;;; One command after the other, and no tick between them.
 
 (defun lasting-p (command)
@@ -299,6 +321,7 @@ takes another number of arguments."
           timeline)
     (doubt-arguments command world arguments)
     (note-bindings command world)
+    (note-asked-elsewhere world)
     (doubt-owners command robot arguments)
     (doubt-continuation command world continuation)
     (tell-if-kept command resource robot)

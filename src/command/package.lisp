@@ -22,7 +22,7 @@
            #:fail-with #:notify #:report #:once-more #:go-on #:go-on-now)
   ;; issuing
   (:export #:issue #:*ticks-follow-p* #:between-runs-p #:*asked-with* #:parameters-bound
-           #:doubt-asked-with)
+           #:doubt-asked-with #:asked-elsewhere-p)
   ;; ownership
   (:export #:under-way #:last-interruption #:under-way-text #:interruption-text)
   ;; error-codes

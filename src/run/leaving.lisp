@@ -11,6 +11,12 @@
   (and (request-name request)
        (starts-with-subseq "Lisp" (note-text (request-asker request)))))
 
+(defun elsewhere-remedy (simulation)
+  "Return in sentences that SIMULATION was asked inside of another since its last tick, or NIL."
+  (and (asked-elsewhere-p (simulation-world simulation))
+       (one-line "That was asked for inside of another with-simulation, and only ticks of that one
+passed. Use there the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
+
 (defun too-late-text (simulation)
   "Return in sentences what the program has asked for in SIMULATION since its last tick, and a
 remedy; NIL if there is nothing, or it only ends something."
@@ -22,8 +28,9 @@ remedy; NIL if there is nothing, or it only ends something."
                        collect (string-downcase (request-name request)))))
     (when names
       (format nil "~{~A~^, ~} did nothing, as with-simulation ended before another tick had ~
-                   passed. Call (run-ticks N) or (run-until TEST) after that."
-              (remove-duplicates (reverse names) :test #'string= :from-end t)))))
+                   passed. ~:[Call (run-ticks N) or (run-until TEST) after that.~;~:*~A~]"
+              (remove-duplicates (reverse names) :test #'string= :from-end t)
+              (elsewhere-remedy simulation)))))
 
 ;;; At the end of a headless run.
 
@@ -55,11 +62,11 @@ nothing."
   (multiple-value-bind (undone plans) (undone-in simulation)
     (when undone
       (format nil "~{~A~^, ~} did nothing. ~A" undone
-              (if (lines-typed-p simulation)
-                  *lines-remedy*
-                  (format nil "Call (run-ticks N) or (run-until TEST)~:[~; in it, or ~
-                               (run-plan ...) instead of (begin-plan ...)~]."
-                          plans))))))
+              (cond ((lines-typed-p simulation) *lines-remedy*)
+                    ((elsewhere-remedy simulation))
+                    (t (format nil "Call (run-ticks N) or (run-until TEST)~:[~; in it, or ~
+                                    (run-plan ...) instead of (begin-plan ...)~]."
+                               plans)))))))
 
 (defun cut-off-in (simulation)
   "Return in words, in a list, what the end of SIMULATION cuts off, unless the program has looked
