@@ -37,6 +37,17 @@
                                 (lambda () (command:robot-turn rover 1)))
                           "Call (run-ticks N)"))))
 
+;;; Types and tests in definitions.
+
+(test defmanipulation.warns-of-types-that-are-slips
+  (flet ((told (&rest types)
+           (with-own-definitions
+             (warning-about `(command:defmanipulation rub-down (ball - () :by ,@types) () nil)))))
+    (is-true (has-words-p (told 'hand '- 'hnd) "no type is called hnd" "Did you mean hand?"))
+    (is-true (has-words-p (told 'hand '- 'hand 'n '- 'integr) "Did you mean integer?"))
+    (dolist (types '((hand - hand) (hand) (hand - hand n - colour) (hand - hand n - fixnum)))
+      (is (string= "" (apply #'told types))))))
+
 ;;; Clauses for failures.
 
 (defmacro failure-told (&body plan)

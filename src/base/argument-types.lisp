@@ -19,6 +19,11 @@ function that returns in words what is wrong with a value, or NIL for no more th
   (register *argument-types* name (make-argument-type name predicate text trouble))
   name)
 
+(defun argument-type-like (name)
+  "Return the name of the argument type that NAME, a symbol, may be a slip for, or NIL."
+  (find-if (lambda (known) (resembles-p name known))
+           (mapcar #'argument-type-name (all-argument-types))))
+
 (defun argument-of-type-p (value type)
   "True if VALUE can be an argument of TYPE, an argument type or the name of one."
   (funcall (argument-type-predicate (find-argument-type type)) value))

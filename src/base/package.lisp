@@ -236,7 +236,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:contradiction #:contradict #:must-hold #:proper-list-of-p)
   ;; argument-types, operators
   (:export #:define-argument-type #:argument-type-text #:argument-of-type-p #:find-argument-type
-           #:trouble-with
+           #:argument-type-like #:trouble-with
            #:perhaps-degrees-p #:degrees-advice
            #:check-of-type #:operator-name #:operator-function #:operator-types
            #:define-operator #:find-operator #:check-operands))

@@ -186,11 +186,26 @@ parameter list, BODY a function of as many arguments. Return NAME."
       (register *manipulations* name manipulation))
     name))
 
+(defun doubt-type (definition type)
+  "Warn if TYPE, of a parameter, is none that commands or Lisp know, and like one that they do."
+  (unless (or (not (symbolp type)) (find-argument-type type nil) (find-class type nil))
+    (let ((like (argument-type-like type)))
+      (when like
+        (doubt-definition "~A: no type is called ~(~A~), so anything fits. Did you mean ~(~A~)?"
+                          definition type like)))))
+
+(defun doubt-types (definition parameters)
+  "Warn of the types in PARAMETERS of DEFINITION that are most likely slips."
+  (dolist (typed (cons (parameter-list-by parameters) (parameter-list-others parameters)))
+    (doubt-type definition (second typed))))
+
 (defun manipulation-forms (definition name parameters options body)
   "Return the forms that DEFMANIPULATION expands to."
   (check-name definition name "manipulation")
   (check-method-options definition options)
-  (let ((variables (parameter-variables (parse-parameters definition parameters))))
+  (let* ((parsed (parse-parameters definition parameters))
+         (variables (parameter-variables parsed)))
+    (doubt-types definition parsed)
     `((define-manipulation ',name ',parameters
         (lambda ,variables (declare (ignorable ,@variables)) ,@body)
         ,@options))))
