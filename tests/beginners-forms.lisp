@@ -48,6 +48,15 @@
     (dolist (types '((hand - hand) (hand) (hand - hand n - colour) (hand - hand n - fixnum)))
       (is (string= "" (apply #'told types))))))
 
+(test defkicker.with-a-test-of-nil-never-runs
+  (with-own-definitions
+    (eval '(world:defkicker sit-still (thing) (:test nil) (world:kick-thing thing 1 0 t)))
+    (run:with-simulation (rover)
+      (let* ((thing (world:find-thing 'crate)) (x (world:thing-x thing)))
+        (world:set-kicker thing (world:find-kicker 'sit-still))
+        (run:run-ticks 5)
+        (is (= x (world:thing-x thing)))))))
+
 ;;; Clauses for failures.
 
 (defmacro failure-told (&body plan)

@@ -101,9 +101,8 @@ a thing. Return the kicker."
   (flet ((thing-function (forms)
            `(lambda (,variable) (declare (ignorable ,variable)) ,@forms)))
     `(:prob ,(getf options :prob 1)
-      :test ,(and (getf options :test)
-                  (not (eq (getf options :test) t))
-                  (thing-function (list (getf options :test))))
+      :test ,(unless (eq (getf options :test t) t)
+               (thing-function (list (getf options :test))))
       :body ,(thing-function body))))
 
 (defun check-kicker-name (definition name)
