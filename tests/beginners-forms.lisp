@@ -78,3 +78,12 @@
                                 (plan-of (rpl:handle-failure ((:robot-blockd () 1))
                                            (rpl:fail :robot-blocked))))))
                         "Plan failure :ROBOT-BLOCKED")))
+
+;;; Policies.
+
+(test with-named-policy.says-that-init-returned-nil
+  (is (search "its :init returned NIL"
+              (princ-to-string
+               (rpl:run-plan-alone
+                (plan-of (rpl:with-named-policy (rpl:make-policy () (:init nil)) ()
+                           (rpl:wait-time 1))))))))

@@ -46,7 +46,8 @@
 (setf (documentation 'failed-policy 'function) "Return the policy that does not hold.")
 
 (defmethod write-failure ((failure policy-init-failed) stream)
-  (format stream "~A could not begin" (failed-policy failure)))
+  (format stream "~A could not begin: its :init returned NIL, not a true value such as T"
+          (failed-policy failure)))
 
 (defmethod write-failure ((failure policy-check-condition-met) stream)
   (format stream "The condition of ~A was met" (failed-policy failure)))
