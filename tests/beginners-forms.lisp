@@ -87,3 +87,16 @@
                (rpl:run-plan-alone
                 (plan-of (rpl:with-named-policy (rpl:make-policy () (:init nil)) ()
                            (rpl:wait-time 1))))))))
+
+(test with-named-policy.says-that-the-list-of-arguments-is-missing
+  (dolist (form '((rpl:with-named-policy told-policy (rpl:wait-time 1))
+                  (rpl:with-named-policy told-policy (print 1) (rpl:wait-time 1))
+                  (rpl:with-named-policy told-policy (turn-once))))
+    (is-true (complains-p `(rpl:interp-lambda () ,form)
+                          "the list of the policy's arguments before the body"
+                          "(with-named-policy told-policy () (")))
+  (is (string= "" (warnings-of-plan (rpl:with-named-policy 'told-policy (given) 1))))
+  (is (string= "" (warning-about '(rpl:interp-lambda (list)
+                                   (let ((print 1))
+                                     (rpl:with-named-policy 'told-policy (list :ready print)
+                                       (rpl:with-named-policy 'told-policy (print) 1))))))))

@@ -218,11 +218,29 @@ the variables around it. (CRAM's, where it takes a name.)"
         do (setf text (policed-text policy arguments (list text)))
         finally (return text)))
 
+(defun call-like-p (form scope)
+  "True if FORM is a call, and no list of forms."
+  (and (typep form '(cons symbol))
+       (not (constantp (first form)))
+       (not (known-variable-p (first form) (scope-environment scope)))
+       (fboundp (first form))))
+
+(defun check-policy-arguments (arguments form scope)
+  "Signal MALFORMED-DEFINITION if ARGUMENTS, for the policy of FORM, are a step of the body."
+  (when (call-like-p arguments scope)
+    (reject-clause (author) form
+                   (format nil "the list of the policy's arguments before the body, () if it takes ~
+                                none: (with-named-policy ~(~S~) () ~(~A~) ...)"
+                           (abridged (second form)) (form-text arguments 40)))))
+
 (define-construct with-named-policy (policy arguments &body body)
   "Run BODY in a plan while POLICY, a policy or its name, is in force with ARGUMENTS, a list of
 forms. See DEFINE-POLICY. Return the value of BODY. (CRAM's; the manual's WITH-POLICY takes plan
 text as its policy.)"
-  (:code (plan-code (note-expansion (policies-text `((,policy ,arguments)) body form) form) scope)))
+  (:code
+   (progn
+     (check-policy-arguments arguments form scope)
+     (plan-code (note-expansion (policies-text `((,policy ,arguments)) body form) form) scope))))
 
 (define-construct with-policies (policies &body body)
   "Run BODY in a plan while POLICIES, each (policy (argument...)) as in WITH-NAMED-POLICY, are in
