@@ -100,3 +100,17 @@
                                    (let ((print 1))
                                      (rpl:with-named-policy 'told-policy (list :ready print)
                                        (rpl:with-named-policy 'told-policy (print) 1))))))))
+
+;;; Times in the place of keywords.
+
+(test constructs.say-where-a-time-stands
+  (flet ((check (form words) (is-true (complains-p `(rpl:interp-lambda () ,form) words))))
+    (check '(rpl:with-deadline 5 (rpl:wait-time 1)) "not 5: write (5)")
+    (check '(rpl:wait-for driver:robot-stopped* 20) "not 20: write :timeout 20")
+    (check '(rpl:wait-for driver:robot-stopped* (+ 1 20)) "write :timeout (+ 1 20)")))
+
+(test run-until.says-that-its-limit-has-a-keyword
+  (is-true (has-words-p (warning-about '(lambda () (run:run-until #'identity 40)))
+                        "40 stands where a keyword should" ":limit"))
+  (is (string= "" (warning-about '(lambda () (run:run-until #'identity :limit 40)))))
+  (is (string= "" (warning-about '(lambda (keyword) (run:run-until #'identity keyword 40))))))

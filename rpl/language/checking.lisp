@@ -134,9 +134,17 @@ right."
   "Return in words that PART, a name, perhaps quoted, stands where a list like EXPECTED should."
   (let ((name (if (typep part '(cons (eql quote) (cons symbol null))) (second part) part)))
     (and name
-         (symbolp name)
+         (typep name '(or symbol real))
          (not (member (first expected) lambda-list-keywords))
          (format nil "~(~S~): write (~(~A~))" part name))))
+
+(defun value-slip (shape rest)
+  "Return in words that the first of REST, forms, stands where a keyword of SHAPE should; or NIL."
+  (let ((value (first rest)))
+    (and (oddp (length rest))
+         (not (keywordp value))
+         (format nil "~(~S: write ~{~A~^ or ~}~)" value
+                 (loop for key in (shape-keys shape) collect (format nil "~S ~S" key value))))))
 
 (defun slip-in-construct (form lambda-list)
   "Return in words the keyword in FORM, a construct's, or in a list of options there, that is none
@@ -144,7 +152,8 @@ of LAMBDA-LIST's, or what stands there for such a list; or NIL."
   (let ((shape (shape-of lambda-list)))
     (and (proper-list-p form)
          (or (and (consp (shape-keys shape))
-                  (keyword-slip shape (nthcdr (shape-fixed shape) (rest form))))
+                  (let ((rest (nthcdr (shape-fixed shape) (rest form))))
+                    (or (keyword-slip shape rest) (value-slip shape rest))))
              (loop for part in (rest form)
                    for expected in lambda-list
                    until (member expected lambda-list-keywords)

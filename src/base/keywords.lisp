@@ -11,11 +11,14 @@ KNOWN."
 
 (defun warn-of-keywords (operator known options)
   "Warn, while a call of OPERATOR is compiled, of a keyword among the forms OPTIONS that is not one
-of KNOWN."
+of KNOWN, and of a number in the place of one."
   (loop for (key) on options by #'cddr
         when (and (keywordp key) (not (member key known)) (not (eq key :allow-other-keys)))
           do (simple-style-warning "~(~A~) has no keyword ~(~S~); it knows ~{~(~S~)~^, ~}."
-                                   operator key known)))
+                                   operator key known)
+        when (realp key)
+          do (doubt-definition "~(~A~): ~S stands where a keyword should. Write one before it: ~
+                                ~{~(~S~)~^, ~}." operator key known)))
 
 (defun with-options (lambda-list)
   "Return LAMBDA-LIST with any keywords allowed, the variable of all that are given, which are

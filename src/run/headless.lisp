@@ -129,7 +129,8 @@ which the program has given if LIMIT-P."
         ((not (or limit-p (simulation-over simulation))) (tell-of-limit limit simulation))))
 
 (addition run-until)
-(defun run-until (predicate &key (limit 100000 limit-p) (simulation (current-simulation)))
+(define-with-keywords run-until (predicate &key (limit 100000 limit-p)
+                                           (simulation (current-simulation)))
   "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
 true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit, of which
 a warning tells once in a run if none was given. Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS
