@@ -114,3 +114,19 @@
                         "40 stands where a keyword should" ":limit"))
   (is (string= "" (warning-about '(lambda () (run:run-until #'identity :limit 40)))))
   (is (string= "" (warning-about '(lambda (keyword) (run:run-until #'identity keyword 40))))))
+
+;;; Plans that run away.
+
+(test plans.that-run-away-are-told-how-to-wait
+  (flet ((told (plan)
+           (let ((rpl:*runaway-limit* 1000))
+             (rover-writes () (driver:begin-plan plan) (run:run-ticks 1)))))
+    (is-true (has-words-p (told (let ((f (rpl:create-fluent 'f t)))
+                                  (plan-of (loop (rpl:wait-for f)))))
+                          "(wait-for f) does not wait while that is true already"))
+    (is-true (has-words-p (told (plan-of (rpl:handle-failure ((:a () (rpl:retry)))
+                                           (rpl:fail :class :a))))
+                          "fails again at once" "(do-retry tries (retry))"))
+    (is-true (has-words-p (told (plan-of (rpl:handle-failure ((:a () (rpl:retry)))
+                                           (loop (identity 1)))))
+                          "If it is to wait, write (wait-time 1) there"))))

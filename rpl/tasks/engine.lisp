@@ -108,6 +108,30 @@ returns true if it brought something new. Return :idle or :budget."
             ((runner-spent runner) (release-spent runner))
             (t (return :idle))))))
 
+(defun form-of-p (form &rest names)
+  "True if FORM is a use of an operator that is called like one of NAMES."
+  (and (typep form '(cons symbol)) (member (first form) names :test #'same-name-p)))
+
+(defun use-in (name form)
+  "Return the first use of the operator called NAME in FORM, or NIL."
+  (cond ((form-of-p form name) form)
+        ((consp form) (or (use-in name (car form)) (use-in name (cdr form))))))
+
+(defun runaway-remedy (task)
+  "Return in sentences how TASK, which runs away, can be made to wait."
+  (let* ((form (find-if (lambda (form)
+                          (form-of-p form "LOOP" "HANDLE-FAILURE" "WITH-FAILURE-HANDLING"))
+                        (plan-backtrace task (task-frame task))))
+         (loop-p (form-of-p form "LOOP"))
+         (wait (and loop-p (use-in "WAIT-FOR" form))))
+    (cond (wait
+           (format nil "~A does not wait while that is true already. Wait until it is false too, ~
+                        or write (wait-time 1)." (form-text wait)))
+          ((and form (not loop-p) (use-in "RETRY" form))
+           (one-line "If it fails again at once, write (wait-time 1) before (retry), or count how
+often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
+          (t "If it is to wait, write (wait-time 1) there."))))
+
 (defun warn-of-runaway (runner)
   "Queue a warning that names a task of RUNNER that has used all its steps, once for each form."
   (let* ((task (find :ready (append (runner-spent runner)
@@ -118,8 +142,8 @@ returns true if it brought something new. Return :idle or :budget."
     (when (and task (not (member form (runner-warned runner))))
       (push form (runner-warned runner))
       (warn-at-once "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
-                    " in " (task-label task) "; time passes all the same. If "
-                    "it is to wait, write (wait-time 1) there."))))
+                    " in " (task-label task) "; time passes all the same. "
+                    (runaway-remedy task)))))
 
 (defun react-hearing (runner hear)
   "Let RUNNER react, as RUN-ROUNDS does."
