@@ -79,6 +79,14 @@
                                            (rpl:fail :robot-blocked))))))
                         "Plan failure :ROBOT-BLOCKED")))
 
+(test par-at-least.says-how-many-of-the-attempts-failed
+  (flet ((text (plan) (princ-to-string (rpl:run-plan-alone plan))))
+    (is (string= "1 of 2 attempts failed: Plan failure :A"
+                 (text (plan-of (rpl:par-at-least 2 (rpl:fail :class :a) (rpl:wait-time 1))))))
+    (is (string= "All 2 attempts failed: Plan failure :A; Plan failure :B"
+                 (text (plan-of (rpl:par-at-least 1 (rpl:fail :class :a)
+                                  (rpl:fail :class :b))))))))
+
 ;;; Policies.
 
 (test with-named-policy.says-that-init-returned-nil

@@ -25,13 +25,15 @@ and FAILURES so far, last first."
      (push result (tally-values tally)))
     (:failed (push result (tally-failures tally)))))
 
-(defun decide-by-tally (task frame tally)
-  "End what TASK waits in at FRAME if TALLY says that it succeeds, or can do so no more."
+(defun decide-by-tally (task frame tally branches)
+  "End what TASK waits in at FRAME if TALLY, of so many BRANCHES, says that it succeeds, or can do
+so no more."
   (cond ((zerop (tally-missing tally))
          (complete task (reverse (tally-values tally))))
         ((> (tally-missing tally) (tally-left tally))
          (decide task (failure-of (make-condition 'composite-failure
-                                                  :failures (reverse (tally-failures tally)))
+                                                  :failures (reverse (tally-failures tally))
+                                                  :attempts branches)
                                   task frame)))))
 
 (define-construct par-at-least (count &body branches)
@@ -54,4 +56,4 @@ CRAM's statecharts of 2026 have a PAR with minimum_success)."
   (:child-ended
    (cond ((eq how :escaped) (decide task result))
          (t (count-end memory how result)
-            (decide-by-tally task frame memory)))))
+            (decide-by-tally task frame memory (length branches))))))

@@ -24,7 +24,9 @@ this; (fail :class name ...) makes one of them, or a plain one of class NAME."))
 
 (addition composite-failure)
 (define-condition composite-failure (plan-failure)
-  ((failures :initarg :failures :initform '() :reader composite-failures))
+  ((failures :initarg :failures :initform '() :reader composite-failures)
+   ;; How many attempts were made, if not as many as there are failures.
+   (attempts :initarg :attempts :initform nil :reader composite-attempts))
   (:documentation "Everything that could have been tried has failed."))
 
 (addition lisp-failure)
@@ -60,8 +62,11 @@ innermost first.")
             (and (failure-class failure) (safe-text (failure-class failure)))
             (mapcar #'safe-text (failure-data failure))))
   (:method ((failure composite-failure) stream)
-    (format stream "All ~D attempts failed: ~{~A~^; ~}" (length (composite-failures failure))
-            (mapcar #'failure-text (composite-failures failure))))
+    (let* ((count (length (composite-failures failure)))
+           (attempts (or (composite-attempts failure) count)))
+      (format stream "~:[~D of ~;All ~*~]~D attempts failed: ~{~A~^; ~}"
+              (= count attempts) count attempts
+              (mapcar #'failure-text (composite-failures failure)))))
   (:method ((failure lisp-failure) stream)
     (format stream "Lisp error in a plan: ~A" (failure-text (lisp-failure-condition failure)))))
 
