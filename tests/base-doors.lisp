@@ -165,6 +165,21 @@
 (defun write-word (file)
   (base:write-file-anew (lambda (out) (write-string "word" out)) file "the word"))
 
+(test files.with-write-protection-are-not-replaced
+  "Also by the superuser, who may write any."
+  (call-in-directory
+   (lambda (directory)
+     (let ((file (merge-pathnames "word.txt" directory)))
+       (write-word file)
+       (sb-posix:chmod file #o444)
+       (handler-case (write-word file)
+         (base:misuse (trouble)
+           (is (search "it is write-protected. What was there is as before; give the name"
+                       (princ-to-string trouble))))
+         (:no-error (path) (is (null path))))
+       (sb-posix:chmod file #o644)
+       (is-true (write-word file))))))
+
 (test files.keep-their-permissions-when-written-anew
   (call-in-directory
    (lambda (directory)

@@ -338,6 +338,13 @@ program, whatever has been typed."
     (dolist (entry entries) (cli::add-entry history entry))
     (cli::save-entry history)))
 
+(test history.is-not-added-to-where-it-is-write-protected
+  (with-history-file (file)
+    (type-into-history file "go")
+    (sb-posix:chmod file #o444)
+    (type-into-history file "turn 1")
+    (is (equal '("go") (cli::history-entries (cli::make-history file))))))
+
 (test history.is-there-in-the-next-session
   (with-history-file (file)
     (let ((entries (list "turn 1" (format nil "(list 1~%  \"a\\nb\")") "größer" "\\")))

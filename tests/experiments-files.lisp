@@ -35,6 +35,16 @@
       (:device (sb-posix:symlink "/dev/zero" name))
       (:nothing (sb-posix:symlink "/no/such/file" name)))))
 
+(test directories.are-left-alone-where-a-table-is-write-protected
+  (define-walk)
+  (dolist (name '("rows.csv" "machine.csv" "experiment.txt"))
+    (with-directories (directory)
+      (walk directory :trials 1)
+      (let* ((file (uiop:subpathname directory name)) (text (base:file-text file)))
+        (sb-posix:chmod file #o444)
+        (signals base:ars-magna-error (walk directory :trials 2))
+        (is (string= text (base:file-text file)))))))
+
 (test directories.have-plain-files-only
   (define-walk)
   (dolist (kind '(:pipe :directory :device :nothing))

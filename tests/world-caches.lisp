@@ -82,6 +82,17 @@
                (is (equalp built (grid-of (apply #'cached-map *cached-clauses*))))
                (is (search "is damaged" (first (message-texts))) "~D bytes" size)))))
 
+(test cache.leaves-files-alone-that-are-write-protected
+  (with-fresh-cache
+    (let ((built (grid-of (apply #'cached-map *cached-clauses*))))
+      (damage-cache 40 99)
+      (let ((octets (cache-octets)))
+        (sb-posix:chmod (cache-file) #o444)
+        (is (equalp built (grid-of (apply #'cached-map *cached-clauses*))))
+        (is (search "cannot be written: it is write-protected" (format nil "~{~A~}" (message-texts))))
+        (is (equalp octets (cache-octets)))
+        (sb-posix:chmod (cache-file) #o644)))))
+
 (test cache.leaves-files-alone-that-are-none
   (with-fresh-cache
     (with-open-file (out (ensure-directories-exist (cache-file)) :direction :output)

@@ -42,6 +42,7 @@ if the newest entry is not in it."
 
 (defun call-with-history-file (function file)
   "Call FUNCTION with a stream that appends to FILE."
+  (check-unprotected file)
   (with-open-file (out file :direction :output :if-exists :append :if-does-not-exist :create
                             :external-format :utf-8)
     (funcall function out)))

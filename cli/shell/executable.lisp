@@ -26,9 +26,10 @@
   (settle-fingerprints)
   (setf *saved-by-user-p* t)
   (let ((path (native-path name)))
-    (when (existing-path path) (delete-file path))
-    (handler-case (sb-ext:save-lisp-and-die path :executable t :save-runtime-options t
-                                                 :toplevel *beginning*)
+    (handler-case (progn (check-unprotected path)
+                         (when (existing-path path) (delete-file path))
+                         (sb-ext:save-lisp-and-die path :executable t :save-runtime-options t
+                                                        :toplevel *beginning*))
       (error (condition)
         (reject-line "~A cannot be saved: ~A" name (one-line (own-text condition)))))))
 

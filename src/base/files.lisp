@@ -41,6 +41,10 @@ directory; ~ and ~/ are the home directory."
   (let ((name (if (and (pathnamep file) (not (many-files-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
+(defun file-size (path)
+  "Return how many bytes the file PATH has."
+  (with-open-file (in path :element-type '(unsigned-byte 8)) (file-length in)))
+
 (defun existing-path (path)
   "Return the truename of the file PATH, or NIL if there is none, or it is a directory."
   (uiop:file-exists-p path))
@@ -69,6 +73,19 @@ as they are, with nothing to be filled in. Signals an error if the system refuse
 nothing."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (native-name path))))))
+
+(defun write-protected-p (path)
+  "True if nobody may write the file PATH, by its permissions, or this process may not."
+  (let ((name (native-name path)))
+    (or (zerop (logand #o222 (sb-posix:stat-mode (sb-posix:stat name))))
+        (handler-case (progn (sb-posix:access name sb-posix:w-ok) nil)
+          (sb-posix:syscall-error () t)))))
+
+;; Renaming asks for the permissions of the directory only, and the superuser may write anything.
+(defun check-unprotected (path)
+  "Signal an error if there is a file PATH, a pathname, and it is write-protected."
+  (when (and (existing-path path) (write-protected-p path))
+    (error "it is write-protected")))
 
 (defun dangling-link-p (path)
   "True if PATH, a pathname or string, is a link to something that there is not."

@@ -37,13 +37,17 @@ KIND, a keyword; else NIL."
          (not (eq kind (first entry)))
          (third entry))))
 
-(defun check-not-foreign (file kind what)
-  "Signal MISUSE if there is something called FILE that is neither empty nor of KIND, a WHAT, whole
-or damaged, or that cannot be told."
+(defun foreign-file-p (file kind)
+  "True if there is something called FILE that is neither empty nor of KIND, whole or damaged, or
+that cannot be told."
   (let ((path (ignore-errors (probe-file file))))
-    (unless (or (null path)
-                (ignore-errors
-                 (and (plain-file-p path)
-                      (or (string= "" (beginning-of-file path))
-                          (eq kind (first (known-beginning path)))))))
-      (reject-use "~A is no ~A, and is left as it is. Give another name." (shown-name file) what))))
+    (and path
+         (not (ignore-errors
+               (and (plain-file-p path)
+                    (or (string= "" (beginning-of-file path))
+                        (eq kind (first (known-beginning path))))))))))
+
+(defun check-not-foreign (file kind what)
+  "Signal MISUSE if there is something called FILE that is neither empty nor of KIND, a WHAT."
+  (when (foreign-file-p file kind)
+    (reject-use "~A is no ~A, and is left as it is. Give another name." (shown-name file) what)))

@@ -44,12 +44,12 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; files, processes
   (:export #:native-name #:native-path #:native-path-of-directory #:path-called #:existing-path
            #:missing-directory #:many-files-p
-           #:replace-file #:plain-file-p #:dangling-link-p
+           #:replace-file #:plain-file-p #:check-unprotected #:dangling-link-p #:file-size
            #:unusable-file-text #:shown-name
            #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number #:note-kind-of-file #:file-advice
-           #:check-not-foreign
+           #:foreign-file-p #:check-not-foreign
            #:copy-permissions #:temporary-file-prefix #:remove-abandoned-files
            #:environment-value #:real-microseconds #:date-and-time #:run-command #:run-attached
            #:run-filter)

@@ -4,8 +4,8 @@
 
 (defun new-file-for (file)
   "Return the absolute path of the file that is to be written for FILE: where a link leads to, if it
-is one. Signals an error if there is something that is no file of bytes, or no directory for it, or
-the name is illegible."
+is one. Signals an error if there is something that is no file of bytes or is write-protected, or no
+directory for it, or the name is illegible."
   (when (many-files-p file) (error *many-files-text*))
   (check-name-legible file)
   (when (dangling-link-p file)
@@ -14,6 +14,7 @@ the name is illegible."
                   (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
     (when (and (probe-file path) (not (plain-file-p path)))
       (error "it is a directory or a device"))
+    (check-unprotected path)
     (unless (uiop:directory-exists-p (uiop:pathname-directory-pathname path))
       (error "there is no such directory"))
     path))

@@ -58,9 +58,11 @@
     words))
 
 (defun write-words (words path)
-  "Write WORDS to the file PATH, which is whole at every moment: it is a new file's name at last."
+  "Write WORDS to the file PATH, which is whole at every moment: it is a new file's name at last.
+Signals an error if PATH is write-protected."
   (ensure-directories-exist path)
   (remove-abandoned-files (uiop:pathname-directory-pathname path))
+  (check-unprotected path)
   (call-with-own-lisps-dice
    (lambda ()
      (uiop:with-temporary-file (:stream out :pathname new :element-type '(unsigned-byte 64)

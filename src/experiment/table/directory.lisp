@@ -117,17 +117,15 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
     (check-beginning file columns)
     (let ((end (map-lines (constantly nil) file)))
       (unless (= end (file-size file))
-        (call-writing (lambda () (cut-file file end)) file))
+        (call-writing (lambda () (check-unprotected file) (cut-file file end)) file))
       (plusp end))))
-
-(defun file-size (file)
-  (with-open-file (in file :element-type '(unsigned-byte 8)) (file-length in)))
 
 (defun open-table (file columns)
   "Return a stream that appends to the table FILE, which is begun with COLUMNS if it has no lines."
   (let ((new (not (cut-broken-line file columns)))
         (stream (call-writing
                  (lambda ()
+                   (check-unprotected file)
                    (open file :direction :output :if-exists :append :if-does-not-exist :create
                               :external-format :utf-8))
                  file)))
