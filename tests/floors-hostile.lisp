@@ -154,6 +154,33 @@
           (uiop:delete-empty-directory folder))
         (is (equal '("another map") (uiop:read-file-lines file)))))))
 
+(test export.replaces-a-pair-and-nothing-else
+  "Also a pair whose description somebody has written; but no image that it does not name."
+  (with-own-definitions
+    (eval '(world:defmap plain-room (6 5) (rect (0 0) (5 4) slate 1)))
+    (call-in-directory
+     (lambda (directory)
+       (let ((description (merge-pathnames "room.yaml" directory))
+             (image (merge-pathnames "room.pgm" directory)))
+         (flet ((put (file text)
+                  (base:call-replacing-file (lambda (out) (write-string text out)) file))
+                (refused-p (words file)
+                  (let ((text (base:read-file-into-string file)))
+                    (handler-case (progn (ars:export-map 'plain-room description) nil)
+                      (ars:unusable-floor (condition)
+                        (and (search words (princ-to-string condition))
+                             (string= text (base:read-file-into-string file))))))))
+           (put image "my drawing")
+           (is-true (refused-p "room.pgm: it is not the image of " image))
+           (is (null (base:existing-path description)))
+           (put description (format nil "# mine~%image: other.pgm~%"))
+           (is-true (refused-p "room.yaml: it is not the description of a map" description))
+           (put description (format nil "# mine~%image: room.pgm~%"))
+           (is-true (ars:export-map 'plain-room description))
+           (is-true (ars:export-map 'plain-room description))
+           (put description "notes: none")
+           (is-true (refused-p "room.yaml: it is not the description of a map" description))))))))
+
 (defun spoiled-text (text dice)
   "Return TEXT with some characters changed, left out or put in, as DICE say."
   (dotimes (i (1+ (base:roll-index 4 dice)) text)

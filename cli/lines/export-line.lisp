@@ -5,7 +5,8 @@
 (define-line "EXPORT" (session (file :file "a name that ends in .yaml"))
     (:seeing)
   "Write the walls of the map that the robot is in into FILE, an occupancy grid as ROS's map_server
-keeps them, and beside it an image in PGM; files of these names are replaced. IMPORT reads them."
+keeps them, and beside it an image in PGM. A pair that is there is replaced, other files are not.
+IMPORT reads them."
   (multiple-value-bind (description image)
       (export-map (world-map (robot-world (session-robot))) file)
     (format t "~A~%~A~%" (native-name description) (native-name image))))

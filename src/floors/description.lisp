@@ -142,7 +142,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
   (check-readable file)
   (let ((advice (file-advice file :floor)))
     (when advice (reject-floor file nil "~A" advice)))
-  (let ((size (with-open-file (in file :element-type '(unsigned-byte 8)) (file-length in))))
+  (let ((size (file-size file)))
     (when (< +most-octets+ size)
       (reject-floor file nil "it has ~D bytes, and the description of a floor at most ~D; give the ~
                               .yaml file that names the image"

@@ -105,6 +105,25 @@ not possible."
     (reject-argument 'export-map 'file file
                      "a name without line ends and the like, which cannot stand in the file")))
 
+(defun image-named-in (file)
+  "Return the truename of the image that the description FILE names, or NIL if it is none."
+  (ignore-errors
+   (check-description-file file)
+   (let ((entries (read-entries file (file-text file))))
+     (truename (image-in file (required-entry file "image" entries))))))
+
+(defun check-pair (path image)
+  "Signal UNUSABLE-FLOOR if there is a file PATH that is no description of a map, or a file IMAGE
+that PATH does not name."
+  (let ((named (image-named-in path)) (there (ignore-errors (existing-path image))))
+    (flet ((reject (file what)
+             (reject-floor file nil "it is not ~A, and is left as it is. Give another name, or ~
+                                     remove it" what)))
+      (when (and (null named) (foreign-file-p path :floor))
+        (reject path "the description of a map"))
+      (unless (or (null there) (equal there named) (zerop (file-size there)))
+        (reject image (format nil "the image of ~A" (native-name path)))))))
+
 (addition export-map)
 (defun export-map (map file &key unknown)
   "Write the walls of MAP, a map or its name, as an occupancy grid for ROS's map_server: the YAML
@@ -113,8 +132,9 @@ is called the same. ~/ is the home directory. A pixel is a cell, as wide as MAP-
 IMPORT-MAP makes the same cells of it. UNKNOWN says, as for IMPORT-MAP, which walls are written as
 what nobody knows: a substance, or a list of that and a parameter, such as (glass 5); NIL and :WALLS
 say none; a substance that MAP has no walls of is for no pixel. Substances and things are not
-written. Files of these names are replaced. Return the truenames of both. Signals UNUSABLE-FLOOR,
-WRONG-ARGUMENT and UNKNOWN-NAME."
+written. A description of a map that is there is replaced, and the image that it names. Return the
+truenames of both. Signals UNUSABLE-FLOOR, as where something else has one of these names, and
+WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they were."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-said-p unknown)
                   "the name of a substance, or a list of that and a parameter, as in (glass 5)")
@@ -123,6 +143,7 @@ WRONG-ARGUMENT and UNKNOWN-NAME."
     (let* ((grid (map-grid map unknown))
            (image (make-pathname :type "pgm" :defaults path))
            (written nil))
+      (check-pair path image)
       (flet ((write-beside (description)
                (declare (ignore description))
                (setf written (write-floor-file image :latin-1
