@@ -30,6 +30,18 @@ mkdir \"$cache\"
     (dolist (part (list "ARS MAGNA " (lisp-implementation-version) "bordeaux-threads "))
       (is (search part text) "~S lacks ~A" text part))))
 
+(test cores.take-the-directory-for-temporary-files-from-the-environment
+  "Not from that of the process that built them."
+  (call-in-new-directory
+   (lambda (directory)
+     (with-input-from-string (in "(princ (uiop:temporary-directory))")
+       (is (search (base:native-name directory)
+                   (nth-value 1 (base:run-command
+                                 "env" (list (format nil "TMPDIR=~A" (base:native-name directory))
+                                             (base:native-name (project-file "cli/ars-magna"))
+                                             "--batch")
+                                 :input in :output :string))))))))
+
 (test caches.are-one-for-each-sbcl
   (is (equal '("SBCL-1.2.3-odd" "no-SBCL" "SBCL-1.2.3-odd")
              (lines-of-shell "XDG_CACHE_HOME=$root/caches

@@ -246,6 +246,8 @@ value."
   "Run ./cli/ars-magna: do what the arguments of this process say, and end it. The argument --probe
 only asks whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
+  ;; The core was perhaps saved where the environment names another.
+  (uiop:setup-temporary-directory)
   (die-of-termination)
   (mind-interrupts)
   (call-on-continuing #'take-terminal-again)
