@@ -52,6 +52,45 @@ name, in Nisp's syntax and with a decimal fraction."
                           "~A" name)))
           (delete-file (base:native-path file)))))))
 
+(test experiments.may-be-in-files-and-directories-of-any-name
+  "Lisp takes * ? and [ for patterns; the system and its users do not."
+  (base:with-own-definitions ()
+    (dolist (name '("s*t?" "s[x"))
+      (call-in-directory
+       (lambda (directory)
+         (let* ((inner (base:native-path-of-directory
+                        (format nil "~A~A" (base:native-name directory) name)))
+                (file (format nil "~A~A.lisp" (base:native-name inner) name))
+                (rows (format nil "~Arows ~:*~A" (base:native-name inner) name)))
+           (base:make-directories inner)
+           (base:call-replacing-file
+            (lambda (out)
+              (format out "(defmap shed (5 5 :cache \"shed.map\")) (defrobot hen (shed (2 2) 0))~@
+                           (defun half (x) (/ x 2))~@
+                           (defexperiment rest-a-while (:robots hen) (:trials 2) (:limit 3)~@
+                             (:run (run-ticks (half 2))) (:success t))"))
+            (base:native-path file))
+           (let ((experiment (cli::experiment-called file)))
+             (is (equal file (experiment:experiment-file experiment)))
+             (experiment:run-experiment experiment :directory rows :stream nil)
+             (is (= 2 (experiment:count-rows rows)))
+             (is-true (base:existing-path (base:native-path
+                                           (format nil "~Ashed.map" (base:native-name inner))))
+                      "the cache is beside the file")
+             (is (search (format nil "experiment ~A.lisp rest" name)
+                         (base:file-text (base:native-path
+                                          (format nil "~A/experiment.txt" rows))))))))))))
+
+(test mistakes.in-files-of-any-name-are-told-with-that-name-and-line
+  (call-in-directory
+   (lambda (directory)
+     (let ((file (format nil "~As*t.lisp" (base:native-name directory))))
+       (base:call-replacing-file (lambda (out) (format out "~%(defmap shed (5 5) (wal (1 1)))"))
+                                 (base:native-path file))
+       (handler-case (progn (cli::load-lisp (base:native-path file)) (fail))
+         (base:malformed-definition (condition)
+           (is (search (format nil "~A, line 2" file) (princ-to-string condition)))))))))
+
 ;;; What cannot be read.
 
 (defun trouble-in-file (text)

@@ -35,6 +35,12 @@ numbers."
   "Return when the file called NAME was written when its forms were evaluated one by one, or NIL."
   (gethash name *dates-of-files*))
 
+(defun evaluated-file-p (namestring)
+  "True if NAMESTRING, one of Lisp's or NIL, is of a file whose forms have been evaluated."
+  (and namestring
+       (not (many-files-p namestring))
+       (date-of-file (native-name namestring))))
+
 (defun call-as-from-file (function path)
   "Call FUNCTION, which evaluates forms that have been read from the file PATH: the functions that
 come of it are from there."
@@ -42,7 +48,8 @@ come of it are from there."
     (setf (gethash name *dates-of-files*) (file-write-date path))
     ;; What a unit says of itself at its end, that it was left, is no news to whoever leaves it.
     (let ((*error-output* (make-broadcast-stream)))
-      (with-compilation-unit (:source-namestring name)
+      ;; SBCL makes a pathname of it, as Lisp reads one.
+      (with-compilation-unit (:source-namestring (namestring path))
         (let ((*error-output* errors)) (funcall function))))))
 
 (defun file-of-source (source)

@@ -125,7 +125,7 @@ is not true, or else another."
 ;; Who compiles or loads another file meanwhile has functions of that.
 (defun apply-in-own-file (function arguments)
   "Apply FUNCTION, which compiles or loads a file, to ARGUMENTS."
-  (call-as-other-file (lambda () (apply function arguments)) #'date-of-file))
+  (call-as-other-file (lambda () (apply function arguments)) #'evaluated-file-p))
 
 ;;; SBCL has no hook for the end of a unit.
 

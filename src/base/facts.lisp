@@ -133,7 +133,8 @@ stands now, and what it begins with."
         for place = (and file (entry-head entry) (not (same-name-p 'procedure
                                                                    (registry-kind registry)))
                          (ignore-errors
-                           (first (definition-positions (file-text file) (entry-head entry)))))
+                           (first (definition-positions (file-text (native-path file))
+                                                        (entry-head entry)))))
         when place
           collect (list file (first place) (first (entry-head entry)))))
 

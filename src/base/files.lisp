@@ -41,6 +41,11 @@ directory; ~ and ~/ are the home directory."
   (let ((name (if (and (pathnamep file) (not (many-files-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
+(defun name-in-directory (path)
+  "Return the name of the file PATH, as the system knows it, without its directories."
+  (let ((name (native-name path)))
+    (subseq name (1+ (or (position #\/ name :from-end t) -1)))))
+
 (defun file-size (path)
   "Return how many bytes the file PATH has."
   (with-open-file (in path :element-type '(unsigned-byte 8)) (file-length in)))

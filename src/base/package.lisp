@@ -44,7 +44,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; files, processes
   (:export #:native-name #:native-path #:native-path-of-directory #:path-called #:existing-path
            #:missing-directory #:many-files-p
-           #:replace-file #:plain-file-p #:check-unprotected #:dangling-link-p #:file-size
+           #:replace-file #:plain-file-p #:check-unprotected #:dangling-link-p #:name-in-directory
+           #:file-size
            #:unusable-file-text #:shown-name
            #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory

@@ -17,12 +17,14 @@
 
 (defun source-here ()
   "Return the source of the form that is being compiled or loaded, or NIL."
-  (let ((file (text-file (or (edited-file) *compile-file-truename* *load-truename*))))
+  (let ((file (text-file (if (edited-file)
+                             (native-path (edited-file))
+                             (or *compile-file-truename* *load-truename*)))))
     (when file
-      (ignore-errors (list (namestring file) (file-digest file))))))
+      (ignore-errors (list (native-name file) (file-digest file))))))
 
 (defun source-file (source)
-  "Return the name of the file of SOURCE, a string, or NIL."
+  "Return what the system calls the file of SOURCE, a string, or NIL."
   (first source))
 
 ;;; Finding a form in a text.
@@ -180,12 +182,12 @@ first, and its number."
   "A list of the file of which TEXT-OF-FILE was asked last, when it was written, and its text.")
 
 (defun text-of-file (file)
-  "Return the text of FILE, as FILE-TEXT does, which is asked for again and again."
-  (let ((written (file-write-date file)))
+  "Return the text of FILE, a native name, as FILE-TEXT does, which is asked for again and again."
+  (let ((written (file-write-date (native-path file))))
     (destructuring-bind (last-file last-written text) *last-file*
       (if (and (equal file last-file) (eql written last-written))
           text
-          (third (setf *last-file* (list file written (file-text file))))))))
+          (third (setf *last-file* (list file written (file-text (native-path file)))))))))
 
 (defun line-of-clause (text form clause)
   "Return the line in TEXT on which CLAUSE of the definition FORM begins, that of the definition if
@@ -206,14 +208,14 @@ CLAUSE is not found in it, or NIL; and which of the definitions of that name it 
 (defun part-in-file-p (file form part)
   "True if a form in FILE, as that is now, has operator and name of FORM, and PART, a list, in it."
   (ignore-errors
-    (let ((text (read-file-into-string file)))
+    (let ((text (read-file-into-string (native-path file))))
       (loop for (start end) in (definition-positions text form)
               thereis (form-position text part start end)))))
 
 (defun read-definition-again (file form ordinal)
   "Return the definition that was FORM, number ORDINAL of its name, as it is in FILE now. Signals
 MISUSE if it is not there."
-  (let* ((text (read-file-into-string file))
+  (let* ((text (read-file-into-string (native-path file)))
          (place (position-of-definition (definition-positions text form) ordinal)))
     (unless place
       (reject-use "~A has no (~(~A ~A~) ...) that can be read." file (first form) (second form)))

@@ -354,12 +354,12 @@ left alone: nobody said that they may go."
       (warning-set (format nil "~A~@[ to ~A~] are of an older series, which was longer than this ~
                                 one of ~D. Delete them before you make a film of the files."
                            (shown-name (first older))
-                           (and (rest older) (file-namestring (first (last older)))) count)))))
+                           (and (rest older) (name-in-directory (first (last older)))) count)))))
 
 (defun files-in-words (files)
   "Return what FILES, one or more of a series, the last first, are called."
   (format nil "~A~@[ to ~A~]" (shown-name (first (last files)))
-          (and (rest files) (file-namestring (first files)))))
+          (and (rest files) (name-in-directory (first files)))))
 
 (defun call-for-series (function files)
   "Call FUNCTION, which writes the next file of a series of which FILES, the last first, are there.

@@ -66,14 +66,9 @@ stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals 
                  (write-char char out))
         (write-char #\' out))))
 
-(defun bare-name (path)
-  "Return the name of the file PATH, as the system knows it, without its directories."
-  (let ((name (native-name path)))
-    (subseq name (1+ (or (position #\/ name :from-end t) -1)))))
-
 (defun image-name (path)
   "Return how a description beside it calls the image PATH."
-  (let ((name (bare-name path)))
+  (let ((name (name-in-directory path)))
     ;; Who reads it might take ~ for a home directory.
     (if (char= #\~ (char name 0))
         (concatenate 'string "./" name)
@@ -101,7 +96,7 @@ not possible."
   (unless (member (pathname-type path) '("yaml" "yml") :test #'equalp)
     (reject-argument 'export-map 'file file
                      "a name that ends in .yaml; the image goes beside it"))
-  (unless (every #'graphic-char-p (bare-name path))
+  (unless (every #'graphic-char-p (name-in-directory path))
     (reject-argument 'export-map 'file file
                      "a name without line ends and the like, which cannot stand in the file")))
 

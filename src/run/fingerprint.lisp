@@ -142,7 +142,7 @@
                   collect (list :manipulation (name-string (manipulation-name manipulation))))))
 
 (defun file-name-of (source)
-  (file-namestring (native-path (source-file source))))
+  (name-in-directory (native-path (source-file source))))
 
 ;;; What they are.
 

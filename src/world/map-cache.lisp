@@ -177,7 +177,8 @@ the definition at hand stands in, or from the current directory if that was type
         (file (source-file (current-source))))
     (merge-pathnames (path-called name)
                      (if file
-                         (merge-pathnames (uiop:pathname-directory-pathname file) directory)
+                         (merge-pathnames (uiop:pathname-directory-pathname (native-path file))
+                                      directory)
                          directory))))
 
 (defun usable-cache-path (map)

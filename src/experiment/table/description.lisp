@@ -12,10 +12,9 @@
       (prin1-to-string form))))
 
 (defun experiment-file (experiment)
-  "Return the name of the file that EXPERIMENT is from, or NIL."
-  (let* ((entry (lookup-entry (experiment-name experiment) *experiments*))
-         (file (and entry (source-file (entry-source entry)))))
-    (and file (native-name file))))
+  "Return what the system calls the file that EXPERIMENT is from, or NIL."
+  (let ((entry (lookup-entry (experiment-name experiment) *experiments*)))
+    (and entry (source-file (entry-source entry)))))
 
 (defun file-of-experiment (experiment)
   "Return the name of the file that EXPERIMENT is from, without its directory, or NIL."

@@ -37,7 +37,8 @@ is no git, or DIRECTORY is in no tree of it."
          ;; The program may have been carried to where there are no sources.
          (system (asdf:registered-system "ars-magna"))
          (home (and system (asdf:system-source-directory system)))
-         (commits (list (and file (commit-text (uiop:pathname-directory-pathname file)))
+         (commits (list (and file
+                             (commit-text (uiop:pathname-directory-pathname (native-path file))))
                         (and home (probe-file home) (commit-text home)))))
     (remove nil
             (list (format nil "Written ~A by ~A ~A, ~A." (date-and-time)

@@ -15,7 +15,7 @@
   "True in a Lisp that was saved with its experiments: what becomes of their files is no matter.")
 
 (defun short-name (file)
-  (file-namestring (native-path file)))
+  (name-in-directory (native-path file)))
 
 (defun reject-newer-file (file)
   (reject-use "~A has been changed since it was loaded. Load it again, so that what runs is what ~

@@ -79,7 +79,7 @@ empty table count as no data, since they often stand where a table or structure 
       (setf (gethash entry (reach-seen reach)) t)
       (note-part (type-of object) (qualified (entry-name entry)) (or (entry-digest entry) 0) reach)
       (let ((file (source-file (entry-source entry))))
-        (when file (note-file (native-name file) nil reach)))
+        (when file (note-file file nil reach)))
       (if (procedure-p object)
           (visit (procedure-source object) reach)
           (visit-slots object reach)))))
