@@ -53,6 +53,11 @@
           (is (string= "The file /dev/full cannot be written: no space left on device."
                        (base:text-of-condition trouble))))))))
 
+(test files.that-the-system-does-not-let-be-read-are-told-of-without-streams
+  (handler-case (with-open-file (in "/proc/self/mem") (read-line in))
+    (error (trouble)
+      (is (search "/mem cannot be read: input/output error." (base:text-of-condition trouble))))))
+
 (test coordinates.that-are-not-0-are-not-written-as-0
   (loop for (number text) in '((0 "0.0") (-0d0 "-0.0") (-1d-5 "-1.0e-5") (1/100000 "1.0e-5")
                                (4.9d-5 "4.9e-5") (5d-5 "0.0001") (1d-4 "0.0001") (23.2 "23.2")

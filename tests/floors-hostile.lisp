@@ -62,10 +62,25 @@
     (check "line 2: \"floor\" is no line such as" (format nil "# x~%floor~%"))
     (check "line 1: an item of a list stands below no key" (format nil "- 1~%~A" (floor-text)))
     (check "line 7: an item of a list stands below no key" (format nil "~A- 1~%" (floor-text)))
-    (check "bytes that are not UTF-8" (format nil "# ~C~%~A" (code-char 255) (floor-text)))
-    (check "this is an image; give the .yaml file that names it" (pgm-text *corner*))
+    (check "floor.yaml, line 2: it has bytes that are not UTF-8. Save the file in UTF-8."
+           (format nil "# x~%# ~C~%~A" (code-char 255) (floor-text)))
+    (check "it is an image; (import-map FILE) reads the .yaml that names it" (pgm-text *corner*))
     (check "it has 70000 bytes, and the description of a floor at most 65536"
            (make-string 70000 :initial-element #\Newline))))
+
+(test description.that-the-system-does-not-let-be-read-is-refused-in-plain-words
+  (handler-case (progn (ars:import-map "/proc/self/mem") (fail))
+    (ars:unusable-floor (condition)
+      (is (search "mem: the system does not let it be read." (princ-to-string condition))))))
+
+(test image.given-where-a-run-is-read-is-told-from-its-description
+  (with-floor (yaml (pgm-text *corner*))
+    (let ((image (make-pathname :type "pgm" :defaults yaml)))
+      (dolist (reader '(ars:load-journal ars:load-simulation))
+        (handler-case (progn (funcall reader image) (fail))
+          (run:damaged-file (condition)
+            (is (search "it is an image; (import-map FILE) reads the .yaml"
+                        (princ-to-string condition)))))))))
 
 (defun remove-line (line text)
   "Return TEXT without LINE."

@@ -98,7 +98,7 @@
   (with-floor (yaml (corner-png 0 #'list :chunks (concatenate 'string (png-chunk "tEXt" "by: me")
                                                               (png-chunk "prVt" ""))))
     (is (equal *corner-rows* (imported-rows yaml))))
-  (check-complaint "floor.yaml: this is an image; give the .yaml file that names it"
+  (check-complaint "floor.yaml: it is an image; (import-map FILE) reads the .yaml that names it"
                    (floor-complaint (corner-png 0 #'list) "")))
 
 (defun states-of-png (image &rest lines)

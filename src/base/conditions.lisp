@@ -90,6 +90,19 @@ obey, but for newlines and tabs."
 (setf (documentation 'malformed-definition-place 'function)
       "Return the file and line of what makes no sense, a string, or NIL if it was typed.")
 
+(define-condition illegible-file (ars-magna-error)
+  ((file :initarg :file :reader illegible-file-name)
+   (line :initarg :line :reader illegible-file-line))
+  (:report (lambda (condition stream)
+             (format stream "~A, line ~D: it has bytes that are not UTF-8. Save the file in UTF-8."
+                     (native-name (illegible-file-name condition))
+                     (illegible-file-line condition))))
+  (:documentation "A file that is to be read as text has a line that is no text in UTF-8."))
+
+(document-functions
+  illegible-file-name "Return the path of the file that an ILLEGIBLE-FILE is about."
+  illegible-file-line "Return the number of the first line that is no text in UTF-8.")
+
 (addition definition-warning definition-warning-text)
 (define-condition definition-warning (warning)
   ((text :initarg :text :reader definition-warning-text))

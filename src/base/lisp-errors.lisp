@@ -170,13 +170,15 @@ them is ours; or NIL."
   (string= "CASE-FAILURE" (type-of condition)))
 
 ;; What Lisp says shows the stream.
-(defun unwritten-text (condition)
-  "Return our text for the stream error CONDITION if the system refuses output; NIL of others."
+(defun refusal-text (condition)
+  "Return our text for the stream error CONDITION if the system refuses input or output; NIL of
+others."
   (let* ((text (one-line (princ-to-string condition))) (place (search ": " text :from-end t))
-         (file (ignore-errors (pathname (stream-error-stream condition)))))
-    (when (and place (starts-with-subseq "Couldn't write to" text))
-      (format nil "~:[The output~*~;The file ~A~] cannot be written: ~A."
-              file (and file (native-name file))
+         (file (ignore-errors (pathname (stream-error-stream condition))))
+         (input-p (starts-with-subseq "couldn't read from" text)))
+    (when (and place (or input-p (starts-with-subseq "Couldn't write to" text)))
+      (format nil "~:[The ~:[out~;in~]put~*~;The file ~*~A~] cannot be ~:[written~;read~]: ~A."
+              file input-p (and file (native-name file)) input-p
               (string-downcase (string-right-trim "." (subseq text (+ 2 place))))))))
 
 (defun lisp-error-text (condition)
@@ -187,5 +189,5 @@ them is ours; or NIL."
        (arithmetic-error (arithmetic-text condition))
        (sb-ext:name-conflict (conflict-text condition))
        ((or undefined-function unbound-variable) (named-text condition))
-       (stream-error (unwritten-text condition))
+       (stream-error (refusal-text condition))
        (type-error (unless (case-failure-p condition) (type-error-text condition)))))))

@@ -135,7 +135,8 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
 
 ;; PGM in text and in octets, and PNG.
 (dolist (beginning '("P2" "P5" #.(map 'string #'code-char '(137 80))))
-  (note-kind-of-file :image beginning "this is an image; give the .yaml file that names it"))
+  (note-kind-of-file :image beginning
+                     "it is an image; (import-map FILE) reads the .yaml that names it"))
 
 (defun check-description-file (file)
   "Signal UNUSABLE-FLOOR if FILE can be no description of a floor, by its size and beginning."
@@ -148,6 +149,15 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
                               .yaml file that names the image"
                     size +most-octets+))))
 
+(defun description-text (file)
+  "Return the text in FILE. Signals UNUSABLE-FLOOR if it cannot be read."
+  (handler-case (file-text file)
+    (illegible-file (condition)
+      (reject-floor file (illegible-file-line condition)
+                    "it has bytes that are not UTF-8. Save the file in UTF-8"))
+    (stream-error () (reject-floor file nil "the system does not let it be read"))
+    (error (condition) (reject-floor file nil "~A" (reason-of condition)))))
+
 (defun read-description (name)
   "Return the description in the file NAME, a string or pathname. Signals UNUSABLE-FLOOR."
   (let ((file (file-called name)))
@@ -155,5 +165,4 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
     (let ((file (truename file)))
       (description-from
        file
-       (read-entries file (handler-case (file-text file)
-                            (error (condition) (reject-floor file nil (reason-of condition)))))))))
+       (read-entries file (description-text file))))))
