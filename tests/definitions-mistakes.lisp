@@ -291,6 +291,13 @@
                       (funcall (lambda () (world:defmap m (9 9) (wal (1 1) (2 2) bricks 1)))))
         do (is (search "a clause: wall" (first (complaints form))) "~S" form)))
 
+(test mistakes.of-a-dot-in-a-clause-are-told-as-such
+  (dolist (clause '((wall (1 1) (2 2) . bricks) (obj pot (1 1) . 5) (rect . 5)))
+    (is (search "a clause without a dot before its last element"
+                (first (complaints `(world:defmap m (9 9) ,clause))))
+        "~S" clause))
+  (is (search "a clause: wall" (first (complaints '(world:defmap m (9 9) (wal . 5)))))))
+
 (test mistakes.in-use-value-are-asked-about-again
   (with-own-definitions
     (let ((values '((wal (1 1) (2 2) bricks 1) (wall (1 1) (2 2) bricks 1))))

@@ -89,7 +89,8 @@
       (let ((octets (cache-octets)))
         (sb-posix:chmod (cache-file) #o444)
         (is (equalp built (grid-of (apply #'cached-map *cached-clauses*))))
-        (is (search "cannot be written: it is write-protected" (format nil "~{~A~}" (message-texts))))
+        (is (search "cannot be written: it is write-protected"
+                    (format nil "~{~A~}" (message-texts))))
         (is (equalp octets (cache-octets)))
         (sb-posix:chmod (cache-file) #o644)))))
 

@@ -153,7 +153,7 @@
                ((circle (0 0) 1 bricks 1 2) . "(circle (x y)")
                ((door (0 0)) . "wall, rect, circle or obj")
                (17 . "wall, rect, circle or obj")
-               ((wall . 3) . "wall, rect, circle or obj")
+               ((wall . 3) . "without a dot")
                ((obj lamp) . "(obj name (x y) descriptor")
                ((obj lamp (1 2)) . "(obj name (x y) descriptor")
                ((obj lamp 1 ()) . "a position")

@@ -241,10 +241,13 @@ it is left out."
 
 (defun clause-kind (definition clause)
   "Return the kind of CLAUSE: :WALL, :RECT, :CIRCLE or :OBJ."
-  (let ((kind (and (proper-list-p clause) (first clause))))
-    (or (and kind (symbolp kind)
-             (find kind '(:wall :rect :circle :obj) :test #'same-name-p))
-        (reject-clause definition clause "a clause: wall, rect, circle or obj"))))
+  (let* ((name (and (consp clause) (first clause)))
+         (kind (and name (symbolp name)
+                    (find name '(:wall :rect :circle :obj) :test #'same-name-p))))
+    (cond ((null kind) (reject-clause definition clause "a clause: wall, rect, circle or obj"))
+          ((proper-list-p clause) kind)
+          (t (reject-clause definition clause
+                            "a clause without a dot before its last element")))))
 
 (defun warn-of-substance (definition clause)
   "Warn if the substance of CLAUSE may be a slip for one that is defined."
