@@ -22,18 +22,18 @@
   (define-hanging)
   (with-directories (one other)
     (let ((rows (timed-outcomes one :workers 2 :time-limit 1)))
-      (is (equal '(("success" "" 3 "") ("timeout" "" 0 "")) rows))
+      (is (equal '(("success" "" 3 "") ("timeout" "" :none "")) rows))
       ;; It is not run again: this returns although it has no limit.
       (is (equal rows (timed-outcomes one)))
       (is (equal '("TRUE" "FALSE" "TRUE" "FALSE")
                  (mapcar (lambda (hang) (if (search hang (table-text one)) "TRUE" "FALSE"))
-                         '("timeout,,0,,," "timeout,,0,10" "success,,3,10" "error,,"))))
+                         '("timeout,,,,," "timeout,,0" "success,,3,10" "error,,"))))
       (timed-outcomes other :workers 1 :time-limit 3/2)
       (is (string= (table-text one) (table-text other))))))
 
 (test time-limit.may-stand-in-the-experiment
   (define-for-test (:robots ars-worlds:dot) (:trials 1) (:time-limit 1/5) (:run (loop)))
-  (is (equal '(("timeout" "" 0 "")) (outcomes)))
+  (is (equal '(("timeout" "" :none "")) (outcomes)))
   (rejected-clause (:time-limit 0) (:robots ars-worlds:dot) (:run t) (:time-limit 0))
   (signals-wrong-argument experiment:run-experiment
     (experiment:run-experiment 'question :time-limit -1 :stream nil)))

@@ -164,7 +164,7 @@
   (define-for-test (:robots ars-worlds:dot) (:trials 1) (:run (run:run-ticks 3) t)
     (:each-tick (a (when (= 2 (run:simulation-tick)) (loop)))))
   (with-directories (directory)
-    (is (equal '(("timeout" "" 0 "")) (timed-outcomes directory :workers 1 :time-limit 1)))
+    (is (equal '(("timeout" "" :none "")) (timed-outcomes directory :workers 1 :time-limit 1)))
     (is (= 1 (length (series-lines directory))))))
 
 (test series.that-nothing-recorded-are-not-asked-for

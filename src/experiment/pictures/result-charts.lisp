@@ -136,7 +136,7 @@ estimate for a sample."
     (if experiment
         (experiment-limit experiment)
         (loop for sample in (results-samples results)
-              maximize (reduce #'max (sample-ticks sample) :initial-value 0)))))
+              maximize (reduce #'max (remove :none (sample-ticks sample)) :initial-value 0)))))
 
 (defun horizon (samples limit)
   "Return until when curves are drawn: a little longer than any success of SAMPLES took."

@@ -31,7 +31,7 @@ function STOPPING-P returns true."
 (defun timed-out-result (condition trial seed)
   "Return the result of TRIAL of CONDITION, which has SEED, as its time was up."
   (let ((result (make-result condition trial seed)))
-    (setf (result-outcome result) "timeout")
+    (setf (result-outcome result) "timeout" (result-ticks result) nil)
     result))
 
 (defun run-guarded (experiment condition trial stopping-p &optional seconds)

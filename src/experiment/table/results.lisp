@@ -49,7 +49,8 @@
   sample-outcomes "Return a vector of \"success\", \"failure\", \"limit\", \"error\" and
 \"timeout\"."
   sample-reasons "Return a vector of strings that say why trials failed."
-  sample-ticks "Return a vector of the ticks that passed in each trial."
+  sample-ticks "Return a vector of the ticks that passed in each trial; :NONE where its time
+was up."
   sample-errors "Return a vector of what errors there were, strings; \"\" where there was none.")
 
 (defun column ()
@@ -127,7 +128,8 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
     (vector-push-extend (parse-integer trial) (sample-trials sample))
     (vector-push-extend (shared-text outcome shared) (sample-outcomes sample))
     (vector-push-extend (shared-text reason shared) (sample-reasons sample))
-    (vector-push-extend (parse-integer ticks) (sample-ticks sample))
+    (vector-push-extend (if (string= "timeout" outcome) :none (parse-integer ticks))
+                        (sample-ticks sample))
     (loop for column in (sample-measures sample)
           for text in rest
           do (vector-push-extend (value-in text shared) column))

@@ -29,7 +29,7 @@
   (append (trial-texts experiment result)
           (list (result-outcome result)
                 (result-reason result)
-                (princ-to-string (result-ticks result)))
+                (format nil "~@[~D~]" (result-ticks result)))
           (or (result-measures result)
               (make-list (length (experiment-measures experiment)) :initial-element ""))
           (list (result-digest-text result)

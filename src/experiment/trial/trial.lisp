@@ -14,7 +14,7 @@
   (seed 0 :type integer :read-only t)
   (outcome "error" :type string)
   (reason "" :type string)
-  (ticks 0 :type integer)
+  (ticks 0 :type (or null integer))
   (measures '() :type list)
   ;; Lists (tick text...), what was recorded from tick to tick.
   (series '() :type list)
@@ -27,7 +27,7 @@
   result-outcome "Return \"success\", \"failure\", \"limit\", \"error\" or
 \"timeout\"."
   result-reason "Return why the trial failed, a string."
-  result-ticks "Return how many ticks passed."
+  result-ticks "Return how many ticks passed, or NIL if the trial's time was up."
   result-digest "Return the digest of the state at the end, or NIL."
   result-error "Return what error there was, a string; \"\" if none.")
 
