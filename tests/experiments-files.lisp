@@ -45,6 +45,36 @@
         (signals base:ars-magna-error (walk directory :trials 2))
         (is (string= text (base:file-text file)))))))
 
+(test directories.with-something-else-as-their-lock-are-told-so
+  (define-walk)
+  (with-directories (directory)
+    (walk directory :trials 1)
+    (let ((file (uiop:subpathname directory ".lock")))
+      (delete-file file)
+      (make-odd-file :directory file)
+      (handler-case (progn (walk directory :trials 2) (fail))
+        (experiment:damaged-table (condition)
+          (is (search ".lock: it is a directory" (princ-to-string condition)))))
+      (is-true (experiment:read-results directory) "reading needs no lock"))))
+
+(test rows.with-characters-that-no-text-has-are-damaged
+  (define-walk)
+  (dolist (char (list (code-char 0) (code-char 27) (code-char #x9B)))
+    (with-directories (directory)
+      (walk directory :trials 1)
+      (let* ((file (uiop:subpathname directory "rows.csv")) (text (base:file-text file))
+             (place (search "ess," text)))
+        (base:call-replacing-file
+         (lambda (out)
+           (write-string text out :end (+ 4 place))
+           (write-char char out)
+           (write-string text out :start (+ 4 place)))
+         file)
+        (handler-case (progn (walk directory :trials 2) (fail))
+          (experiment:damaged-table (condition)
+            (is (search "rows.csv, line 2: This is no row: it has bytes that are no text."
+                        (princ-to-string condition)))))))))
+
 (test directories.have-plain-files-only
   (define-walk)
   (dolist (kind '(:pipe :directory :device :nothing))

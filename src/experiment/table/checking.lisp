@@ -82,6 +82,11 @@ again."
        (every #'digit-char-p (string-left-trim "-" text))
        (ignore-errors (parse-integer text))))
 
+(defun writable-p (text)
+  "True if the simulator may have written TEXT into a table."
+  (declare (type simple-string text))
+  (every #'writable-char-p text))
+
 (defun check-cells (cells columns file number)
   "Signal DAMAGED-TABLE unless CELLS, from the seed's on, of the line NUMBER of FILE, can be so."
   (flet ((check (test column)
@@ -90,12 +95,17 @@ again."
                          (nth (position column columns :test #'string=)
                               (append (make-list (seed-column columns)) cells))
                          column))))
+    (unless (every #'writable-p cells)
+      (reject-row file number "This is no row: it has bytes that are no text."))
     (destructuring-bind (seed trial outcome reason ticks &rest rest) cells
       (declare (ignore reason))
       (check (integer-in seed) "seed")
       (check (typep (integer-in trial) `(integer 1 ,+largest+)) "trial")
       (check (member outcome *outcomes* :test #'string=) "outcome")
-      (check (typep (integer-in ticks) `(integer 0 ,+largest+)) "ticks")
+      ;; Earlier versions wrote 0 for a trial whose time was up.
+      (check (or (typep (integer-in ticks) `(integer 0 ,+largest+))
+                 (and (string= "" ticks) (string= "timeout" outcome)))
+             "ticks")
       (let ((digest (first (last rest 2))))
         (check (or (string= "" digest) (hexadecimal-p digest)) "digest")))))
 

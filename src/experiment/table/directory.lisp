@@ -26,15 +26,20 @@
 (defun machine-file (directory) (file-in directory "machine.csv"))
 (defun description-file (directory) (file-in directory "experiment.txt"))
 
+(defun lock-file (directory) (file-in directory ".lock"))
+
+(defun check-plain (file)
+  "Signal DAMAGED-TABLE if what is called FILE, if anything, is no file of bytes."
+  (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that there is not")
+                       ((and (probe-file file) (not (plain-file-p file)))
+                        "it is a directory, pipe, socket or device"))))
+    (when trouble
+      (reject-table file nil "~A. Remove it, or give another directory." trouble))))
+
 (defun check-files-plain (directory)
   "Signal DAMAGED-TABLE if what is called like a file of DIRECTORY is no file of bytes."
-  (dolist (file (list (rows-file directory) (series-file directory) (machine-file directory)
-                      (description-file directory)))
-    (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that there is not")
-                         ((and (probe-file file) (not (plain-file-p file)))
-                          "it is a directory, pipe, socket or device"))))
-      (when trouble
-        (reject-table file nil "~A. Remove it, or give another directory." trouble)))))
+  (mapc #'check-plain (list (rows-file directory) (series-file directory) (machine-file directory)
+                            (description-file directory))))
 
 (defun directory-called (name)
   "Return the absolute path of the directory NAME, a string or pathname."
@@ -62,10 +67,11 @@
            (reject-use "Another run writes to ~A. Wait for its end, or give another directory."
                        (native-name path))))
     (check-files-plain path)
+    (check-plain (lock-file path))
     (unless (claim-directory path) (reject))
     (unwind-protect
          (multiple-value-bind (done value)
-             (call-with-file-lock function (file-in path ".lock")
+             (call-with-file-lock function (lock-file path)
                                   (lambda ()
                                     (reject-use "~A cannot be written to. Is it read-only?"
                                                 (native-name path))))
