@@ -214,6 +214,15 @@ cells; NIL if there is none."
           collect (way-lists (ars:find-way chart (random-cell map dice) (random-cell map dice)))
           do (change-at-random chart dice))))
 
+(test ways.for-which-there-is-no-room-are-refused-in-words
+  "What is only kept goes first; what it said is found anew."
+  (let ((cost (ars:way-cost 'office '(62 38) '(108.5 70.5))))
+    (handler-case (progn (ways::ensure-room (base:heap-bytes) 16) (fail))
+      (base:misuse (condition)
+        (is (search "for which this Lisp has no room; start it with a larger --dynamic-space-size"
+                    (princ-to-string condition)))))
+    (is (= cost (ars:way-cost 'office '(62 38) '(108.5 70.5))))))
+
 (test ways.are-the-same-when-eight-threads-plan-at-once
   (base:with-own-definitions ()
     (let ((results (make-array 8)))

@@ -16,8 +16,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p
            #:parse-ordinary-lambda-list)
   ;; policy
-  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:make-room #:cell-index
-           #:surely #:tick-count #:document-functions
+  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:make-room #:room-p
+           #:cell-index #:surely #:tick-count #:document-functions
            #:document-restarts #:all-restarts #:restart-documentation)
   ;; public
   (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)

@@ -30,6 +30,13 @@ made: by then these would be in its way, since it moves what can be reached."
     (scrub-stack)
     (sb-ext:gc)))
 
+(defun room-p (octets)
+  "True if this Lisp has room for OCTETS of new objects; garbage is collected if they are many."
+  (flet ((enough-p () (< (+ (dynamic-usage) octets) (* 9/10 (heap-bytes)))))
+    (or (< octets (/ (heap-bytes) 100))
+        (enough-p)
+        (progn (scrub-stack) (give-memory-back) (enough-p)))))
+
 (deftype cell-index ()
   "The index of a grid cell: maps have at most 2^30 cells."
   '(unsigned-byte 30))

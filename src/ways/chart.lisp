@@ -161,16 +161,20 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
 (defun known-field (terrain goal)
   (find goal (terrain-fields terrain) :key #'field-goal))
 
+(defun forget-older-fields (terrain)
+  "Let TERRAIN keep one field less than it may, so that there is room for another."
+  (let ((fields (terrain-fields terrain)))
+    (setf (terrain-fields terrain)
+          (subseq fields 0 (min (length fields) (1- (fields-to-keep terrain)))))))
+
 (defun shared-field (terrain goal)
   "Return the field of TERRAIN with the goal in the node GOAL that all threads share."
   (or (known-field terrain goal)
       (with-lock ((terrain-lock terrain))
         (or (known-field terrain goal)
-            (let ((field (make-field terrain goal)) (others (terrain-fields terrain)))
-              (setf (field-lock field) (make-lock "field")
-                    (terrain-fields terrain)
-                    (cons field (subseq others 0 (min (length others)
-                                                      (1- (fields-to-keep terrain))))))
+            (let ((field (progn (forget-older-fields terrain) (make-field terrain goal))))
+              (setf (field-lock field) (make-lock "field"))
+              (push field (terrain-fields terrain))
               field)))))
 
 (defun take-over-field (chart goal)

@@ -26,6 +26,7 @@ the terrain's: totals are found in it, but no cell changes."
 
 (defun make-field (terrain goal)
   "Return a field of TERRAIN with the goal in the node GOAL; no other total is known in it."
+  (ensure-room (length (terrain-cells terrain)) 16)
   (let* ((cells (terrain-cells terrain)) (size (length cells))
          (field (%make-field goal (terrain-columns terrain) cells
                              (make-amounts size +barred+) (make-amounts size +barred+))))
@@ -35,6 +36,7 @@ the terrain's: totals are found in it, but no cell changes."
 
 (defun copy-field (field)
   "Return a copy of FIELD that nobody shares."
+  (ensure-room (length (field-cells field)) 24)
   (let ((copy (%make-field (field-goal field) (field-columns field) (copy-seq (field-cells field))
                            (copy-seq (field-totals field)) (copy-seq (field-drafts field)))))
     (copy-into-queue (field-queue copy) (field-queue field))

@@ -50,6 +50,31 @@ of places. It does not change, so all threads and copies of runs share it."
 
 (define-shared terrain)
 
+;;; Keeping them.
+
+(define-global **terrains** (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "Lists of terrains by their maps, newest first. Whoever needs one shares it.")
+
+(define-global **terrains-lock** (make-lock "terrains")
+  "Held while a terrain is made, so that none is made twice.")
+
+(defconstant +terrains-kept+ 8
+  "How many terrains of one map are kept, with different clearances and costs.")
+
+(defun forget-fields ()
+  "Keep no field of any terrain. What they say can be computed again."
+  (dolist (terrains (hash-table-values **terrains**))
+    (dolist (terrain terrains) (setf (terrain-fields terrain) '()))))
+
+(defun ensure-room (cells octets)
+  "See that there is room for OCTETS of each of so many CELLS. Signals MISUSE."
+  (let ((all (* cells octets)))
+    (unless (or (room-p all)
+                (progn (forget-fields) (room-p all)))
+      (reject-use "Ways on a map of ~D cells need ~D MB, for which this Lisp has no room; start it ~
+                   with a larger --dynamic-space-size."
+                  cells (ceiling all 1000000)))))
+
 ;;; Cells.
 
 (declaim (inline cell-node node-column node-row))
@@ -128,22 +153,12 @@ nearer than CLEARANCE to the wall's cell: a list of lists (dx offset)."
         (incf index)))))
 
 (defun make-terrain (map clearance costs)
+  (ensure-room (* (map-width map) (map-height map)) 8)
   (let* ((columns (+ 2 (map-width map)))
          (cells (open-ground map columns)))
     (mark-near-walls cells columns clearance)
     (mark-places cells columns map costs)
     (%make-terrain map (map-places map) clearance costs columns cells)))
-
-;;; Keeping them.
-
-(define-global **terrains** (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "Lists of terrains by their maps, newest first. Whoever needs one shares it.")
-
-(define-global **terrains-lock** (make-lock "terrains")
-  "Held while a terrain is made, so that none is made twice.")
-
-(defconstant +terrains-kept+ 8
-  "How many terrains of one map are kept, with different clearances and costs.")
 
 (defun known-terrain (map clearance costs)
   (find-if (lambda (terrain)
