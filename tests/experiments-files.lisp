@@ -45,6 +45,18 @@
         (signals base:ars-magna-error (walk directory :trials 2))
         (is (string= text (base:file-text file)))))))
 
+(test merging.leaves-a-write-protected-description-alone
+  (define-walk)
+  (with-directories (directory other)
+    (walk directory :trials 1)
+    (walk other :trials 2)
+    (let* ((file (uiop:subpathname other "experiment.txt")) (text (base:file-text file)))
+      (sb-posix:chmod file #o444)
+      (delete-file (uiop:subpathname other "rows.csv"))
+      (signals experiment:damaged-table
+        (experiment:merge-results (list directory) :to other))
+      (is (string= text (base:file-text file))))))
+
 (test directories.with-something-else-as-their-lock-are-told-so
   (define-walk)
   (with-directories (directory)

@@ -47,6 +47,7 @@
   "Copy the file SOURCE to DIRECTORY, there to be called NAME."
   (let ((copy (merge-pathnames (native-path name) directory)))
     (make-directories (uiop:pathname-directory-pathname copy))
+    (check-unprotected copy)
     (uiop:copy-file source copy)))
 
 (defun write-pages (book directory)

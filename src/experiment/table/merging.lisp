@@ -7,7 +7,7 @@
   (let ((file (find-if #'existing-path (mapcar #'description-file directories)))
         (own (description-file target)))
     (when (and file (not (equal file own)))
-      (uiop:copy-file file own))))
+      (call-writing (lambda () (check-unprotected own) (uiop:copy-file file own)) own))))
 
 (defun order-of-conditions (directories)
   "Return the names of all conditions in the tables in DIRECTORIES, in order."
