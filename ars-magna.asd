@@ -274,7 +274,7 @@
                    (:file "escapes") (:file "columns") (:file "drawn-line") (:file "console")
                    (:file "asking") (:file "progress") (:file "json") (:file "layout")))
      (:module "editing" :serial t
-      :components ((:file "keys") (:file "changes") (:file "history")
+      :components ((:file "keys") (:file "changes") (:file "growing") (:file "history")
                    (:file "kinds-of-lines") (:file "pasting")
                    (:file "octet-queue") (:file "editor")
                    (:file "search") (:file "tabbing") (:file "ahead")
@@ -286,7 +286,7 @@
                    (:file "company") (:file "listening") (:file "whereabouts") (:file "going-on")
                    (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
-                   (:file "growing") (:file "skipping")
+                   (:file "skipping")
                    (:file "comments") (:file "robot-lines") (:file "finding")
                    (:file "slips")
                    (:file "file-trouble") (:file "forms")

@@ -41,6 +41,15 @@ ok."
     (is (equal '(4) (ends-of-lines (format nil "#|~%~A~%turn 1|#~%turn 2~%" long))))
     (is (equal '(-1 2) (ends-of-lines (format nil "~A~%turn 2~%" long))))))
 
+(test forms.of-many-lines-are-read-in-memory-in-proportion
+  (flet ((bytes-for (form ends)
+           (bytes-consed-by (lambda ()
+                              (is (equal ends (ends-of-lines (format nil "~A~%turn 2~%" form)))))
+                            1)))
+    (let ((lines (format nil "~{~A~%~}" (loop repeat 4000 collect "(list a line of a form)"))))
+      (is (> 150000000 (bytes-for (format nil "(length '(1~%~A))" lines) '(1 4003))))
+      (is (> 150000000 (bytes-for (format nil "(list foo:bar~%~A)" lines) '(-1 4003)))))))
+
 (test comments.may-be-of-any-length
   (let ((long (text-of-bytes *too-many*)))
     (is (equal '(2 4) (ends-of-lines (format nil "; ~A~%turn 1~%# ~:*~A~%turn 2~%" long))))))

@@ -187,9 +187,13 @@ name in *KEY-CODES*."
            :pasted :enter))
 
 (test editing.takes-many-lines-and-long-ones
-  (let ((lines (loop for i below 500 collect (format nil "turn ~D" i)))
+  (let ((lines (loop for i below 20000 collect (format nil "turn ~D" i)))
         (long (make-string 100000 :initial-element #\x)))
     (is (equal lines (keyed-in :paste (format nil "~{~A~%~}" lines) :pasted :enter)))
+    (is (equal lines (keyed-in :paste (format nil "~{~A~C~%~}" (mapcan (lambda (line)
+                                                                         (list line #\Return))
+                                                                       lines))
+                               :pasted :enter)))
     (is (equal (list long) (keyed-in :paste long :pasted :enter)))))
 
 ;;; Tab.
@@ -353,6 +357,19 @@ program, whatever has been typed."
       (type-into-history file "go")
       (is (equal (cons "go" (reverse entries))
                  (cli::history-entries (cli::make-history file)))))))
+
+(test history.keeps-forms-of-many-lines
+  "Neither the stack nor the memory that it takes grows out of proportion."
+  (with-history-file (file)
+    (let ((history (cli::make-history file)) (text (cli::extensible-text "(list")))
+      (cli::add-entry history "(list")
+      (is (> 100000000 (bytes-consed-by (lambda ()
+                                          (dotimes (i 20000)
+                                            (cli::amend-entry history "a line" text)
+                                            (cli::extend-text text "a line")))
+                                        1)))
+      (cli::save-entry history)
+      (is (equal (list text) (cli::history-entries (cli::make-history file)))))))
 
 (test history.is-kept-before-the-next-line-is-typed
   (with-history-file (file)

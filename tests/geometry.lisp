@@ -339,10 +339,10 @@
 
 ;;; Consing.
 
-(defun bytes-consed-by (function)
-  "Return how many bytes 10000 calls of FUNCTION cons."
+(defun bytes-consed-by (function &optional (calls 10000))
+  "Return how many bytes as many CALLS of FUNCTION cons."
   (let ((before (sb-ext:get-bytes-consed)))
-    (dotimes (i 10000) (funcall function))
+    (dotimes (i calls) (funcall function))
     (- (sb-ext:get-bytes-consed) before)))
 
 (test destructive-operations.do-not-cons

@@ -12,16 +12,23 @@
 (defstruct (line-history (:conc-name history-) (:copier nil)
                          (:constructor %make-history))
   "What was typed, newest first. FILE is the pathname of where it is kept, or NIL; UNSAVED-P is true
-if the newest entry is not in it."
+if the newest entry is not in it. GROWING is the text that the line added last goes on from, or
+NIL: the newest entry then has a fill pointer."
   (entries '() :type list)
+  (growing nil :type (or null string))
   (file nil :type (or null pathname) :read-only t)
   (unsaved-p nil :type boolean))
 
 ;;; The file.
 
 (defun entry-on-a-line (entry)
-  (uiop:frob-substrings (uiop:frob-substrings entry '("\\") "\\\\")
-                        (list (string #\Newline)) "\\n"))
+  "Return the line of a file that stands for ENTRY."
+  (with-output-to-string (out)
+    (loop for char across entry
+          do (case char
+               (#\\ (write-string "\\\\" out))
+               (#\Newline (write-string "\\n" out))
+               (t (write-char char out))))))
 
 (defun entry-of-line (line)
   "Return the entry that LINE of a file stands for."
@@ -60,8 +67,17 @@ if the newest entry is not in it."
     (when entries (ignore-errors (shorten-file file entries)))
     (%make-history :entries entries :file file)))
 
+(defun drop-repetition (history)
+  "Leave the newest entry of HISTORY out if it is the same as the one before it."
+  (destructuring-bind (&optional newest before &rest others) (history-entries history)
+    (declare (ignore others))
+    (when (and newest (equal newest before))
+      (pop (history-entries history))
+      (setf (history-unsaved-p history) nil))))
+
 (defun save-entry (history)
   "Write the newest entry into the file of HISTORY, if it is not there."
+  (drop-repetition history)
   (when (and (shiftf (history-unsaved-p history) nil) (history-file history))
     (ignore-errors
      (call-with-history-file (lambda (out)
@@ -74,6 +90,7 @@ if the newest entry is not in it."
 (defun add-entry (history text)
   "Let TEXT, a line that was typed, be the newest entry, unless it is blank or is so already."
   (save-entry history)
+  (setf (history-growing history) nil)
   (unless (or (every #'blank-p text) (equal text (first (history-entries history))))
     (push text (history-entries history))
     (setf (history-unsaved-p history) t)))
@@ -83,10 +100,19 @@ if the newest entry is not in it."
   (and (<= (length start) (length text))
        (string= start text :end2 (length start))))
 
-(defun amend-entry (history text)
-  "Let TEXT take the place of the newest entry, if it begins with that: it goes on over lines."
-  (let ((newest (first (history-entries history))))
-    (when (and newest (begins-with-p text newest))
-      (pop (history-entries history))
-      (setf (history-unsaved-p history) (not (equal text (first (history-entries history)))))
-      (when (history-unsaved-p history) (push text (history-entries history))))))
+(defun begin-growing (history before)
+  "Let the newest entry be BEFORE, a text that begins with it and is about to go on."
+  (pop (history-entries history))
+  (push (extensible-text (copy-seq before)) (history-entries history))
+  (setf (history-growing history) before))
+
+;; That the same text goes on is known without looking through it for each line.
+(defun amend-entry (history line before)
+  "Put LINE, which goes on from the text BEFORE, behind the newest entry, if BEFORE begins with
+that."
+  (let ((newest (first (history-entries history)))
+        (same-p (eq before (history-growing history))))
+    (when (and newest (or same-p (begins-with-p before newest)))
+      (unless same-p (begin-growing history before))
+      (extend-text (first (history-entries history)) line)
+      (setf (history-unsaved-p history) t))))

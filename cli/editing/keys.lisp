@@ -47,9 +47,13 @@
 
 (defun with-newlines (text)
   "Return TEXT, as pasted, with newlines between its lines, but none at its end."
-  (let ((return (string #\Return)) (newline (string #\Newline)))
-    (setf text (uiop:frob-substrings text (list (uiop:strcat return newline) return) newline))
-    (string-right-trim newline text)))
+  (string-right-trim
+   '(#\Newline)
+   (with-output-to-string (out)
+     (loop for last = nil then char
+           for char across text
+           unless (and (char= char #\Newline) (eql last #\Return))
+             do (write-char (if (char= char #\Return) #\Newline char) out)))))
 
 (defun ends-like-p (text end)
   (let ((start (- (length text) (length end))))

@@ -48,25 +48,41 @@ on from another."
         ((after-label line) (let ((text (without-label line)))
                              (and (string/= "" text) text)))))
 
-(defun goes-on-p (text)
-  "True if TEXT, as typed, is Lisp that is not complete."
-  (and (not (comment-p text))
-       (lisp-p text)
-       (handler-case (let ((*read-suppress* t)) (read-from-string text) nil)
-         (end-of-file () t)
-         (error () nil))))
+(defun read-over (text more)
+  "Read past the form that TEXT, as typed, begins, if that is Lisp: MORE, a function of the text so
+far, returns the next line of it, or signals an error at the end."
+  (when (and (not (comment-p text)) (lisp-p text))
+    (handler-case (let ((*read-suppress* t))
+                    (read-preserving-whitespace (text-stream text 0 more)))
+      (error () nil))))
+
+(defun rest-of-form (text lines)
+  "Return which of LINES, as pasted below TEXT, are the rest of the form that it begins, without
+their prompts, and the LINES below them. What was typed at another prompt is not."
+  (let ((taken '()))
+    (flet ((next-line (text)
+             (declare (ignore text))
+             (loop for line = (first lines)
+                   when (or (null lines) (and (after-label line) (typed-line-of line)))
+                     do (error "No line is left for the form.")
+                   do (pop lines)
+                   unless (after-label line)
+                     return (first (push (or (typed-line-of line) line) taken)))))
+      (read-over text #'next-line)
+      (values (nreverse taken) lines))))
 
 (defun typed-by-label (lines)
   "Return what was typed of LINES, as pasted, the first of which has a prompt. What stands below a
 form that is not complete is the rest of it."
-  (loop with form = ""
-        for line in lines
-        for label-p = (after-label line)
-        for typed = (or (typed-line-of line)
-                        (and (not label-p) (goes-on-p form) line))
+  (loop while lines
+        for line = (pop lines)
+        for typed = (typed-line-of line)
         when typed
           collect typed
-          and do (setf form (if label-p typed (format nil "~A~%~A" form typed)))))
+          and when (after-label line)
+                append (multiple-value-bind (rest below) (rest-of-form typed lines)
+                         (setf lines below)
+                         rest)))
 
 (defun typed-lines (lines)
   "Return what was typed of LINES, as pasted: all up to the first with a prompt, which may be the
@@ -85,9 +101,13 @@ has any."
   "Return how many lines of TEXT, as pasted, below the last with a prompt are left out as answers."
   (let* ((lines (lines-in text))
          (start (position-if #'after-label lines :from-end t))
-         (last (and start (nthcdr start lines))))
-    (count-if-not (lambda (line) (or (after-label line) (going-on-p line) (comment-p line)))
-                  (set-difference last (and last (typed-by-label last)) :test #'eq))))
+         (last (and start (nthcdr start lines)))
+         (typed (make-hash-table :test 'eq)))
+    (dolist (line (typed-by-label last)) (setf (gethash line typed) t))
+    (count-if-not (lambda (line)
+                    (or (gethash line typed)
+                        (after-label line) (going-on-p line) (comment-p line)))
+                  last)))
 
 (defun without-answers (text)
   "Return TEXT, as pasted, without the answers to what was typed in it."

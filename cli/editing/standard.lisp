@@ -54,7 +54,7 @@ that is not NIL.")
     (declare (ignore input line before)))
   (:method ((input edited-text) line before)
     (if before
-        (amend-entry (edited-history input) (concatenate 'string before '(#\Newline) line))
+        (amend-entry (edited-history input) line before)
         (add-entry (edited-history input) line))))
 
 ;;; A terminal may paste without saying so, as those do that edit lines themselves. What comes all

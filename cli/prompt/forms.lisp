@@ -6,16 +6,13 @@
 ;;; it is read, after #., is so as often.
 
 (defun read-more (session text)
-  "Return TEXT with the next line of SESSION after it."
-  (let ((line (read-input session +going-on+ text)))
-    (unless line (reject-line "The form is not complete: ~A" (one-line text)))
-    (concatenate 'string text '(#\Newline) line)))
+  "Return the next line of SESSION, which goes on from TEXT."
+  (or (read-input session +going-on+ text)
+      (reject-line "The form is not complete: ~A" (one-line text))))
 
 (defun read-growing (session text start)
   "Return what READ-FORM does, of a form that goes on after TEXT."
-  (let* ((stream (make-instance 'growing-text
-                                :text text :position start
-                                :more (lambda (text) (read-more session text))))
+  (let* ((stream (text-stream text start (lambda (text) (read-more session text))))
          (form (skipping-rest (session (grown-text stream) start)
                  (read-preserving-whitespace stream))))
     (values form

@@ -39,11 +39,10 @@ and the condition that says so; NIL at the end."
     (line-too-long (condition) (values (line-outline condition) condition))))
 
 (defun next-outline (session text)
-  "Return TEXT with the next line of SESSION after it, or its outline. At the end of what is typed,
-signal END-OF-FILE."
-  (let ((line (read-outline session text)))
-    (unless line (error 'end-of-file :stream (session-input session)))
-    (concatenate 'string text '(#\Newline) line)))
+  "Return the next line of SESSION, which goes on from TEXT, or its outline. At the end of what is
+typed, signal END-OF-FILE."
+  (or (values (read-outline session text))
+      (error 'end-of-file :stream (session-input session))))
 
 (defun skip-forms (stream)
   "Read STREAM, a growing text, until no form is open at the end of a line."
@@ -55,9 +54,7 @@ signal END-OF-FILE."
 
 (defun skip-rest (session text start)
   "Read on in SESSION, of which TEXT has been read, with forms from START on, until these end."
-  (handler-case (skip-forms (make-instance 'growing-text
-                                           :text text :position start
-                                           :more (lambda (text) (next-outline session text))))
+  (handler-case (skip-forms (text-stream text start (lambda (text) (next-outline session text))))
     (end-of-file ())))
 
 (defun skip-after (condition session text start)

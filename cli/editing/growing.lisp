@@ -1,0 +1,44 @@
+;;;; growing.lisp -- a text as a stream that goes on, line by line, as it is read.
+
+(in-package :ars-magna.cli)
+
+;;; One text grows in place. Copied for each line, long forms would take quadratic time.
+
+(defclass growing-text (fundamental-character-input-stream)
+  ((text :initarg :text :reader grown-text)
+   (position :initarg :position :accessor grown-position)
+   (more :initarg :more :reader text-grower))
+  (:documentation "The characters of TEXT, which has a fill pointer, from POSITION on. After its end
+comes a newline, and then the line that the function MORE returns of the text so far."))
+
+(defun extensible-text (text)
+  "Return TEXT if lines can be put behind it, or else a copy for which they can."
+  (if (array-has-fill-pointer-p text)
+      text
+      (make-array (length text) :element-type 'character :adjustable t :fill-pointer t
+                                :initial-contents text)))
+
+(defun extend-text (text line)
+  "Put a newline and LINE behind TEXT, which has a fill pointer."
+  (vector-push-extend #\Newline text)
+  (loop for char across line do (vector-push-extend char text)))
+
+(defun text-stream (text start more)
+  "Return a growing text of TEXT from START on; see MORE there."
+  (make-instance 'growing-text :text (extensible-text text) :position start :more more))
+
+(defmethod stream-read-char ((stream growing-text))
+  (when (< (length (grown-text stream)) (grown-position stream))
+    (extend-text (grown-text stream) (funcall (text-grower stream) (grown-text stream))))
+  (let ((text (grown-text stream)) (position (grown-position stream)))
+    (incf (grown-position stream))
+    (if (< position (length text)) (char text position) #\Newline)))
+
+(defmethod stream-unread-char ((stream growing-text) char)
+  (declare (ignore char))
+  (decf (grown-position stream))
+  nil)
+
+(defun grown-out-p (stream)
+  "True if all of the text of STREAM has been read, as far as it has grown."
+  (<= (length (grown-text stream)) (grown-position stream)))
