@@ -9,7 +9,8 @@
    (position :initarg :position :accessor grown-position)
    (more :initarg :more :reader text-grower))
   (:documentation "The characters of TEXT, which has a fill pointer, from POSITION on. After its end
-comes a newline, and then the line that the function MORE returns of the text so far."))
+comes a newline, and then the line that the function MORE returns of the text so far; or its own
+end, if that is NIL."))
 
 (defun extensible-text (text)
   "Return TEXT if lines can be put behind it, or else a copy for which they can."
@@ -27,12 +28,22 @@ comes a newline, and then the line that the function MORE returns of the text so
   "Return a growing text of TEXT from START on; see MORE there."
   (make-instance 'growing-text :text (extensible-text text) :position start :more more))
 
-(defmethod stream-read-char ((stream growing-text))
-  (when (< (length (grown-text stream)) (grown-position stream))
-    (extend-text (grown-text stream) (funcall (text-grower stream) (grown-text stream))))
+(defun next-line-p (stream)
+  "Let the text of STREAM, of which all has been read, have another line. True if there is one."
+  (let ((line (funcall (text-grower stream) (grown-text stream))))
+    (when line (extend-text (grown-text stream) line))
+    (and line t)))
+
+(defun take-grown-char (stream)
   (let ((text (grown-text stream)) (position (grown-position stream)))
     (incf (grown-position stream))
     (if (< position (length text)) (char text position) #\Newline)))
+
+(defmethod stream-read-char ((stream growing-text))
+  (if (or (<= (grown-position stream) (length (grown-text stream)))
+          (next-line-p stream))
+      (take-grown-char stream)
+      :eof))
 
 (defmethod stream-unread-char ((stream growing-text) char)
   (declare (ignore char))

@@ -19,13 +19,31 @@
             (setf (user-calls-place calls) outer)))
         (funcall function))))
 
-(defun call-on-line (function file text position)
-  "Call FUNCTION, which deals with the form of FILE's TEXT at POSITION."
-  (flet ((line () (1+ (count #\Newline text :end position))))
-    (handler-bind ((error (lambda (condition)
-                            (unless (placed-p condition)
-                              (error 'file-trouble :file file :cause condition :line (line))))))
-      (call-watched-at (lambda () (format nil "~A, line ~D" file (line))) function))))
+(defun line-at (text position)
+  (1+ (count #\Newline text :end position)))
+
+(defun call-on-line (function file line)
+  "Call FUNCTION, which deals with what FILE has on the line that the function LINE returns of a
+condition, or of NIL."
+  (handler-bind ((error (lambda (condition)
+                          (unless (placed-p condition)
+                            (error 'file-trouble :file file :cause condition
+                                                 :line (funcall line condition))))))
+    (call-watched-at (lambda () (format nil "~A, line ~D" file (funcall line nil))) function)))
+
+(defun line-of-stumble (condition stream start)
+  "Return on which line the reader gave up in STREAM, for which CONDITION came up; that of START,
+where the form begins, if it does not end."
+  (line-at (grown-text stream)
+           (if (typep condition 'end-of-file)
+               start
+               (max start (1- (grown-position stream))))))
+
+(defun read-placing (stream file)
+  "Return the next form of STREAM, the text of FILE. Signals FILE-TROUBLE if it cannot be read."
+  (let ((start (grown-position stream)))
+    (call-on-line (lambda () (read-preserving-whitespace stream)) file
+                  (lambda (condition) (line-of-stumble condition stream start)))))
 
 (defun load-forms (path)
   "Do as LOAD does with the Lisp file at PATH. Signals FILE-TROUBLE."
@@ -37,16 +55,18 @@
 
 (defun load-each-form (path)
   (let* ((text (file-text path))
+         (stream (text-stream text 0 (constantly nil)))
          (file (native-name path))
          (*package* *package*) (*readtable* *readtable*)
          (*load-pathname* path) (*load-truename* (truename path)))
-    (loop with start = 0
-          for position = (form-start text start)
+    (loop for position = (form-start text (min (grown-position stream) (length text)))
           while (< position (length text))
-          do (call-on-line (lambda ()
-                             (multiple-value-bind (form end)
-                                 (read-from-string text t nil :start position)
-                               (setf start end)
+          do (setf (grown-position stream) position)
+             (let ((form (read-placing stream file)))
+               (call-on-line (lambda ()
                                (check-form-of-file form path)
-                               (call-as-from-file (lambda () (eval-quietly form)) path)))
-                           file text position))))
+                               (call-as-from-file (lambda () (eval-quietly form)) path))
+                             file
+                             (lambda (condition)
+                               (declare (ignore condition))
+                               (line-at text position)))))))

@@ -46,13 +46,18 @@ is NIL or FILE cannot be read."
            (multiple-value-bind (start end) (bounds-of-place text place)
              (line-number text (or (form-position text form start end) start)))))))
 
+(defun line-of-form-being-read (stream)
+  "Return on which line of its file the form begins that LOAD reads from STREAM."
+  (let ((text (file-text (pathname stream))))
+    (line-number text (skip-blanks text (min (form-start stream) (length text))))))
+
 (defun reading-place (condition)
   "Return which file LOAD was reading when CONDITION came up, as the system calls it, and on which
-line the form begins that it could not read; NIL if CONDITION says something else. Only while that
-file is still open."
+line the reader gave up, or that on which the form begins if it does not end; NIL if CONDITION says
+something else. Only while that file is still open."
   (let ((stream (and (typep condition 'reader-error) (stream-error-stream condition))))
     (when (and stream (open-stream-p stream) (form-start stream))
-      (let* ((file (native-name (pathname stream)))
-             (text (file-text (pathname stream)))
-             (start (form-start stream)))
-        (values file (line-number text (skip-blanks text (min start (length text)))))))))
+      (values (native-name (pathname stream))
+              (if (typep (cause-of-reading-trouble condition) 'end-of-file)
+                  (line-of-form-being-read stream)
+                  (line-reached stream))))))

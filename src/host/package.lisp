@@ -40,7 +40,7 @@ file. No other folder names such parts of SBCL.")
            #:call-as-compiler #:call-as-other-file #:wrap-compilation-units #:wrap-unit-summaries
            #:context-original-form)
   ;; reading
-  (:export #:form-start #:encapsulated-condition)
+  (:export #:form-start #:line-reached #:encapsulated-condition)
   ;; random-state
   (:export #:words #:words-of-state #:fill-words #:wrap-renewal)
   ;; debugger

@@ -9,6 +9,13 @@
   (and (internal-type-p stream :sb-int #:form-tracking-stream)
        (internal (:sb-int #:form-tracking-stream-form-start-char-pos) stream)))
 
+;; What ends a word may be the newline behind it, and has been read by then.
+(defun line-reached (stream)
+  "Return on which line the last character is that LOAD has read from STREAM, for which FORM-START
+is not NIL."
+  (destructuring-bind (line . column) (internal (:sb-int #:line/col-from-charpos) stream)
+    (if (plusp column) line (max 1 (1- line)))))
+
 (defun encapsulated-condition (condition)
   "Return the condition that CONDITION only gives a place to, as LOAD's do; NIL of others."
   (and (internal-type-p condition :sb-int #:encapsulated-condition)
