@@ -35,7 +35,7 @@
                  (:file "troubles")
                  (:file "askers") (:file "inquiries") (:file "user-code") (:file "parameters")
                  (:file "physics") (:file "parameters-of-runs")
-                 (:file "kinds") (:file "facts") (:file "csv") (:file "digesting") (:file "copiers")
+                 (:file "kinds") (:file "facts") (:file "csv") (:file "markup") (:file "digesting") (:file "copiers")
                  (:file "manners") (:file "copying") (:file "holding") (:file "fields")
                  (:file "contradictions")
                  (:file "given")

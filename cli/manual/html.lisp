@@ -4,25 +4,14 @@
 
 (defun escaped (text)
   "Return TEXT as it is written in HTML, between tags or in an attribute's double quotes."
-  (with-output-to-string (out)
-    (loop for char across text
-          do (case char
-               (#\& (write-string "&amp;" out))
-               (#\< (write-string "&lt;" out))
-               (#\> (write-string "&gt;" out))
-               (#\" (write-string "&quot;" out))
-               (t (write-char char out))))))
-
-(defparameter *entities*
-  '(("&lt;" . #\<) ("&gt;" . #\>) ("&quot;" . #\") ("&amp;" . #\&))
-  "What HTML writes for characters that it takes for its own.")
+  (with-output-to-string (out) (write-xml-text text out)))
 
 (defun entity-at (html position)
   "Return the element of *ENTITIES* that HTML has at POSITION, or NIL."
   (find-if (lambda (entity)
-             (let ((end (+ position (length (car entity)))))
+             (let ((end (+ position (length (cdr entity)))))
                (and (<= end (length html))
-                    (string= (car entity) html :start2 position :end2 end))))
+                    (string= (cdr entity) html :start2 position :end2 end))))
            *entities*))
 
 (defun unescaped (html)
@@ -31,21 +20,12 @@
     (loop with i = 0
           while (< i (length html))
           do (let ((entity (entity-at html i)))
-               (write-char (if entity (cdr entity) (char html i)) out)
-               (incf i (if entity (length (car entity)) 1))))))
+               (write-char (if entity (car entity) (char html i)) out)
+               (incf i (if entity (length (cdr entity)) 1))))))
 
 (defun javascript-string (text)
   "Return TEXT as a string of JavaScript's, in its double quotes."
-  (with-output-to-string (out)
-    (write-char #\" out)
-    (loop for char across text
-          do (case char
-               ((#\" #\\) (write-char #\\ out) (write-char char out))
-               (#\Newline (write-char #\Space out))
-               ;; So that no </script> can end what it stands in.
-               (#\< (write-string "\\u003C" out))
-               (t (write-char char out))))
-    (write-char #\" out)))
+  (with-output-to-string (out) (write-json-string text out :in-page t)))
 
 ;;; Anchors.
 

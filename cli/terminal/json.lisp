@@ -7,15 +7,6 @@
 ;;; for hyphens; a vector an array; T, :FALSE and NIL become true, false and null; other symbols are
 ;;; strings in lower case.
 
-(defun write-json-string (text stream)
-  (write-char #\" stream)
-  (loop for char across text
-        do (cond ((find char "\"\\") (format stream "\\~C" char))
-                 ((or (< (char-code char) 32) (<= #xD800 (char-code char) #xDFFF))
-                  (format stream "\\u~4,'0X" (char-code char)))
-                 (t (write-char char stream))))
-  (write-char #\" stream))
-
 (defun write-json-number (number stream)
   (let ((*read-default-float-format* 'double-float))
     (prin1 (if (integerp number) number (double number)) stream)))

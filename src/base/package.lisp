@@ -144,6 +144,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:facts #:known-facts #:define-facts #:slots-to-show #:listed #:fact-text)
   ;; places-in-text
   (:export #:reading-place)
+  ;; markup
+  (:export #:write-json-string #:write-xml-text #:*entities*)
   ;; csv
   (:export #:csv-number-p #:csv-line #:csv-texts #:broken-line #:broken-line-text)
   ;; user-macros

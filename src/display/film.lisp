@@ -62,17 +62,7 @@ a vector of such numbers."
   (write-char #\] out))
 
 (defun write-quoted (text out)
-  "Write TEXT as a string that nothing in it can end, nor the script that it stands in."
-  (write-char #\" out)
-  (loop for char across text
-        do (case char
-             ((#\" #\\) (write-char #\\ out) (write-char char out))
-             (#\Newline (write-string "\\n" out))
-             (#\< (write-string "\\u003C" out))
-             (t (if (< (char-code char) 32)
-                    (format out "\\u~4,'0X" (char-code char))
-                    (write-char char out)))))
-  (write-char #\" out))
+  (write-json-string text out :in-page t))
 
 (defun write-frames (frames out)
   "Write FRAMES, in order: the first whole, others by what changes, if they are as long."

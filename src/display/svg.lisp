@@ -87,13 +87,7 @@
 
 (defun write-text (text stream)
   "Write TEXT with the characters that mean something in SVG replaced."
-  (loop for char across (string text)
-        do (case char
-             (#\< (write-string "&lt;" stream))
-             (#\> (write-string "&gt;" stream))
-             (#\& (write-string "&amp;" stream))
-             (#\" (write-string "&quot;" stream))
-             (t (write-char (if (graphic-char-p char) char #\Space) stream)))))
+  (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
 ;;; Painting.
 

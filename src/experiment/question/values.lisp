@@ -93,12 +93,7 @@ and is the same in each run."
 
 (defun quoted-text (text)
   "Return TEXT between quotes, as JSON has it."
-  (with-output-to-string (out)
-    (write-char #\" out)
-    (loop for char across (plain-text text)
-          do (when (find char "\\\"") (write-char #\\ out))
-             (write-char char out))
-    (write-char #\" out)))
+  (with-output-to-string (out) (write-json-string (plain-text text) out)))
 
 (defun value-text (value)
   "Return how VALUE stands in a table."
