@@ -41,6 +41,17 @@ ok."
     (is (equal '(4) (ends-of-lines (format nil "#|~%~A~%turn 1|#~%turn 2~%" long))))
     (is (equal '(-1 2) (ends-of-lines (format nil "~A~%turn 2~%" long))))))
 
+(test forms.with-a-mistake-are-told-with-its-line
+  (loop for (form line) in '(("(defmap pen (9 9)~%(wall (1 1) (1 3) wood 2)~%(wal (2 2)))" 3)
+                             ("#| a~%b |# (defmap pen (9 9)~%(wal (2 2)))" 3)
+                             ("(progn~%(defmap pen (9 9)~%(wal (2 2))~%))" 3)
+                             ("(list~%'(1~%nowhere:f~%2)~%)" 3)
+                             ("(list~%nowhere:f 2)" 2)
+                             ("(list 1)~%(list~%1" 2)
+                             ("(list 1~%(car 2))" 1))
+        for said = (find "*ERROR*" (run-script (format nil form)) :test #'search)
+        do (is-true (has-words-p said (format nil "line ~D:" line)) "~A: ~A" form said)))
+
 (test forms.of-many-lines-are-read-in-memory-in-proportion
   (flet ((bytes-for (form ends)
            (bytes-consed-by (lambda ()

@@ -124,6 +124,25 @@ what Lisp says of a full stack, of which users are told."
       (unless (equal (and before (princ-to-string before)) (and after (princ-to-string after)))
         (when after (error after))))))
 
+(defun note-clause-line (session text form clause)
+  "Note on which line CLAUSE of FORM stands, in TEXT, which ends with what SESSION has read last."
+  (let ((line (line-of-clause text form clause)))
+    (when line
+      (note-trouble-line (session-account session)
+                         (- (+ line (lines-typed (session-input session)))
+                            (count #\Newline text)
+                            1)))))
+
+(defun evaluate-placing (session text form)
+  "Evaluate FORM, read from TEXT in SESSION, and note on which line a clause makes no sense."
+  (handler-bind ((malformed-definition
+                   (lambda (condition)
+                     (unless (malformed-definition-place condition)
+                       (ignore-errors
+                        (note-clause-line session text form
+                                          (malformed-definition-clause condition)))))))
+    (evaluate session form)))
+
 (defun evaluate-forms (session text)
   (loop with position = 0
         with form
@@ -134,7 +153,7 @@ what Lisp says of a full stack, of which users are told."
            (check-line-in-parentheses form)
            (check-typed-call form)
            (check-typed-load form)
-           (call-checking-parameters (lambda () (evaluate session form)))))
+           (call-checking-parameters (lambda () (evaluate-placing session text form)))))
 
 (defun evaluate-text (session text)
   "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."

@@ -10,14 +10,16 @@
   "Where a session is in FILE, the name of a script or NIL. The line under way, TEXT, is the one
 with the number LINE, or 0 if an option has asked for it; ERRORS were there before it. CONSOLE is
 where objects are written, or NIL. WAITING are lines before it whose work waits for time to pass,
-the newest first. PLANS are pairs of an asker and the line that has begun that plan."
+the newest first. PLANS are pairs of an asker and the line that has begun that plan. TROUBLE-LINE
+is the one of those of a form under way that makes no sense, or NIL if that is not known."
   (file nil :type (or null string) :read-only t)
   (console nil :type (or null console) :read-only t)
   (line 0 :type fixnum)
   (text nil :type (or null string))
   (errors 0 :type fixnum)
   (waiting '() :type list)
-  (plans '() :type list))
+  (plans '() :type list)
+  (trouble-line nil :type (or null fixnum)))
 
 (defun reports-p (account)
   "True if what has ACCOUNT reports by objects."
@@ -64,6 +66,16 @@ has asked for."
   "Return the number of the line that is being done, or NIL: ACCOUNT may be NIL, or between lines."
   (and account (account-text account) (line-under-way account)))
 
+(defun line-of-trouble (account)
+  "Return the number of the line that makes no sense, of the form or line that is being done; or
+NIL: ACCOUNT may be NIL, or between lines."
+  (let ((line (line-done-now account)))
+    (and line (or (account-trouble-line account) line))))
+
+(defun note-trouble-line (account line)
+  "Note that LINE, of a form that is being done, makes no sense."
+  (when account (setf (account-trouble-line account) line)))
+
 (defun placed-text (account text &optional (line (line-done-now account)))
   "Return TEXT, of what goes wrong in LINE, after the place of that line if it is of a script."
   (if (and account (account-file account) line)
@@ -78,6 +90,7 @@ nothing to do in it, is about to be done, and that there were ERRORS so far."
   (when account
     (setf (account-line account) line
           (account-text account) text
+          (account-trouble-line account) nil
           (account-errors account) errors)))
 
 (defun report-line (account type line text &rest properties)

@@ -158,7 +158,8 @@ DISPLAY says so."
   (let ((account (session-account session)) (console (session-console session)))
     (unless (report-trouble account text)
       (write-fresh (fitted (painted (format nil "*ERROR* -> ~A~%"
-                                            (complaint-text (placed-text account text)))
+                                            (complaint-text
+                                             (placed-text account text (line-of-trouble account))))
                                     (ink-of :error) console)
                            console)
                    console))))

@@ -63,7 +63,8 @@ typed, signal END-OF-FILE."
     (line-too-long
      (skip-rest session (format nil "~A~%~A" text (line-outline condition)) start))
     ((or bad-line storage-condition end-of-file) nil)
-    (error (skip-rest session text start))))
+    (error (note-trouble-line (session-account session) (lines-typed (session-input session)))
+           (skip-rest session text start))))
 
 (defmacro skipping-rest ((session text start) &body body)
   "Run BODY, which reads what begins in TEXT at START. If it cannot, its rest is passed over."

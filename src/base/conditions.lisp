@@ -88,7 +88,9 @@ obey, but for newlines and tabs."
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has a clause that makes no sense."))
 
 (setf (documentation 'malformed-definition-place 'function)
-      "Return the file and line of what makes no sense, a string, or NIL if it was typed.")
+      "Return the file and line of what makes no sense, a string, or NIL if it was typed."
+      (documentation 'malformed-definition-clause 'function)
+      "Return the clause that makes no sense, as read; NIL where something is missing.")
 
 (define-condition illegible-file (ars-magna-error)
   ((file :initarg :file :reader illegible-file-name)

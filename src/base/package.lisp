@@ -75,7 +75,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:visible #:obeyed-p
            #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
            #:malformed-definition
-           #:malformed-definition-place
+           #:malformed-definition-place #:malformed-definition-clause
            #:definition-warning #:definition-warning-text #:warn-of-definition #:doubt-definition
            #:unknown-name #:plain-name #:misuse #:reject-use #:outlived #:reject-outlived)
   ;; exits
@@ -139,7 +139,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:call-with-definition #:expand-definition #:title
            #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
-           #:clause-place #:skip-definition #:skip-clause #:read-again)
+           #:clause-place #:line-of-clause #:skip-definition #:skip-clause #:read-again)
   ;; facts
   (:export #:facts #:known-facts #:define-facts #:slots-to-show #:listed #:fact-text)
   ;; places-in-text

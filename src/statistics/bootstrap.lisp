@@ -91,12 +91,13 @@ and Tibshirani 1993, formula 14.10)."
 vector, are a sample of: the bias-corrected and accelerated bootstrap (Efron 1987; Efron and
 Tibshirani 1993, chapter 14). STATISTIC is :MEAN, :MEDIAN or a function of a vector of
 double-floats, which may sort but must not keep it, to a number. It is asked of RESAMPLES samples,
-drawn from NUMBERS by the dice for SEED, an integer: the same bounds each time. Of few numbers it is
-too narrow: the .95 interval for the mean of 5 normal ones holds it in 85 of 100 samples, of 10 in
-90, of 30 in 94; there STUDENT-INTERVAL is better. Of numbers that are all equal, both bounds are
-what is found in them; of fewer than two, both are NIL. Signals WRONG-ARGUMENT unless NUMBERS and
-what STATISTIC returns are from -1e15 to 1e15, RESAMPLES from 100 to 1e7, and CONFIDENCE between 0
-and 1."
+drawn from NUMBERS by the dice for SEED, an integer: the same bounds each time. Of few numbers it
+is too narrow: the .95 interval for the mean of 5 normal ones holds it in 85 of 100 samples, of 10
+in 90, of 30 in 94; there STUDENT-INTERVAL is better. No bound lies beyond what was found in the
+samples drawn: with fewer of them than 20 / (1 - CONFIDENCE), bounds vary with SEED or are too
+near. Of numbers that are all equal, both bounds are what is found in them; of fewer than two,
+both are NIL. Signals WRONG-ARGUMENT unless NUMBERS and what STATISTIC returns are from -1e15 to
+1e15, RESAMPLES from 100 to 1e7, and CONFIDENCE between 0 and 1."
   (let ((z (normal-reach (check-share bootstrap-interval confidence)))
         (sample (sample 'bootstrap-interval 'numbers numbers))
         (function (statistic-function statistic)))
