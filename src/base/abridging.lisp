@@ -86,3 +86,18 @@
   "Return how DATUM, a symbol or the like, is typed, in lower case: between bars where it has to be,
 as with blanks in it."
   (let ((*print-case* :downcase)) (unqualified-text datum)))
+
+(defun safe-text (object &key (escape t) (length 500))
+  "Return what PRIN1, or PRINC unless ESCAPE is true, writes of OBJECT: of what is deep, long or
+circular a part, at most LENGTH characters, but for the packages of symbols; words that say so if it
+cannot be printed."
+  (handler-case
+      (let ((*print-circle* t) (*print-pretty* nil) (*print-readably* nil) (*print-escape* escape)
+            (*print-length* (or *print-length* 100))
+            (*print-level* (or *print-level* 20))
+            (*print-gensym* nil) (*print-base* 10) (*print-radix* nil))
+        (cut (write-to-string (if (typep object '(or cons string bit-vector number symbol))
+                                  (without-packages (abridged object))
+                                  object))
+             length))
+    ((or error storage-condition) () "what cannot be printed")))

@@ -13,26 +13,6 @@
   ()
   (:documentation "The root of every error that ARS MAGNA signals."))
 
-;;; Reports quote files and what was typed, where there may be anything.
-
-(defun obeyed-p (char)
-  "True if a terminal does something else with CHAR than to show it."
-  (let ((code (char-code char)))
-    (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
-
-(defun visible (text)
-  "Return TEXT with ^ and a letter, or a question mark, for each character that a terminal would
-obey, but for newlines and tabs."
-  (if (some #'obeyed-p text)
-      (with-output-to-string (out)
-        (loop for char across text
-              do (cond ((or (not (obeyed-p char)) (find char '(#\Newline #\Tab)))
-                        (write-char char out))
-                       ((< (char-code char) 32)
-                        (format out "^~C" (code-char (+ 64 (char-code char)))))
-                       (t (write-char #\? out)))))
-      text))
-
 (defmethod print-object :around ((condition ars-magna-error) stream)
   "Let nothing that a terminal obeys come to STREAM; what a report that fails has written comes."
   (if *print-escape*
@@ -65,10 +45,6 @@ obey, but for newlines and tabs."
   "Signal WRONG-ARGUMENT unless TEST holds; EXPECTED says in words what PLACE should be."
   `(unless ,test (reject-argument ',operator ',place ,place ,expected)))
 
-(defun sentence (text)
-  "Return TEXT with a full stop, unless it ends in a question."
-  (if (ends-with #\? text) text (format nil "~A." text)))
-
 (addition malformed-definition)
 (define-condition malformed-definition (ars-magna-error)
   ((definition :initarg :definition :reader malformed-definition-definition)
@@ -91,19 +67,6 @@ obey, but for newlines and tabs."
       "Return the file and line of what makes no sense, a string, or NIL if it was typed."
       (documentation 'malformed-definition-clause 'function)
       "Return the clause that makes no sense, as read; NIL where something is missing.")
-
-(define-condition illegible-file (ars-magna-error)
-  ((file :initarg :file :reader illegible-file-name)
-   (line :initarg :line :reader illegible-file-line))
-  (:report (lambda (condition stream)
-             (format stream "~A, line ~D: it has bytes that are not UTF-8. Save the file in UTF-8."
-                     (native-name (illegible-file-name condition))
-                     (illegible-file-line condition))))
-  (:documentation "A file that is to be read as text has a line that is no text in UTF-8."))
-
-(document-functions
-  illegible-file-name "Return the path of the file that an ILLEGIBLE-FILE is about."
-  illegible-file-line "Return the number of the first line that is no text in UTF-8.")
 
 (addition definition-warning definition-warning-text)
 (define-condition definition-warning (warning)
@@ -167,6 +130,13 @@ compiled the warning is a STYLE-WARNING. Scripts, which do not show these, are n
                          (names-to-show known)
                          remedy)))))
   (:documentation "A name was given that nothing of that kind has."))
+
+(defun reject-name (kind name known &optional (meant known))
+  "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME. One of the
+names MEANT could be meant."
+  (error 'unknown-name :kind kind :name name :known known
+                       :nearest (and (typep name '(or symbol string))
+                                     (nearest-name name meant))))
 
 (addition misuse)
 (define-condition misuse (ars-magna-error)

@@ -49,6 +49,15 @@ LABELS, alternating, as KNOWN-FACTS takes them."
          `((defmethod describe-object ((,variable ,class) stream)
              (write-facts ,variable stream))))))
 
+(defun describe-by-kind (object stream)
+  "Write to STREAM what OBJECT is, what people want to know of it, and what is in it, by role."
+  (write-facts object stream)
+  (loop for (title . slots) in (slots-to-show object)
+        do (format stream "~& ~A:~%" title)
+           (loop for (name value text) in slots
+                 do (format stream "  ~(~22A~) ~A  (~A)~%" name (cut (fact-text value) 200)
+                            text))))
+
 ;;; Parameters.
 
 (define-facts (parameter parameter)

@@ -126,16 +126,6 @@ nothing."
   (sb-ext:octets-to-string (map '(vector (unsigned-byte 8)) #'char-code octets)
                            :external-format '(:utf-8 :replacement #.+illegible+)))
 
-(defun file-text (path)
-  "Return the text in the file PATH, without a byte order mark. Signals an error if it has none, and
-ILLEGIBLE-FILE if it has octets that are no text in UTF-8."
-  (unless (plain-file-p path) (error "~A is a directory or a device" (native-name path)))
-  (let* ((text (decoded (read-file-into-string path :external-format :latin-1)))
-         (illegible (position +illegible+ text)))
-    (when illegible
-      (error 'illegible-file :file path :line (1+ (count #\Newline text :end illegible))))
-    (string-left-trim '(#.(code-char #xFEFF)) text)))
-
 ;;; Files that several processes may have.
 
 (defun cut-file (path length)

@@ -31,6 +31,12 @@
          (name (if package (package-name package) "")))
     (or (string= name "COMMON-LISP") (starts-with-subseq "SB-" name))))
 
+;; The methods stand above, where definitions and the types of arguments are known.
+(defgeneric slip-text (condition)
+  (:documentation "Return in a sentence what was meant where CONDITION, an error of Lisp's own, came
+up, or what to do; NIL if there is no more to say.")
+  (:method (condition) (declare (ignore condition)) nil))
+
 ;;; Wrong types.
 
 (defparameter *compilers-words*
@@ -91,7 +97,7 @@ none; and true. Return false as a third value for other types."
                       (class-words type)))
            (value (safe-text datum :length 100)))
       (cond (words (format nil "The value ~A is not ~A.~@[ ~A~]"
-                           value words (type-slip-text datum type)))
+                           value words (slip-text condition)))
             ((member (type-of condition) '(type-error simple-type-error))
              (format nil "The value ~A is not one that can be used here." value))))))
 
@@ -139,9 +145,9 @@ none; and true. Return false as a third value for other types."
   (let ((name (unqualified-text (cell-error-name condition))))
     (typecase condition
       (undefined-function (format nil "The function ~A is undefined.~@[ ~A~]"
-                                  name (function-slip-text (cell-error-name condition))))
+                                  name (slip-text condition)))
       (unbound-variable (format nil "The variable ~A has no value.~@[ ~A~]"
-                                name (variable-slip-text (cell-error-name condition)))))))
+                                name (slip-text condition))))))
 
 (defun our-own-p (symbol)
   "True if SYMBOL is of a package of this system."

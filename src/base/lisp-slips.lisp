@@ -134,8 +134,7 @@ no more to say."
     (when (and trouble (funcall trouble datum))
       (sentence (format nil "Give ~A" (argument-type-text type datum))))))
 
-(defun report-addition (condition)
-  "Return what is to stand behind the report of CONDITION, an error of Lisp's own, or NIL."
+(defmethod slip-text ((condition error))
   (typecase condition
     (undefined-function (function-slip-text (cell-error-name condition)))
     (unbound-variable (variable-slip-text (cell-error-name condition)))
@@ -143,4 +142,4 @@ no more to say."
     (type-error (type-slip-text (type-error-datum condition)
                                 (type-error-expected-type condition)))))
 
-(setf *report-addition* #'report-addition)
+(setf *report-addition* #'slip-text)

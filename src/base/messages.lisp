@@ -12,6 +12,10 @@
 (defvar flush-all-errors* nil
   "When true, queued messages are discarded instead of displayed. Default NIL (manual 3.7).")
 
+(deftype error-policy ()
+  "What becomes of errors in users' code."
+  '(member :report :signal :collect))
+
 (defvar *told-of* nil
   "A note of who asked for what messages tell of here, as NOTE-OF-ASKER returns it, or NIL.")
 
@@ -57,7 +61,7 @@ counts and tables; whether UNSIGNALLED is NIL may be asked without it."
   (count 0 :type fixnum)
   (forgotten 0 :type fixnum)
   (listener nil :type (or null function))
-  (error-policy :report :type (member :report :signal :collect))
+  (error-policy :report :type error-policy)
   (seen '() :type list)
   (read-p nil :type boolean)
   (troubles '() :type list)

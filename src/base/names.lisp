@@ -95,10 +95,3 @@ instead makes another word, unless the two sound alike."
              (and (/= (length a) (length b)) (<= 3 shorter)))
          (<= 1 (edit-distance a b) (if (<= 8 shorter) 2 1))
          (not (another-word-p a b)))))
-
-(defun reject-name (kind name known &optional (meant known))
-  "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME. One of the
-names MEANT could be meant."
-  (error 'unknown-name :kind kind :name name :known known
-                       :nearest (and (typep name '(or symbol string))
-                                     (nearest-name name meant))))

@@ -39,9 +39,11 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
+  ;; text
+  (:export #:blank-p #:one-line #:cut #:visible #:obeyed-p)
   ;; printing
   (:export #:call-printing-plainly #:printing-plainly #:printing-words)
-  ;; files, processes
+  ;; files, file-text, kinds-of-files, processes
   (:export #:native-name #:native-path #:native-path-of-directory #:path-called #:existing-path
            #:missing-directory #:many-files-p
            #:replace-file #:plain-file-p #:check-unprotected #:dangling-link-p #:name-in-directory
@@ -70,14 +72,14 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; wrapping
   (:export #:wrap-function)
   ;; abridging
-  (:export #:abridged #:unqualified-text #:text-as-typed #:+more+)
+  (:export #:abridged #:safe-text #:unqualified-text #:text-as-typed #:+more+)
   ;; conditions
-  (:export #:visible #:obeyed-p
-           #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
+  (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
            #:malformed-definition
            #:malformed-definition-place #:malformed-definition-clause
            #:definition-warning #:definition-warning-text #:warn-of-definition #:doubt-definition
-           #:unknown-name #:plain-name #:misuse #:reject-use #:outlived #:reject-outlived)
+           #:unknown-name #:reject-name #:plain-name #:misuse #:reject-use
+           #:outlived #:reject-outlived)
   ;; exits
   (:export #:call-refusing-exits #:refuse-exits #:call-allowing-exits)
   ;; threads
@@ -110,8 +112,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; tests-in-code
   (:export #:*test-doubt* #:map-calls #:map-comparisons #:code-doubt)
   ;; telling
-  (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:our-text
-           #:report-anyhow #:of-lines-typed-p
+  (:export #:format-briefly #:own-text #:our-text #:report-anyhow #:of-lines-typed-p
            #:reading-trouble #:text-of-condition #:one-line-text #:point-in-text #:hundredths
            #:editors-output)
   ;; breaking-lines
@@ -128,7 +129,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:dice-rolled #:roll-back #:unheard-of-number #:tick-dice #:make-tick-dice
            #:begin-tick-dice #:*tick-dice*)
   ;; names
-  (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
+  (:export #:same-name-p #:nearest-name #:resembles-p #:value-equal)
   ;; keywords
   (:export #:define-with-keywords)
   ;; variables
@@ -163,8 +164,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
   ;; messages
-  (:export #:error-set #:warning-set #:warn-at-once #:warn-notably #:message-set #:error-display
-           #:flush-all-errors*
+  (:export #:error-policy #:error-set #:warning-set #:warn-at-once #:warn-notably #:message-set
+           #:error-display #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-read-p #:message-queue-listener
            #:message-queue-error-policy
@@ -175,7 +176,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:message-text #:phrase
            #:write-message #:write-items #:out #:*message-limit*)
   ;; troubles
-  (:export #:error-policy #:user-code-error #:user-code-error-cause #:trouble-set
+  (:export #:user-code-error #:user-code-error-cause #:trouble-set
            #:errors-in #:forget-errors
            #:take-unsignalled #:show-unseen #:make-message #:*echo-output*
            #:drop-unsignalled #:skip-unseen #:signal-trouble
@@ -219,7 +220,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:per-tick-probability)
   ;; digest
   (:export #:digest #:make-digest #:digest-add #:digest-word #:text-word #:digest-value)
-  ;; kinds, digesting, copying
+  ;; kinds, define-kind, digesting, copying
   (:export #:define-kind #:*object-kinds* #:kind-p #:kind-of #:kind-called #:kind-name
            #:kind-slots #:all-kinds #:find-kind-name
            #:kind-slot-name #:kind-slot-role #:kind-slot-type #:kind-slot-text #:kind-slot-part-p

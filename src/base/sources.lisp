@@ -262,12 +262,12 @@ at the beginning and at the end."
 (defun code-without (operator text)
   "Return TEXT, as CODE-ALONE returns it, without the forms at its top level whose OPERATOR, a
 string, is that, perhaps behind the name of a package."
-  (with-output-to-string (out)
+  (with-output-to-string (stream)
     (loop with i = 0
           while (< i (length text))
           do (let ((end (if (paren-p (char text i)) (form-end text i) (1+ i))))
                (unless (word-at-p text (1+ i) operator)
-                 (write-string text out :start i :end end))
+                 (write-string text stream :start i :end end))
                (setf i end)))))
 
 (defvar *last-digest* '("" nil 0)

@@ -10,42 +10,6 @@
     (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
       (apply #'format destination control arguments))))
 
-(defun blank-p (char)
-  "True if CHAR is a space, newline or the like."
-  (member char '(#\Space #\Tab #\Return #\Page #\Newline)))
-
-(defun one-line (text)
-  "Return TEXT with each run of blanks as one space."
-  (string-trim " " (with-output-to-string (out)
-                     (loop for previous = #\Space then char
-                           for char across text
-                           for blank = (blank-p char)
-                           unless (and blank (blank-p previous))
-                             do (write-char (if blank #\Space char) out)))))
-
-(defun cut (text length)
-  "Return TEXT, or its beginning if it is longer than LENGTH."
-  (if (> (length text) length)
-      (concatenate 'string (subseq text 0 (- length 3)) "...")
-      text))
-
-;;; Objects.
-
-(defun safe-text (object &key (escape t) (length 500))
-  "Return what PRIN1, or PRINC unless ESCAPE is true, writes of OBJECT: of what is deep, long or
-circular a part, at most LENGTH characters, but for the packages of symbols; words that say so if it
-cannot be printed."
-  (handler-case
-      (let ((*print-circle* t) (*print-pretty* nil) (*print-readably* nil) (*print-escape* escape)
-            (*print-length* (or *print-length* 100))
-            (*print-level* (or *print-level* 20))
-            (*print-gensym* nil) (*print-base* 10) (*print-radix* nil))
-        (cut (write-to-string (if (typep object '(or cons string bit-vector number symbol))
-                                  (without-packages (abridged object))
-                                  object))
-             length))
-    ((or error storage-condition) () "what cannot be printed")))
-
 ;;; Conditions.
 
 (defun storage-text (condition)

@@ -12,10 +12,6 @@
 ;;; A queue with a table ECHOED shows errors at once, unless it has a listener. Each queue does that
 ;;; with warnings of what may never end.
 
-(deftype error-policy ()
-  "What becomes of errors in users' code."
-  '(member :report :signal :collect))
-
 (addition user-code-error user-code-error-cause)
 (define-condition user-code-error (ars-magna-error)
   ((text :initarg :text :reader user-code-error-text)

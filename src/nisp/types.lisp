@@ -1,9 +1,6 @@
-;;;; types.lisp -- the names of types, and MAKE for all of them (manual 3.1).
+;;;; types.lisp -- the types of the manual, and MAKE for all of them (manual 3.1).
 
 (in-package :ars-magna.nisp)
-
-;;; Types are known by name, whatever package it was read in. A layer registers a type when it
-;;; is loaded; after that the registry is only read.
 
 (public void)
 (deftype void ()
@@ -30,44 +27,6 @@
 (deftype robot-continuation ()
   "The type of what a robot command takes as its continuation, NIL for none (manual 3.1.1)."
   '(or function symbol))
-
-;;; The registry.
-
-(defstruct (nisp-type (:constructor make-nisp-type (name)) (:copier nil))
-  "What is known of the type called NAME. CLASS is its Lisp name, if it has registered slots;
-SLOTS an alist from slot names to reader functions' names; MAKER a function or NIL."
-  (name "" :type string :read-only t)
-  (class nil :type symbol)
-  (slots '() :type list)
-  (maker nil :type (or null function))
-  (parameters '() :type list))
-
-(defvar *nisp-types* (make-hash-table :test 'equal)
-  "All registered types by name.")
-
-(defun find-nisp-type (name)
-  "Return the type called NAME, or NIL."
-  (values (gethash (string name) *nisp-types*)))
-
-(defun ensure-nisp-type (name)
-  "Return the type called NAME, new if need be."
-  (or (find-nisp-type name)
-      (setf (gethash (string name) *nisp-types*) (make-nisp-type (string name)))))
-
-(defun names-of-classes (package)
-  "Return the names of the classes that PACKAGE, the name of a package or nothing's, offers."
-  (and (find-package package)
-       (loop for symbol being the external-symbols of package
-             when (find-class symbol nil) collect (symbol-name symbol))))
-
-(defun known-types ()
-  "Return the names of the types that programs use, in order: those registered, and classes that
-the packages of users have."
-  (sort (remove-duplicates (append (loop for name being the hash-keys of *nisp-types* collect name)
-                                   (names-of-classes "NISP")
-                                   (names-of-classes "ARS"))
-                           :test #'string=)
-        #'string<))
 
 (defun makeable-types ()
   (sort (loop for type being the hash-values of *nisp-types*
