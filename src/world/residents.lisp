@@ -105,3 +105,13 @@ that is like another thing's, gets a warning, once in a run."
     (when (and (null things) (typep name '(or (and symbol (not null)) string)))
       (dolist (each (worlds-in-view world)) (note-unknown-thing name each)))
     (first things)))
+
+(defun not-a-thing-text (value)
+  "Return in words how to have a thing, for somebody who gave VALUE instead."
+  (format nil "such as (find-thing '~:[NAME~;~:*~(~A~)~]) returns~:[~;, which is NIL where nothing ~
+               is called NAME~@[: ~A~]~]"
+          (and value (symbolp value) (not (keywordp value)) value)
+          (null value)
+          (missed-name-text)))
+
+(define-argument-type 'thing #'thing-p "a thing" #'not-a-thing-text)

@@ -100,43 +100,6 @@ false, always can."
             (warn-of-definition "~@[~A: ~]~A" (clause-place type) text)
             (warning-set text))))))
 
-(defun physical-p (key)
-  "True if a cached slot of things goes by the attribute KEY; see REFRESH-PHYSICS."
-  (member key '(:obsmove :obsview :closed :size :weight :capacity :substance) :test #'eq))
-
-(defun refresh-physics (thing)
-  "Make the cached slots of THING agree with its attributes."
-  (flet ((number-of (key)
-           (let ((value (get-attribute thing key))) (if (realp value) (double value) 0d0)))
-         (truth-of (key) (and (get-attribute thing key) t)))
-    (setf (thing-obsmove-p thing) (truth-of :obsmove)
-          (thing-obsview-p thing) (truth-of :obsview)
-          (thing-closed-p thing) (truth-of :closed)
-          (thing-size thing) (number-of :size)
-          (thing-weight thing) (number-of :weight)
-          (thing-capacity thing) (number-of :capacity)
-          (thing-substance-p thing) (truth-of :substance)
-          (thing-substance-parameter thing)
-          (substance-value-parameter (get-attribute thing :substance)))))
-
-(public get-attribute)
-(settable get-attribute)
-(defun get-attribute (thing attribute)
-  "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
-which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it, as SORT does. An
-ATTRIBUTE that may be a slip for a declared one gets a warning, once in a run."
-  (check-argument get-attribute thing (thing-p thing) (argument-type-text 'thing thing))
-  (let* ((key (attribute-key attribute))
-         (entry (assoc key (thing-attributes thing) :test #'eq)))
-    (unless entry (note-slip 'get-attribute thing key))
-    (second entry)))
-
-(defun merge-descriptors (new old)
-  "Return the object descriptor OLD with what NEW says instead; order as in OLD, then as in NEW."
-  (append (loop for entry in old
-                collect (or (assoc (first entry) new :test #'eq) entry))
-          (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
-
 ;;; Containment.
 
 (addition thing-outermost)
@@ -171,16 +134,6 @@ if it is nowhere."
         for inside in (thing-contents thing)
         do (incf sum (the double-float (thing-total-weight inside)))
         finally (return sum)))
-
-(defun not-a-thing-text (value)
-  "Return in words how to have a thing, for somebody who gave VALUE instead."
-  (format nil "such as (find-thing '~:[NAME~;~:*~(~A~)~]) returns~:[~;, which is NIL where nothing ~
-               is called NAME~@[: ~A~]~]"
-          (and value (symbolp value) (not (keywordp value)) value)
-          (null value)
-          (missed-name-text)))
-
-(define-argument-type 'thing #'thing-p "a thing" #'not-a-thing-text)
 
 (defmethod location-contents ((thing thing)) (thing-contents thing))
 (defmethod (setf location-contents) (things (thing thing)) (setf (thing-contents thing) things))

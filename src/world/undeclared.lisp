@@ -58,12 +58,6 @@ is written, in a map if MAP-P."
   (dolist (slip (slips-in descriptor))
     (warn-once (first slip) world (slip-text name slip))))
 
-(defun carried-p (key world)
-  "True if any thing of WORLD says something of the attribute KEY."
-  (do-things (thing world)
-    (when (assoc key (thing-attributes thing) :test #'eq)
-      (return-from carried-p t))))
-
 (defun strange-name-text (key)
   "Return in words that nothing has the attribute KEY, and what may be meant."
   (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~]~:[~;: that ~
@@ -76,32 +70,6 @@ is written, in a map if MAP-P."
               (said-p key world)
               (carried-p key world))
     (warn-once key world (strange-name-text key))))
-
-;;; What programs ask of a thing, or give it, many a time: of most names it is known what they may
-;;; be slips for.
-
-(define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
-  "For names that are not declared, the declared name that each may be a slip for, or NIL.")
-
-(defun known-likeness (key)
-  "Return what DECLARED-NAME-LIKE does of KEY, an undeclared attribute's."
-  (multiple-value-bind (like known-p) (gethash key *likenesses*)
-    (if known-p
-        like
-        (setf (gethash key *likenesses*) (declared-name-like key)))))
-
-(defun note-slip (operator thing key)
-  "Warn, once, if OPERATOR was given KEY for an attribute of THING, in a world, which is declared by
-nobody, had by nothing, and looks like a declared one."
-  (let ((world (thing-world thing)))
-    (when (and world
-               (not (attribute-of key))
-               (known-likeness key)
-               (not (said-p key world))
-               (not (carried-p key world)))
-      (warn-once key world
-                 (format nil "~(~A~) of ~(~A~): ~(~S~) is not declared; did you mean ~(~S~)?"
-                         operator (thing-name thing) key (known-likeness key))))))
 
 ;;; An attribute that is declared anew may no longer have the values that things have.
 
