@@ -123,6 +123,8 @@ ticks."
   (begin-movement robot)
   (go-on-now operation 'drive-to-wall))
 
+(defmethod stop-p ((name (eql 'robot-stop))) t)
+
 ;; A stop that interrupts another goes on where that was.
 (defmethod note-cut-short ((name (eql 'robot-stop)) operation rival)
   (if (eq name (command-name (operation-command rival)))

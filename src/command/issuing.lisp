@@ -89,9 +89,13 @@ of another."
 
 ;;; One command after the other, and no tick between them.
 
+(defgeneric stop-p (name)
+  (:documentation "True if the command called NAME just stops the robot.")
+  (:method (name) (declare (ignore name)) nil))
+
 (defun lasting-p (command)
   "True if COMMAND takes time, and does not just stop the robot: a newer one cuts it short."
-  (not (or (command-instant-p command) (eq 'robot-stop (command-name command)))))
+  (not (or (command-instant-p command) (stop-p (command-name command)))))
 
 (defun by-program-p ()
   "True where a program asks, one that is not of plans, the prompt or a journal: whoever has called
@@ -141,10 +145,10 @@ tick, or live in the one before, and is not told of the end of that."
                        (command-name before) (told-at-end before) (command-name command)
                        (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
-(defun relative-turn-p (command)
-  "True if COMMAND turns the robot from where it faces, so that to ask again is to turn on."
-  (member (command-name command)
-          '(robot-turn robot-about-face robot-turn-left robot-turn-right)))
+(defgeneric relative-turn-p (name)
+  (:documentation "True if the command called NAME turns the robot from where it faces, so that to
+ask again is to turn on.")
+  (:method (name) (declare (ignore name)) nil))
 
 (defun doubt-again (command resource arguments timeline)
   "Say once if COMMAND, which turns by ARGUMENTS, is asked of RESOURCE, headless, while it is under
@@ -152,7 +156,7 @@ way by the same asker, who is not told of its end: it begins anew."
   (let ((before (resource-event resource)))
     (when (and (operation-p before)
                (eq command (operation-command before))
-               (relative-turn-p command)
+               (relative-turn-p (command-name command))
                (by-program-p)
                (not (live-p timeline))
                (not (operation-finished-p before))

@@ -94,13 +94,17 @@ odometry's reading of the step. See reading 99."
     "Turn ROBOT in place by about ANGLE."
   (turn-by operation robot angle))
 
+(defmethod relative-turn-p ((name (eql 'robot-turn))) t)
+
 (macrolet ((define-turn (name angle words)
-             `(define-command ,name (operation (robot robot))
-                  ((angle "a reading of the angle turned"))
-                  ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
-                   (:report (angle) (turned-text angle)))
-                  ,(format nil "Turn ROBOT in place by about ~A." words)
-                (turn-by operation robot ,angle))))
+             `(progn
+                (define-command ,name (operation (robot robot))
+                    ((angle "a reading of the angle turned"))
+                    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
+                     (:report (angle) (turned-text angle)))
+                    ,(format nil "Turn ROBOT in place by about ~A." words)
+                  (turn-by operation robot ,angle))
+                (defmethod relative-turn-p ((name (eql ',name))) t))))
   (define-turn robot-about-face pi "half a circle")
   ;; As reading 49 says.
   (define-turn robot-turn-left (/ pi -2) "a quarter circle to the left")

@@ -109,11 +109,6 @@ between two cells that are next to each other."
 (defun too-fast-p (camera designator)
   (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))
 
-(defun approached-p (camera)
-  "True if its robot is on the way to what CAMERA tracks."
-  (let ((event (resource-event (camera-robot camera))))
-    (and event (approaching-p event camera))))
-
 (defun gone-p (camera designator)
   "True if CAMERA cannot follow the non-local DESIGNATOR any longer. Arrival at the end of an
 approach is the approach's to tell (reading 112)."

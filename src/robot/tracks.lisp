@@ -51,6 +51,11 @@ CODE."))
   (loop for camera across (robot-cameras (designator-robot designator))
           thereis (tracking-p camera designator)))
 
+(defun approached-p (camera)
+  "True if its robot is on the way to what CAMERA tracks."
+  (let ((event (resource-event (camera-robot camera))))
+    (and event (approaching-p event camera))))
+
 ;;; Ending.
 
 (defun tell-track-ended (track code)

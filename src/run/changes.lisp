@@ -58,3 +58,14 @@ sense now."
         (asking (timeline)
           (let ((*goes-on-in-forks-p* by-itself-p))
             (change-again world operator arguments))))))
+
+(defun own-binding-p (binding)
+  "True if BINDING, (symbol . value), is that of this thread alone."
+  (not (eql (cdr binding) (global-value (car binding)))))
+
+(defmethod parameters-bound ((timeline timeline) world)
+  (let ((simulation (world-simulation world)))
+    (flet ((changed () (changed-parameters (simulation-known-parameters simulation))))
+      (cond ((headless-p simulation) (and (eq simulation *simulation*) (changed)))
+            ((and (live-p timeline) (not (owner-p timeline)))
+             (remove-if-not #'own-binding-p (changed)))))))

@@ -2,14 +2,9 @@
 
 (in-package :ars-magna.run)
 
-(defmethod advice-on-use ((operator (eql 'with-simulation)) form)
-  (let* ((head (unquoted (second form)))
-         (names (and (consp head) (mapcar #'unquoted (ldiff head (member-if #'keywordp head))))))
-    (cond ((null head) "name a robot: (with-simulation (ROBOT) ...)")
-          ((symbolp head) (format nil "write (with-simulation (~(~A~)) ...)" head))
-          ((rest names)
-           (format nil "several robots are a list of their own: (with-simulation (~(~A~)) ...)"
-                   (abridged names))))))
+(defun unquoted (form)
+  "Return FORM without the quote that people put before names elsewhere."
+  (if (and (consp form) (eq 'quote (first form))) (second form) form))
 
 (defun robots-form-p (form environment)
   "True if FORM, for the robots of WITH-SIMULATION, is an expression that returns them, and no name

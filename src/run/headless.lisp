@@ -282,10 +282,6 @@ over now.")
   (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
                  (ensure-list names)))
 
-(defun unquoted (form)
-  "Return FORM without the quote that people put before names elsewhere."
-  (if (and (consp form) (eq 'quote (first form))) (second form) form))
-
 (defun robots-meant (names)
   "Return the robots of the current simulation that NAMES, of any package, mean."
   (loop for name in names collect (robot-of-blueprint (find-blueprint name) *world*)))
@@ -341,3 +337,12 @@ bring about."
                            :seed ,seed :parameters ,(settings-form parameters) :clean ,clean
                            :journal ,journal :keep ,keep :thinking ,thinking
                            :errors ,errors)))
+
+(defmethod advice-on-use ((operator (eql 'with-simulation)) form)
+  (let* ((head (unquoted (second form)))
+         (names (and (consp head) (mapcar #'unquoted (ldiff head (member-if #'keywordp head))))))
+    (cond ((null head) "name a robot: (with-simulation (ROBOT) ...)")
+          ((symbolp head) (format nil "write (with-simulation (~(~A~)) ...)" head))
+          ((rest names)
+           (format nil "several robots are a list of their own: (with-simulation (~(~A~)) ...)"
+                   (abridged names))))))

@@ -60,17 +60,6 @@ past."
   (note simulation 'cleaning (list (loop for (symbol value) in *noise-before-cleaning*
                                          collect (list (string-downcase symbol) value)))))
 
-(defun own-binding-p (binding)
-  "True if BINDING, (symbol . value), is that of this thread alone."
-  (not (eql (cdr binding) (global-value (car binding)))))
-
-(defmethod parameters-bound ((timeline timeline) world)
-  (let ((simulation (world-simulation world)))
-    (flet ((changed () (changed-parameters (simulation-known-parameters simulation))))
-      (cond ((headless-p simulation) (and (eq simulation *simulation*) (changed)))
-            ((and (live-p timeline) (not (owner-p timeline)))
-             (remove-if-not #'own-binding-p (changed)))))))
-
 ;;; Remarks. Plans and programs are not repeated in a replay; so what became of them is remarked, by
 ;;; whatever thread, for people to read. It changes nothing.
 
