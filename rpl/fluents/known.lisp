@@ -1,4 +1,4 @@
-;;;; known.lisp -- fluents where a truth value is wanted, and variables known to hold fluents.
+;;;; known.lisp -- variables known to hold fluents, and vectors of fluents where one is wanted.
 
 (in-package :ars-magna.rpl.fluents)
 
@@ -36,27 +36,6 @@ for each part, or T if a fluent.")
   (let ((kind (gethash name *known-variables*)))
     (and (stringp kind) kind)))
 
-;;; In ordinary Lisp code, what is no plan, a fluent is an object like any other.
-
-(defun read-fluent (form)
-  "Return the variable of the fluent whose value FORM reads, or NIL."
-  (when (and (consp form) (consp (cdr form)) (eq 'fluent-value (first form)))
-    (let ((fluent (second form)))
-      (if (and (consp fluent) (consp (cdr fluent))) (second fluent) fluent))))
-
-(defun test-doubt (form)
-  "Return in a sentence why FORM, a test in Lisp code, is always true, or never; or NIL."
-  (cond ((and (typep form '(cons symbol (cons t null)))
-              (member (first form) '("NOT" "NULL") :test #'string=))
-         (test-doubt (second form)))
-        ((and (symbolp form) (known-fluent-variable-p form))
-         (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
-                      (fluent-value ~:*~(~A~))." form))
-        ((known-pulse-p (read-fluent form))
-         (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. Plans write ~
-                      (wait-for ~(~A~)); in Lisp, (await-idle), or (run-until (idle-p)) headless."
-                 form (read-fluent form)))))
-
 (defmethod value-behind ((fluent fluent))
   "FLUENT-VALUE returns the value of a fluent.")
 
@@ -87,16 +66,3 @@ for each part, or T if a fluent.")
   "True if FLUENT is called like a known variable, or an element of one: the robot changes it."
   (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
     (and (find-known (subseq name 0 space)) t)))
-
-(declaim (inline one-fluent truth-value))
-(defun one-fluent (object)
-  "Return OBJECT, a condition; of a fluent, the one that is here. Signals MISUSE if it is a vector
-of fluents."
-  (cond ((fluent-p object) (here object))
-        ((and (simple-vector-p object) (fluents-vector-p object)) (reject-vector object))
-        (t object)))
-
-(defun truth-value (object)
-  "Return the value of OBJECT, a condition: a fluent, or else its own value. Signals MISUSE if it is
-a vector of fluents."
-  (if (fluent-p object) (current-value (here object)) (one-fluent object)))

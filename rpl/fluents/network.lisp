@@ -102,6 +102,19 @@ have set the fluent just before; so who waits for it to be true looks at it afte
            (unwind-protect (value-in-use fluent)
              (release fluent)))))
 
+(declaim (inline one-fluent truth-value))
+(defun one-fluent (object)
+  "Return OBJECT, a condition; of a fluent, the one that is here. Signals MISUSE if it is a vector
+of fluents."
+  (cond ((fluent-p object) (here object))
+        ((and (simple-vector-p object) (fluents-vector-p object)) (reject-vector object))
+        (t object)))
+
+(defun truth-value (object)
+  "Return the value of OBJECT, a condition: a fluent, or else its own value. Signals MISUSE if it is
+a vector of fluents."
+  (if (fluent-p object) (current-value (here object)) (one-fluent object)))
+
 ;; What says why a command has failed is of use only if somebody looks at it.
 (defun looked-at-p (fluent)
   "True if FLUENT was read since FORGET-LOOKS, or is or was in a network, or is waited for."

@@ -20,7 +20,7 @@ no plan.")
   ;; network
   (:export #:base-fluents #:depends-p #:looked-at-p #:forget-looks
            #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
-           #:fluent-value #:operand-value #:unwatch #:watch)
+           #:fluent-value #:operand-value #:one-fluent #:truth-value #:unwatch #:watch)
   ;; realm
   (:export #:*realm* #:+root+ #:fork-realm #:leave-realm #:realm-sources #:source-realm
            #:entity #:entity-realm #:entity-like #:here #:fresh-twin #:foreign-p #:home-forked-p
@@ -32,8 +32,7 @@ no plan.")
            #:call-at-home #:in-use-p #:post #:next-entry #:posted-p)
   ;; known
   (:export #:declare-fluent-variable #:declare-pulse #:known-pulse-p #:known-fluent-variable-p
-           #:known-vector-variable-p #:test-doubt
-           #:robots-fluent-p #:one-fluent #:truth-value)
+           #:known-vector-variable-p #:robots-fluent-p)
   ;; propagation
   (:export #:apply-settings #:give-back-all #:repair-fluents #:pulse #:set-value)
   ;; views

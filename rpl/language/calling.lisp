@@ -23,6 +23,17 @@ was compiled."
                                 (lisp-function (procedure-name procedure))))))))
    (inside (values (frame-up frame) value))))
 
+(defmethod call-code (form scope)
+  (let* ((local (cdr (assoc (first form) (scope-procedures scope))))
+         (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
+         (outer (and local (list (environment-form scope (second local))))))
+    (check-call form scope)
+    `(make-call :form ',(form-as-written form)
+                :count ,(length arguments)
+                :procedure ,(if local (first local) `(ensure-procedure ',(first form)))
+                :caller ,(leaf-lambda `(funcall %function ,@outer ,@arguments) scope
+                                      '%function))))
+
 (defun name-without-quote-p (name scope)
   "True if NAME, a form in SCOPE, is a symbol and no variable."
   (and name

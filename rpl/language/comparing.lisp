@@ -1,4 +1,4 @@
-;;;; comparing.lisp -- tests that are never true: of the states of tasks, of error codes.
+;;;; comparing.lisp -- tests that are always true, or never: of fluents, states of tasks, error codes.
 
 (in-package :ars-magna.rpl.language)
 
@@ -39,6 +39,27 @@
                      (let ((doubt (comparison-doubt subject word)))
                        (when doubt (doubt-own-form comparison "~A" doubt))))
                    form))
+
+;;; In ordinary Lisp code, what is no plan, a fluent is an object like any other.
+
+(defun read-fluent (form)
+  "Return the variable of the fluent whose value FORM reads, or NIL."
+  (when (and (consp form) (consp (cdr form)) (eq 'fluent-value (first form)))
+    (let ((fluent (second form)))
+      (if (and (consp fluent) (consp (cdr fluent))) (second fluent) fluent))))
+
+(defun test-doubt (form)
+  "Return in a sentence why FORM, a test in Lisp code, is always true, or never; or NIL."
+  (cond ((and (typep form '(cons symbol (cons t null)))
+              (member (first form) '("NOT" "NULL") :test #'string=))
+         (test-doubt (second form)))
+        ((and (symbolp form) (known-fluent-variable-p form))
+         (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
+                      (fluent-value ~:*~(~A~))." form))
+        ((known-pulse-p (read-fluent form))
+         (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. Plans write ~
+                      (wait-for ~(~A~)); in Lisp, (await-idle), or (run-until (idle-p)) headless."
+                 form (read-fluent form)))))
 
 (setf *test-doubt* (lambda (form)
                      ;; Plans read fluents by value.

@@ -80,17 +80,10 @@ it, and those to the left of them too, to keep the order."
                 form)
                scope)))
 
-(defun call-code (form scope)
-  "Return code for FORM, a call of a procedure or an unknown function; its arguments do not wait."
-  (let* ((local (cdr (assoc (first form) (scope-procedures scope))))
-         (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
-         (outer (and local (list (environment-form scope (second local))))))
-    (check-call form scope)
-    `(make-call :form ',(form-as-written form)
-                :count ,(length arguments)
-                :procedure ,(if local (first local) `(ensure-procedure ',(first form)))
-                :caller ,(leaf-lambda `(funcall %function ,@outer ,@arguments) scope
-                                      '%function))))
+;; The method stands in calling.lisp, beside the node for calls.
+(defgeneric call-code (form scope)
+  (:documentation "Return code for FORM, a call of a procedure or an unknown function; its arguments
+do not wait."))
 
 (defun function-form-code (form scope)
   "Return code for FORM, a call whose operator has no meaning of its own in plans."

@@ -100,11 +100,6 @@ one."
     (when advice
       (call-at-place form (lambda () (warn-of-call #'warn-of-definition form "~A" advice))))))
 
-(defun awaited-lambda (condition form scope)
-  "Return the lambda expression as CONDITION-LAMBDA does, for what FORM waits for."
-  (check-awaited condition form scope)
-  (condition-lambda condition scope))
-
 ;;; Arguments.
 
 (defun takes-fluents-p (type)

@@ -132,6 +132,11 @@ fluent to wait for."
   (check-condition form)
   (leaf-lambda `(one-fluent ,(as-lisp form scope)) scope))
 
+(defun awaited-lambda (condition form scope)
+  "Return the lambda expression as CONDITION-LAMBDA does, for what FORM waits for."
+  (check-awaited condition form scope)
+  (condition-lambda condition scope))
+
 (defun value-lambda (form scope)
   "Return the lambda expression, of the environment, for the one value of FORM."
   (leaf-lambda (as-lisp form scope) scope))

@@ -34,6 +34,12 @@ happens."
                       thereis (operator-called-p (node-form (frame-node frame))
                                                  '("WHENEVER" "AT-LOCATION")))))
 
+(defun watches-p (task)
+  "True if TASK waits in a loop, or for whatever may come: to wait is what it is for."
+  (find-if (lambda (form)
+             (and (consp form) (member (first form) '("LOOP" "WHENEVER") :test #'string=)))
+           (plan-backtrace task (task-frame task))))
+
 (defun clash-p (older newer)
   "True if the task OLDER, whose command NEWER has interrupted, most likely did not expect that."
   (and older newer

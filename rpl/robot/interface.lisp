@@ -197,6 +197,26 @@ again."
   (loop while (plusp (interface-wanted interface))
         do (yield-thread)))
 
+;;; The thread of live plans; see thread.lisp.
+
+(defun wake (interface)
+  (when (interface-thread interface)
+    (signal-semaphore (interface-wake-up interface))))
+
+(defun thread-of (interface)
+  "Return the thread of the plans of INTERFACE, :STARTING if it is yet to start, or NIL."
+  (let ((thread (interface-thread interface)))
+    (unless (or (member thread '(nil :starting)) (thread-alive-p thread))
+      (swap-if (interface-thread interface) thread nil))
+    (interface-thread interface)))
+
+(defun call-to-plans (interface)
+  "Let the plans of INTERFACE hear soon that there is something for them."
+  (let ((simulation (interface-simulation interface)))
+    (if (thread-of interface)
+        (wake interface)
+        (when (live-p simulation) (wake-owner (simulation-timeline simulation))))))
+
 ;;; Which tasks are the same in several runs; see handles.lisp.
 
 (defun first-eras ()

@@ -12,13 +12,6 @@
     (when interface
       (with-plans (interface) (react-fully interface)))))
 
-(defun end-again (serial)
-  "End the task with the number SERIAL, or all plans if that is NIL, as somebody did then."
-  (let* ((interface (usable-interface))
-         (task (and interface serial (task-numbered serial (interface-runner interface)))))
-    (when (and interface (or task (null serial)))
-      (end-in interface task))))
-
 (defun note-of-plans (interface function &rest arguments)
   "Let the run of INTERFACE remember that FUNCTION of ARGUMENTS does again what is done here."
   (apply #'note-doing (interface-simulation interface) function arguments))

@@ -84,13 +84,6 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
 (defconstant +longest-report+ 4000
   "How many characters a report of plans has at most.")
 
-(defun deadlocked-p (interface)
-  "True if plans of INTERFACE wait and nothing can ever wake them. For any thread."
-  (and (null (hog-of interface))
-       ;; What is published tells most cases apart without the lock.
-       (not (ready-p interface))
-       (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
-
 (defun ended-by-itself-p (task)
   "True if TASK is over, and nobody has made it evaporate."
   (and (task-over-p task) (not (eq :evaporated (task-state task)))))
@@ -254,6 +247,13 @@ place. Signals UNKNOWN-NAME and MISUSE."
   (unless (or (holding-p interface) (thread-of interface))
     (asking ((interface-simulation interface))
       (with-plans (interface) (react-fully interface)))))
+
+(defun end-again (serial)
+  "End the task with the number SERIAL, or all plans if that is NIL, as somebody did then."
+  (let* ((interface (usable-interface))
+         (task (and interface serial (task-numbered serial (interface-runner interface)))))
+    (when (and interface (or task (null serial)))
+      (end-in interface task))))
 
 (defun plan-ending-p (task)
   "True if somebody has ended TASK, a plan, which may still be under way."

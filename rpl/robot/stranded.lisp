@@ -5,12 +5,6 @@
 ;;; Programs may set fluents between two calls of RUN-TICKS. So it is a warning, once for each plan
 ;;; and run, and who reads no messages is shown it if the plan still waits when the run ends.
 
-(defun watches-p (task)
-  "True if TASK waits in a loop, or for whatever may come: to wait is what it is for."
-  (find-if (lambda (form)
-             (and (consp form) (member (first form) '("LOOP" "WHENEVER") :test #'string=)))
-           (plan-backtrace task (task-frame task))))
-
 (defun others-may-help-p (interface)
   "True if what the run calls besides plans may set fluents: kickers, observers, other plans."
   (let ((simulation (interface-simulation interface)))
@@ -53,6 +47,13 @@
                          ""))
                :notable (or (live-p simulation)
                             (lambda () (still-waiting-p parts awaited))))))
+
+(defun deadlocked-p (interface)
+  "True if plans of INTERFACE wait and nothing can ever wake them. For any thread."
+  (and (null (hog-of interface))
+       ;; What is published tells most cases apart without the lock.
+       (not (ready-p interface))
+       (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
 
 (defun stranded-plans (interface)
   "Return a list (task parts) for each plan of INTERFACE that was begun and waits in vain; () if one

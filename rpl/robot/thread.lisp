@@ -5,24 +5,6 @@
 ;;; It lives as long as there are plans and ticks pass by themselves, and sleeps only while none of
 ;;; the plans is ready. The next tick that finds plans starts another.
 
-(defun wake (interface)
-  (when (interface-thread interface)
-    (signal-semaphore (interface-wake-up interface))))
-
-(defun call-to-plans (interface)
-  "Let the plans of INTERFACE hear soon that there is something for them."
-  (let ((simulation (interface-simulation interface)))
-    (if (thread-of interface)
-        (wake interface)
-        (when (live-p simulation) (wake-owner (simulation-timeline simulation))))))
-
-(defun thread-of (interface)
-  "Return the thread of the plans of INTERFACE, :STARTING if it is yet to start, or NIL."
-  (let ((thread (interface-thread interface)))
-    (unless (or (member thread '(nil :starting)) (thread-alive-p thread))
-      (swap-if (interface-thread interface) thread nil))
-    (interface-thread interface)))
-
 (defun leave-to-ticks (interface)
   "Let the plans of INTERFACE, which are to have a thread no longer, go on in the ticks."
   (swap-if (interface-thread interface) (current-thread) nil)

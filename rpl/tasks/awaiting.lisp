@@ -15,3 +15,11 @@
   (:method (awaited) awaited)
   (:method ((watcher watcher)) (watcher-fluent watcher))
   (:method ((timer timer)) (timer-due timer)))
+
+(addition task-awaits)
+(defun task-awaits (task)
+  "Return in words what TASK waits for: a fluent or network, a tick, a valve; NIL if it does not, or
+waits for its own parts."
+  (and (eq (task-state task) :waiting)
+       (task-awaiting task)
+       (awaited-text (task-awaiting task))))

@@ -2,14 +2,6 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(addition task-awaits)
-(defun task-awaits (task)
-  "Return in words what TASK waits for: a fluent or network, a tick, a valve; NIL if it does not, or
-waits for its own parts."
-  (and (eq (task-state task) :waiting)
-       (task-awaiting task)
-       (awaited-text (task-awaiting task))))
-
 (defun blocker-of (task)
   "Return the task nearest to TASK, itself or one that it is part of, that is blocked; or NIL."
   (unless (task-doomed task)
