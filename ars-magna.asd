@@ -112,7 +112,8 @@
     :components ((:file "package") (:file "participant") (:file "journal") (:file "run")
                  (:file "plain-data") (:file "references") (:file "fingerprint")
                  (:file "remembering") (:file "past") (:file "noting")
-                 (:file "runs-of-worlds") (:file "changes") (:file "thinking") (:file "tick") (:file "state") (:file "environments")
+                 (:file "runs-of-worlds") (:file "changes") (:file "thinking") (:file "tick")
+                 (:file "state") (:file "environments")
                  (:file "forking") (:file "counterparts") (:file "keeping") (:file "leaving")
                  (:file "headless-forms") (:file "headless") (:file "live")
                  (:file "replaced-maps") (:file "sealed-lines")
@@ -146,7 +147,8 @@
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "awaiting") (:file "trace") (:file "runner")
                  (:file "words") (:file "charging") (:file "tracing") (:file "machine")
-                 (:file "courtesy") (:file "circles") (:file "ending") (:file "stepping") (:file "blame") (:file "shape")
+                 (:file "courtesy") (:file "circles") (:file "ending") (:file "stepping")
+                 (:file "blame") (:file "shape")
                  (:file "twins") (:file "procedure") (:file "forking") (:file "report")
                  (:file "repair") (:file "care") (:file "engine")
                  (:file "gate") (:file "blocking") (:file "variables") (:file "places")
@@ -164,10 +166,10 @@
     :components ((:file "package") (:file "time") (:file "waiting") (:file "whenever")
                  (:file "failing") (:file "handling") (:file "retry-counters") (:file "trying")
                  (:file "par") (:file "pursue") (:file "try-all") (:file "par-loop")
-                 (:file "par-at-least") (:file "protecting") (:file "policy")
+                 (:file "par-at-least") (:file "protecting") (:file "polling") (:file "policy")
                  (:file "thinking") (:file "blocking") (:file "suspension") (:file "joining")
                  (:file "task-variables") (:file "deadline") (:file "ordering") (:file "valve")
-                 (:file "with-valve") (:file "polling") (:file "named-policies")
+                 (:file "with-valve") (:file "named-policies")
                  (:file "patterns") (:file "goals") (:file "achieving") (:file "at-location")))
    (:module "rpl/seeing" :serial t
     :components ((:file "package") (:file "variables") (:file "subjects") (:file "tree")
@@ -206,12 +208,13 @@
                  (:file "clauses")
                  (:file "defexperiment") (:file "question") (:file "facts")))
    (:module "src/experiment/trial" :serial t
-    :components ((:file "outcome") (:file "data") (:file "trial") (:file "sampling") (:file "version")
-                 (:file "reaching") (:file "fingerprint")))
+    :components ((:file "outcome") (:file "data") (:file "forms") (:file "sampling") (:file "trial")
+                 (:file "version") (:file "reaching") (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
-    :components ((:file "row") (:file "checking") (:file "lines") (:file "series-blocks")
-                 (:file "series-table") (:file "directory")
-                 (:file "origin") (:file "description") (:file "results") (:file "merging") (:file "shards")))
+    :components ((:file "row") (:file "checking") (:file "lines") (:file "files")
+                 (:file "series-blocks") (:file "series-table") (:file "directory")
+                 (:file "origin") (:file "description") (:file "results") (:file "merging")
+                 (:file "shards")))
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "guarding")
                  (:file "rounds") (:file "stopping") (:file "repeatable") (:file "running")))
@@ -227,7 +230,7 @@
     :components ((:file "panels") (:file "result-charts") (:file "pictures") (:file "ways")
                  (:file "ways-picture")))
    (:module "src/experiment/replay" :serial t
-    :components ((:file "aside") (:file "replaying") (:file "trial-series") (:file "failures")))
+    :components ((:file "aside") (:file "replaying") (:file "failures") (:file "trial-series")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors") (:file "ars"))))
   ;; The packages are locked once they are loaded.

@@ -1,4 +1,4 @@
-;;;; comparing.lisp -- tests that are always true, or never: of fluents, states of tasks, error codes.
+;;;; comparing.lisp -- tests that are never true, or always: of task states, error codes, fluents.
 
 (in-package :ars-magna.rpl.language)
 

@@ -1,4 +1,4 @@
-;;;; reading-attributes.lisp -- the attributes that things have, and asking for them by a wrong name.
+;;;; reading-attributes.lisp -- the attributes that things have, and what is said of wrong names.
 
 (in-package :ars-magna.world)
 

@@ -11,11 +11,6 @@
     (let ((*package* package) (*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 90))
       (prin1-to-string form))))
 
-(defun experiment-file (experiment)
-  "Return what the system calls the file that EXPERIMENT is from, or NIL."
-  (let ((entry (lookup-entry (experiment-name experiment) *experiments*)))
-    (and entry (source-file (entry-source entry)))))
-
 (defun file-of-experiment (experiment)
   "Return the name of the file that EXPERIMENT is from, without its directory, or NIL."
   (let ((file (experiment-file experiment)))

@@ -18,33 +18,6 @@
   ;; The texts of the first row of each condition that was kept, by condition. See TEXTS-WITH-MARK.
   (samples (make-hash-table :test 'eq) :read-only t))
 
-(defun file-in (directory name)
-  (merge-pathnames (native-path name) directory))
-
-(defun rows-file (directory) (file-in directory "rows.csv"))
-(defun series-file (directory) (file-in directory "series.csv"))
-(defun machine-file (directory) (file-in directory "machine.csv"))
-(defun description-file (directory) (file-in directory "experiment.txt"))
-
-(defun lock-file (directory) (file-in directory ".lock"))
-
-(defun check-plain (file)
-  "Signal DAMAGED-TABLE if what is called FILE, if anything, is no file of bytes."
-  (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that there is not")
-                       ((and (probe-file file) (not (plain-file-p file)))
-                        "it is a directory, pipe, socket or device"))))
-    (when trouble
-      (reject-table file nil "~A. Remove it, or give another directory." trouble))))
-
-(defun check-files-plain (directory)
-  "Signal DAMAGED-TABLE if what is called like a file of DIRECTORY is no file of bytes."
-  (mapc #'check-plain (list (rows-file directory) (series-file directory) (machine-file directory)
-                            (description-file directory))))
-
-(defun directory-called (name)
-  "Return the absolute path of the directory NAME, a string or pathname."
-  (uiop:ensure-directory-pathname (merge-pathnames (path-called name :directory t) (uiop:getcwd))))
-
 (defun ensure-store-directory (name)
   "Return the path of the directory NAME, made if there is none. Signals MISUSE."
   (let ((path (directory-called name)))
@@ -95,18 +68,6 @@
       (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
 
 ;;; Writing.
-
-(defun check-beginning (file columns)
-  "Signal DAMAGED-TABLE unless FILE begins as a table with COLUMNS does, as far as it goes."
-  (multiple-value-bind (line cut-off-p) (first-line file)
-    (let* ((header (string-right-trim '(#\Newline) (csv-line columns)))
-           (text (and line (line-text line))))
-      (when text
-        (check-header-line line file)
-        (unless (if cut-off-p (starts-with-subseq text header) (string= text header))
-          (reject-table file 1 "its columns are ~A, and those of the table to be written are ~A. ~
-                                Give another directory."
-                        (cut text 200) header))))))
 
 (defun call-writing (function file)
   "Call FUNCTION, which opens or changes FILE. Signals DAMAGED-TABLE if the system refuses."

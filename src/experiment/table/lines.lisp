@@ -35,6 +35,18 @@ from 1. Return where the last one ends."
         (columns-in line file layout)
         (reject-table file nil "it is empty. Delete it."))))
 
+(defun check-beginning (file columns)
+  "Signal DAMAGED-TABLE unless FILE begins as a table with COLUMNS does, as far as it goes."
+  (multiple-value-bind (line cut-off-p) (first-line file)
+    (let* ((header (string-right-trim '(#\Newline) (csv-line columns)))
+           (text (and line (line-text line))))
+      (when text
+        (check-header-line line file)
+        (unless (if cut-off-p (starts-with-subseq text header) (string= text header))
+          (reject-table file 1 "its columns are ~A, and those of the table to be written are ~A. ~
+                                Give another directory."
+                        (cut text 200) header))))))
+
 (defun map-rows (function file)
   "Call FUNCTION with the texts of each row of the table FILE, its line of octets, where that begins
 and its number. Return where the last whole line ends, and the names of the columns. Signals

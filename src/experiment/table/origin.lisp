@@ -31,6 +31,11 @@ is no git, or DIRECTORY is in no tree of it."
                                        ""))
                       ", and changes since")))))
 
+(defun experiment-file (experiment)
+  "Return what the system calls the file that EXPERIMENT is from, or NIL."
+  (let ((entry (lookup-entry (experiment-name experiment) *experiments*)))
+    (and entry (source-file (entry-source entry)))))
+
 (defun origin-lines (experiment)
   "Return what a table of EXPERIMENT that is written now is made with, a list of lines."
   (let* ((file (experiment-file experiment))

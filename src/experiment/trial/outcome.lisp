@@ -1,10 +1,34 @@
-;;;; outcome.lisp -- how a trial went, from what its forms returned.
+;;;; outcome.lisp -- what came of a trial, and how it went, from what its forms returned.
 
 (in-package :ars-magna.experiment)
 
 ;;; An outcome is "success", "failure", "limit" (no more ticks were left), "error" (the trial's
 ;;; own code broke off) or "timeout" (it took too long by the clock). A failure has a reason, a word
 ;;; or two that others may share.
+
+(defstruct (result (:constructor make-result (condition trial seed)) (:copier nil))
+  "What came of a trial."
+  (condition nil :type trial-condition :read-only t)
+  (trial 0 :type integer :read-only t)
+  (seed 0 :type integer :read-only t)
+  (outcome "error" :type string)
+  (reason "" :type string)
+  (ticks 0 :type (or null integer))
+  (measures '() :type list)
+  ;; Lists (tick text...), what was recorded from tick to tick.
+  (series '() :type list)
+  (digest nil :type (or null integer))
+  (error "" :type string))
+
+(document-functions
+  result-trial "Return the number of the trial."
+  result-seed "Return the seed of the trial."
+  result-outcome "Return \"success\", \"failure\", \"limit\", \"error\" or
+\"timeout\"."
+  result-reason "Return why the trial failed, a string."
+  result-ticks "Return how many ticks passed, or NIL if the trial's time was up."
+  result-digest "Return the digest of the state at the end, or NIL."
+  result-error "Return what error there was, a string; \"\" if none.")
 
 (defparameter *plan-states* '(:succeeded :failed :evaporated :deadlock :limit :stopped)
   "What RUN-PLAN returns as its second value.")
@@ -58,3 +82,8 @@ did; else an empty one."
   (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
       (plain-text (failure-text (lisp-failure-condition (first values))))
       ""))
+
+(defun add-error (result text)
+  "Enter into RESULT that there was an error of which TEXT tells, unless there was one before."
+  (when (string= "" (result-error result))
+    (setf (result-error result) (plain-text text))))

@@ -1,4 +1,4 @@
-;;;; trial.lisp -- one trial of an experiment, and what came of it.
+;;;; trial.lisp -- running one trial of an experiment.
 
 (in-package :ars-magna.experiment)
 
@@ -6,30 +6,6 @@
 ;;; parameters but where the experiment says otherwise, with Lisp's own dice made from the seed for
 ;;; code that rolls them, and with settings of the reader and printer that do not depend on where it
 ;;; is run.
-
-(defstruct (result (:constructor make-result (condition trial seed)) (:copier nil))
-  "What came of a trial."
-  (condition nil :type trial-condition :read-only t)
-  (trial 0 :type integer :read-only t)
-  (seed 0 :type integer :read-only t)
-  (outcome "error" :type string)
-  (reason "" :type string)
-  (ticks 0 :type (or null integer))
-  (measures '() :type list)
-  ;; Lists (tick text...), what was recorded from tick to tick.
-  (series '() :type list)
-  (digest nil :type (or null integer))
-  (error "" :type string))
-
-(document-functions
-  result-trial "Return the number of the trial."
-  result-seed "Return the seed of the trial."
-  result-outcome "Return \"success\", \"failure\", \"limit\", \"error\" or
-\"timeout\"."
-  result-reason "Return why the trial failed, a string."
-  result-ticks "Return how many ticks passed, or NIL if the trial's time was up."
-  result-digest "Return the digest of the state at the end, or NIL."
-  result-error "Return what error there was, a string; \"\" if none.")
 
 ;;; Ticks. Who asks for more than there are is left.
 
@@ -95,18 +71,6 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
 :measure. NIL if it did not return, and before it has."
   *trial-values*)
 
-(defun call-form (function condition)
-  "Call FUNCTION, of a form of the experiment, with the values that CONDITION has for variables."
-  (apply (the function function) (condition-arguments condition)))
-
-(defun truth-of (clause function condition)
-  "Return what FUNCTION, of the form of CLAUSE, returns. Signals MISUSE if that is a fluent."
-  (let ((value (call-form function condition)))
-    (when (fluent-p value)
-      (reject-use "The value of ~(~S~) is the fluent ~A itself, which is true whatever its value ~
-                   is. Write (fluent-value ...)." clause (fluent-text value)))
-    value))
-
 (defun pass-until (function condition)
   "Let ticks pass until FUNCTION returns true."
   (loop until (truth-of :until function condition) do (run-ticks 1))
@@ -159,25 +123,12 @@ took for a success and :success does not is one that was only believed."
   (setf (result-ticks result) (simulation-tick)
         (result-digest result) (state-digest)))
 
-(defun add-error (result text)
-  "Enter into RESULT that there was an error of which TEXT tells, unless there was one before."
-  (when (string= "" (result-error result))
-    (setf (result-error result) (plain-text text))))
-
 (defun note-error (result text)
   "Let RESULT be that of a trial that broke off, as TEXT says."
   (setf (result-outcome result) "error"
         (result-reason result) ""
         (result-measures result) '()
         (result-error result) (plain-text text)))
-
-(defun text-of-measure (clause name function condition)
-  "Return the text of what FUNCTION, called NAME in CLAUSE, returns. Signals WRONG-ARGUMENT if a
-table cannot have it."
-  (let ((value (call-form function condition)))
-    (unless (value-p value)
-      (reject-argument clause name value "a number, symbol, string or list of them"))
-    (value-text value)))
 
 (defun outcome-so-far (experiment values)
   "Return outcome and reason of a trial of EXPERIMENT whose form :run returned VALUES. What does not
@@ -223,30 +174,6 @@ end, or that no tick has passed; VALUES are those of :run."
       (note-unfinished result values)
       (note-series result)
       (measure experiment result))))
-
-(defvar *aside-p* nil
-  "True while somebody looks at a trial that stands still: what goes wrong is not the trial's.")
-
-(defun call-until-error (function)
-  "Call FUNCTION, which is not to end this Lisp. Return the condition with which it broke off, or
-NIL."
-  (flet ((leave (condition)
-           (unless *aside-p*
-             (when (and *break-on-user-error* (not (typep condition 'storage-condition)))
-               (invoke-debugger condition))
-             (return-from call-until-error condition))))
-    (let ((*aside-p* nil))
-      (handler-bind (((or error storage-condition) #'leave))
-        (call-refusing-exits function)))
-    nil))
-
-(defun trouble-text (function)
-  "Call FUNCTION. Return what is to be said if it breaks off, or NIL."
-  (let ((trouble (catch 'broken-off
-                   (restart-case (call-until-error function)
-                     (abort () :report "End this trial." "aborted")))))
-    (when (typep trouble 'condition) (regain-room trouble))
-    (if (typep trouble 'condition) (text-of-condition trouble) trouble)))
 
 (defun measure (experiment result)
   "Enter into RESULT what EXPERIMENT measures; of what breaks off, an empty text and the error."
