@@ -23,7 +23,8 @@ that plans use, as those of the manual's appendix D do.")
        (not (member (cons command err) *codes-of-no-trouble* :test #'equal))))
 
 ;; Plain data, so that forks have it, too.
-(defstruct (unread (:type list) (:constructor make-unread (plan command part err)) (:copier nil))
+(defstruct (unread-end (:type list) (:conc-name unread-)
+                       (:constructor make-unread (plan command part err)) (:copier nil))
   "That COMMAND, a name, on the part numbered PART (NIL: the robot) has ended with ERR, of a plan
 with the serial number PLAN."
   plan command part err)

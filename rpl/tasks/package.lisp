@@ -25,7 +25,7 @@ plans nor a simulator.")
            #:evaporating-p #:part-of-p #:under-way-p #:frame-p #:node-names #:task-since
            #:task-doomed #:task-node #:task-uncounted-p #:task-older)
   ;; awaiting
-  (:export #:awaited-text)
+  (:export #:awaited-text #:task-awaits)
   ;; trace
   (:export #:agent-text #:answer-p #:answer-error #:answer-issue #:issue-arguments #:issue-name
            #:issue-p #:issue-task #:trace-entry #:trace-entry-agent #:trace-entry-detail
@@ -74,7 +74,7 @@ plans nor a simulator.")
   (:export #:*failure-hook* #:failure-of #:plan-backtrace)
   ;; report
   (:export #:*plan-end-hooks* #:report-end #:report-failure #:missed-text
-           #:task-awaits #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
+           #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
            #:write-task-tree)
   ;; engine
   (:export #:advance-timers #:note-tick #:apply-next-batch #:close-runner #:tell-at-rest

@@ -30,7 +30,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
            #:experiment-from #:experiment-package #:experiment-limit #:find-condition #:trial-values
            #:condition-name #:condition-parameters #:doubt-nested-run)
-  ;; trial, workers, description, values
+  ;; trial, outcome, workers, description, origin, values
   (:export #:run-trial #:run-guarded #:call-in-silence #:call-by-workers #:form-text
            #:experiment-file #:number-in
            #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks

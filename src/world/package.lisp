@@ -59,8 +59,9 @@
            #:thing-alive-p #:thing-position #:thing-outermost #:thing-holders-text
            #:thing-total-weight
            #:thing-obsmove-p #:thing-obsview-p #:thing-closed-p #:thing-size #:thing-weight
-           #:thing-capacity #:thing-substance-p #:thing-substance-parameter
-           #:get-attribute #:set-attribute #:change-attribute)
+           #:thing-capacity #:thing-substance-p #:thing-substance-parameter #:value-like)
+  ;; reading-attributes, setting-attributes
+  (:export #:get-attribute #:set-attribute #:change-attribute)
   ;; world
   (:export #:world #:world-p #:world-map #:world-seed #:world-flags #:do-cell #:cell-things
            #:world-rank-count #:thing-of-rank #:world-thing-list #:world-robots #:world-timeline
@@ -81,7 +82,7 @@
   (:export #:first-time-p #:said-p #:note-looked-after #:looked-after-p
            #:warn-once #:doubt-angle)
   ;; undeclared
-  (:export #:note-strange-name #:warn-of-slips #:value-like)
+  (:export #:note-strange-name #:warn-of-slips)
   ;; kickers
   (:export #:kicker #:kicker-p #:kicker-name #:kicker-prob #:defkicker #:define-kicker #:find-kicker
            #:all-kickers #:set-kicker #:put-kicker #:call-put-kicker #:run-kicker
