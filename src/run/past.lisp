@@ -29,8 +29,10 @@ externalized, or a function; they are memorized. ASKER is a note of who asked fo
   (fork nil :type simulation :read-only t)
   (acts '() :type list :read-only t))
 
-(defstruct (past (:constructor make-past (limit keeper &key forks acts cost (count (length acts))))
-                 (:copier nil))
+(defstruct (kept-past (:conc-name past-)
+                      (:constructor make-past
+                          (limit keeper &key forks acts cost (count (length acts))))
+                      (:copier nil))
   "What is kept of a run's past: at most LIMIT FORKS, and COUNT ACTS, the newest of both first. The
 next fork is to be made at the tick NEXT, not before DUE, a time in seconds; KEEPER, a function of
 the run and its past, is then called. ROLLED is what the dice of programs were when that was last
