@@ -200,6 +200,34 @@
     (is (string= "" (told (lambda (code who angle) (list code who angle)))))
     (is (string= "" (told (lambda (err robot turned) (list err robot turned)))))))
 
+(test commands.given-again-before-a-tick-has-passed-are-told-of
+  (flet ((told (&rest angles)
+           (rover-writes ()
+             (dolist (angle angles) (command:robot-turn rover angle))
+             (run:run-ticks 20))))
+    (is-true (has-words-p (told 1/2 1/2)
+                          "robot-turn does nothing: robot-turn was asked for before a tick"))
+    (is (string= "" (told 1/2 1/4)))
+    (is (string= "" (told 1/2)))))
+
+(test experiments.warn-of-tests-that-are-always-true
+  (flet ((told (&rest clauses)
+           (warning-about `(experiment:defexperiment always-so (:robots rover) (:run t)
+                             ,@clauses))))
+    (is-true (has-words-p (told '(:success '(> (robot:robot-x rover) 5)))
+                          ":success" "is data, which always counts as true"))
+    (is-true (has-words-p (told '(:until '(> (robot:robot-x rover) 5))) ":until" "is data"))
+    (is-true (has-words-p (told '(:success (lambda () (> (robot:robot-x rover) 5))))
+                          "is a function, which always counts as true"))
+    (is-true (has-words-p (told '(:success (length (robot:robot-hands rover))))
+                          "is a number" "(< 0 (length"))
+    (is-true (has-words-p (told '(:success (driver:run-plan 'turn-once)))
+                          "its failure as the value, which is true"))
+    (is-true (has-words-p (told '(:measure (x '(robot:robot-x rover)))) "measure x is quoted"))
+    (dolist (clause '((:success (> (robot:robot-x rover) 5)) (:success t)
+                      (:measure (x (robot:robot-x rover)) (kind ':fast))))
+      (is (string= "" (told clause))))))
+
 (test experiments.warn-of-the-value-of-a-plan-as-success
   (flet ((told (run) (warning-about `(experiment:defexperiment taken-for-true
                                        (:robots rover) (:run ,run)))))

@@ -121,13 +121,24 @@ tick; or NIL."
          (<= (timeline-tick timeline) (1+ (operation-asked event)))
          event)))
 
-(defun doubt-hurry (command resource timeline)
-  "Say once for a pair if COMMAND is asked of RESOURCE by who has asked for another one in the same
-tick, or live in the one before, and is not told of the end of that."
+(defun corrects-p (command resource arguments before)
+  "True if COMMAND of RESOURCE with ARGUMENTS may be meant to replace BEFORE: it is the same, of a
+part, with other arguments, or in the world of a map, where what was asked may be of another time."
+  (and (eq command (operation-command before))
+       (not (and (robot-p resource)
+                 arguments
+                 (equal arguments (operation-arguments before))
+                 (let ((world (robot-world resource)))
+                   (not (eq world (map-resident (world-map world)))))))))
+
+(defun doubt-hurry (command resource arguments timeline)
+  "Say once for a pair if COMMAND is asked of RESOURCE, with ARGUMENTS, by who has asked for another
+one in the same tick, or live in the one before, and is not told of the end of that. So it is with
+the same command of a robot again, as in a loop."
   (when (and (by-program-p) (lasting-p command))
     (let ((before (or (not-yet-begun resource timeline) (barely-begun resource timeline))))
       (when (and before
-                 (not (eq command (operation-command before)))
+                 (not (corrects-p command resource arguments before))
                  (null (operation-continuation before))
                  (equal (note-of-asker) (request-asker before)))
         (warn-of-hurry (operation-command before) command resource)))))
@@ -317,7 +328,7 @@ takes another number of arguments."
                         (given (command-name command) "arguments" arguments)
                         arguments)))
     (note-asked (occupied command resource))
-    (doubt-hurry command (occupied command resource) timeline)
+    (doubt-hurry command (occupied command resource) arguments timeline)
     (doubt-again command (occupied command resource) arguments timeline)
     (post (make-operation command (occupied command resource) arguments
                           (if (untold-p timeline) nil continuation)

@@ -241,6 +241,20 @@ CLAUSES vary, and what the clause KEY names."
                          that ~S is T then. Write only ~S, whose second value says how it ended, ~
                          or a clause (:success form)." (abridged form) (abridged (second form))))))
 
+(defun number-as-test-advice (form)
+  "Return in sentences that FORM, a test, gives a number; else NIL."
+  (when (or (realp form)
+            (and (consp form) (member (first form) '(length count + - * floor round abs))))
+    (let ((*print-case* :downcase) (*print-pretty* nil))
+      (format nil "~S is a number, which counts as true, also if it is 0. Compare it, as in ~
+                   (< 0 ~:*~S)." form))))
+
+(defun plan-as-test-advice (form)
+  "Return in sentences that FORM, a test, is true if a plan fails; else NIL."
+  (when (and (consp form) (symbolp (first form)) (same-name-p 'run-plan (first form)))
+    (format nil "a plan that fails has its failure as the value, which is true. Let the call of ~
+                 RUN-PLAN be the last form of :run: its second value says how it ended.")))
+
 (defun check-clause (definition clause)
   "Signal MALFORMED-DEFINITION unless CLAUSE has the right shape."
   (ecase (first clause)
@@ -273,13 +287,25 @@ CLAUSES vary, and what the clause KEY names."
     ((:measure :each-tick)
      (check-each definition clause
                  (lambda (part) (and (proper-list-p part) (= 2 (length part))
-                                     (symbolp (first part)) (first part)))))))
+                                     (symbolp (first part)) (first part))))
+     (dolist (part (rest clause)) (doubt-quoted-measure definition part)))))
 
 (defun check-test (definition clause)
   "Signal MALFORMED-DEFINITION unless CLAUSE has one form, and warn if that is no test."
   (unless (= 2 (length clause)) (reject definition clause))
-  (let ((doubt (funcall *test-doubt* (second clause))))
+  (let* ((test (second clause))
+         (doubt (or (funcall *test-doubt* test)
+                    (test-advice test)
+                    (number-as-test-advice test)
+                    (plan-as-test-advice test))))
     (when doubt (doubt-definition "~A: ~(~S~): ~A" definition (first clause) doubt))))
+
+(defun doubt-quoted-measure (definition part)
+  "Warn if the form in PART, (name form), is quoted: the measure is that form then."
+  (when (typep (second part) '(cons (eql quote) (cons cons null)))
+    (let ((*print-case* :downcase) (*print-pretty* nil))
+      (doubt-definition "~A: the measure ~(~A~) is quoted, and so no value. Write the form alone: ~
+                         ~S." definition (first part) (second (second part))))))
 
 (defun check-whole (definition name clauses)
   "Signal MALFORMED-DEFINITION unless CLAUSES make an experiment."
