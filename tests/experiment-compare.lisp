@@ -129,6 +129,48 @@
                  (third (experiment:comparison-verdicts
                          (experiment:compare-conditions results 1 2 :stream nil)))))))
 
+;;; Numbers that are near each other, and very large and small ones.
+
+(defun mentions-all-p (text &rest words)
+  (every (lambda (word) (mentions-p text word)) words))
+
+(defun told-of-means (function)
+  "Return what a comparison says of a measure that FUNCTION gives for a seed and 1 or 2."
+  (let ((difference (experiment::mean-difference
+                     "x"
+                     (loop for seed from 1 to 12 collect (funcall function seed 1))
+                     (loop for seed from 1 to 12 collect (funcall function seed 2)))))
+    (experiment::adjust-for-all (list difference))
+    (experiment::verdict difference (experiment::make-contrast "" "one" "two"))))
+
+(test compare.calls-equal-only-what-is
+  (flet ((told (base step)
+           (told-of-means (lambda (seed way) (declare (ignore seed)) (+ base (* way step))))))
+    (is (mentions-all-p (told 4d9 1d-3) "x is less with one than with two" "4000000000.001"
+                    "4000000000.002"))
+    (let ((text (told 1 1d-15)))
+      (is (mentions-all-p text "differs by no more than rounding may, at most 8.88178"
+                          "1.000000000000001" "1.000000000000002"))
+      (is (not (mentions-p text "equal"))))
+    (is (mentions-all-p (told 5 0) "is equal, seed by seed"))))
+
+(test compare.shows-small-differences
+  (is (mentions-all-p (told-of-means (lambda (seed way) (* 1d-300 (+ seed way))))
+                  "7.500e-300 against 8.500e-300" "difference -1.000e-300"))
+  (is (mentions-all-p (told-of-means (lambda (seed way) (+ 1 (* way 1d-9 (+ 1 (/ seed 1d6))))))
+                  "1.000000001" "1.000000002")))
+
+(test compare.tells-of-numbers-that-are-too-large
+  (let ((difference (experiment::difference-of-values "x" '(1d99 5 5) '(5 5 5))))
+    (is (mentions-all-p (experiment::verdict difference (experiment::make-contrast "" "one" "two"))
+                        "x of one and two cannot be compared: under 1 of 3 common seeds it is "
+                        "beyond 1e15" ":none"))))
+
+(test tables.have-decimal-numbers-whatever-a-trial-sets
+  (let ((*print-base* 16) (*print-radix* t))
+    (is (equal '("17" "-255" "[17, 1]" "100")
+               (mapcar #'experiment::value-text '(17 -255 (17 1) 100))))))
+
 (test compare.is-the-same-the-other-way-round
   (with-made-up (results (patrol-and-spiral))
     (let ((one (difference-in "success" (experiment:compare-conditions results 1 2 :stream nil)))

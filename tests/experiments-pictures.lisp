@@ -352,7 +352,7 @@
   "Sums of the same numbers in another order are no more and no less."
   (let ((difference (experiment::mean-difference
                      "x"
-                     (loop for i from 1 to 12 collect (* (+ 6 i) (+ 1 2d-13)))
+                     (loop for i from 1 to 12 collect (* (+ 6 i) (+ 1 2d-14)))
                      (loop for i from 1 to 12 collect (+ 6d0 i)))))
     (is (= 1 (experiment:paired-p difference)))
     (is (zerop (experiment:paired-low difference)))

@@ -112,7 +112,8 @@ indexes."
   (flet ((all (test) (and (every test firsts) (every test seconds))))
     (cond ((all (lambda (value) (typep value 'boolean))) (rate-difference name firsts seconds))
           ((or (some #'realp firsts) (some #'realp seconds))
-           (multiple-value-call #'mean-difference name (only-numbers firsts seconds)))
+           (or (too-large-difference name :mean firsts seconds)
+               (multiple-value-call #'mean-difference name (only-numbers firsts seconds))))
           (t nil))))
 
 (defun difference-in (name results first other-results second pairs)

@@ -9,7 +9,7 @@
 (defstruct (paired-difference (:conc-name paired-)
                               (:constructor make-difference
                                   (measure kind trials first second low high p
-                                   &optional table same-p))
+                                   &optional table same-p note))
                               (:copier nil))
   "How two conditions differ in MEASURE, a KIND of number: :RATE or :MEAN."
   (measure "" :type string :read-only t)
@@ -23,6 +23,8 @@
   (table '() :type list :read-only t)
   ;; True if there is no difference in any pair.
   (same-p nil :type boolean :read-only t)
+  ;; What is said in place of a verdict: that there is only rounding, or why there is none; or NIL.
+  (note nil :type (or null string) :read-only t)
   ;; As one of how many tests it counts, and what P is worth as that.
   (tests 1 :type integer)
   (adjusted-p nil))
@@ -85,7 +87,7 @@ can be does not depend on it."
 
 ;; Who adds the same floats in another order gets other last digits: that is no difference. Whole
 ;; numbers and ratios have none.
-(defconstant +grain+ 1d-12 "What two floats differ in less than by this share of them are equal.")
+(defconstant +grain+ 1d-13 "By which share of them two floats may differ that rounding has parted.")
 
 (defun equal-but-for-rounding-p (a b)
   (and (or (floatp a) (floatp b))
@@ -95,9 +97,37 @@ can be does not depend on it."
   "Return FIRSTS with the numbers of SECONDS in place of those that are equal but for rounding."
   (mapcar (lambda (a b) (if (equal-but-for-rounding-p a b) b a)) firsts seconds))
 
+(defun rounding-note (firsts seconds)
+  "Return in words that FIRSTS and SECONDS, numbers that rounding may have parted, differ; NIL if
+they are equal."
+  (unless (every #'= firsts seconds)
+    (format nil "differs by no more than rounding may, at most ~A, seed by seed: ~A against ~A on ~
+                 average"
+            (float-text (double (loop for a in firsts
+                                      for b in seconds
+                                      maximize (abs (- (rational a) (rational b))))))
+            (float-text (mean firsts))
+            (float-text (mean seconds)))))
+
+(defun too-large-p (value)
+  (and (realp value) (not (quantity-p value))))
+
+(defun too-large-difference (measure kind firsts seconds)
+  "Return, as a difference, that MEASURE has numbers among FIRSTS and SECONDS that statistics do not
+take; NIL if it has none."
+  (let ((count (loop for a in firsts
+                     for b in seconds
+                     count (or (too-large-p a) (too-large-p b)))))
+    (when (plusp count)
+      (make-difference measure kind 0 nil nil nil nil nil '() nil
+                       (format nil "cannot be compared: under ~D of ~D common seed~:P it is beyond ~
+                                    1e15. Measure :none where there is no number, or use a larger ~
+                                    unit" count (length firsts))))))
+
 (defun mean-difference (measure firsts seconds &optional (kind :mean))
   "Return how large MEASURE is on average, by FIRSTS and SECONDS, lists of numbers."
-  (let ((trials (length firsts)) (firsts (without-rounding firsts seconds)))
+  (let* ((trials (length firsts)) (measured firsts) (firsts (without-rounding firsts seconds))
+         (same-p (every #'= firsts seconds)))
     (if (zerop trials)
         (make-difference measure kind 0 nil nil nil nil nil)
         (multiple-value-bind (low high) (mean-difference-interval firsts seconds)
@@ -108,7 +138,8 @@ can be does not depend on it."
                                                      :resamples (draws-for trials)
                                                      :rare-too t))
                            '()
-                           (every #'= firsts seconds))))))
+                           same-p
+                           (and same-p (rounding-note measured seconds)))))))
 
 ;;; Several.
 

@@ -56,8 +56,10 @@ trials of SEEDS."
            (difference :rate (loop for (seed a b) in values
                                    collect (list seed (if a 1 0) (if b 1 0)))))
           ((some (lambda (entry) (some #'realp (rest entry))) values)
-           (difference :mean (remove-if-not (lambda (entry) (every #'quantity-p (rest entry)))
-                                            values))))))
+           (or (too-large-difference (string-downcase name) :mean
+                                     (mapcar #'second values) (mapcar #'third values))
+               (difference :mean (remove-if-not (lambda (entry) (every #'quantity-p (rest entry)))
+                                                values)))))))
 
 (defun overall-contrast (first second pairs names results &optional (other-results results))
   "Return the contrast of what is called FIRST and SECOND over all PAIRS, lists of samples of

@@ -14,18 +14,32 @@
   "Return SHARE, seen in TRIALS, in hundredths."
   (decimals-text (* 100 share) (max 0 (- (length (princ-to-string (max 1 (1- trials)))) 2))))
 
-(defun decimals-known (low high)
-  "Return how many decimals a mean between LOW and HIGH is worth."
-  (if (and low (< low high))
-      (max 0 (min 6 (- 1 (power-of-ten (rational (- high low))))))
-      3))
+(defun decimals-known (low high estimate)
+  "Return how many decimals a mean is worth whose ESTIMATE lies between LOW and HIGH, or NIL."
+  (flet ((decimals (size) (- 1 (power-of-ten (rational size)))))
+    (let ((enough (if (member estimate '(nil 0 0d0)) 6 (max 3 (+ 2 (decimals estimate))))))
+      (if (and low (< low high))
+          (max 0 (min enough (decimals (- high low))))
+          (if (member estimate '(nil 0 0d0)) 3 enough)))))
+
+(defun exponent-text (value)
+  "Return VALUE with four digits and its power of ten."
+  (if (zerop value)
+      "0"
+      (let* ((power (power-of-ten (* 100005/100000 (rational value))))
+             (share (/ (rational value) (expt 10 power))))
+        (format nil "~,3Fe~D" (double share) power))))
 
 (defun number-writer (difference)
   "Return a function that writes the numbers of DIFFERENCE, without units."
   (if (eq :rate (paired-kind difference))
       (lambda (value) (hundredths-text value (paired-trials difference)))
-      (let ((decimals (decimals-known (paired-low difference) (paired-high difference))))
-        (lambda (value) (decimals-text value decimals)))))
+      (let ((decimals (decimals-known (paired-low difference) (paired-high difference)
+                                      (paired-estimate difference))))
+        (lambda (value)
+          (if (<= decimals 15)
+              (decimals-text value decimals)
+              (exponent-text value))))))
 
 (defun p-figure (p)
   "Return the probability P as people write it: .032, .15."
@@ -134,7 +148,10 @@
   "Return in words what DIFFERENCE, of CONTRAST, tells."
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
     (format nil "~@[~A: ~]~A." (contrast-where contrast)
-            (cond ((or (null (paired-p difference)) (null (paired-low difference)))
+            (cond ((paired-note difference)
+                   (format nil "~A of ~A and ~A ~A" (paired-measure difference) first second
+                           (paired-note difference)))
+                  ((or (null (paired-p difference)) (null (paired-low difference)))
                    (format nil "~A of ~A and ~A cannot be compared: ~A"
                            (paired-measure difference) first second (trials-words difference)))
                   ((= 0 (paired-low difference) (paired-high difference))

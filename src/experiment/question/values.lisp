@@ -95,17 +95,19 @@ and is the same in each run."
   "Return TEXT between quotes, as JSON has it."
   (with-output-to-string (out) (write-json-string (plain-text text) out)))
 
+;; A trial may have set the printer's variables.
 (defun value-text (value)
   "Return how VALUE stands in a table."
   (case value
     ((t) "TRUE")
     ((nil) "FALSE")
     (:none "")
-    (t (typecase value
-         (number (number-text value))
-         (cons (plain-text (json-text value)))
-         (string (plain-text value))
-         (t (plain-text (bare-text value)))))))
+    (t (printing-plainly ()
+         (typecase value
+           (number (number-text value))
+           (cons (plain-text (json-text value)))
+           (string (plain-text value))
+           (t (plain-text (bare-text value))))))))
 
 ;;; Back from a table.
 
