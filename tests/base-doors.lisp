@@ -259,3 +259,20 @@
     (is-true (base:wait-patiently left 60))
     (base:join-thread thread)
     (is-false (base:wait-patiently left 0.01))))
+
+(test relative-names.begin-at-one-place-for-the-system-and-for-lisp
+  (call-in-directory
+   (lambda (directory)
+     (let ((*default-pathname-defaults* directory))
+       (is (equal directory (base:base-directory)))
+       (base:make-directories #p"a/b/")
+       (is-true (uiop:directory-exists-p (merge-pathnames "a/b/" directory)))
+       (is-true (base:make-new-directory #p"a/c/"))
+       (let ((file (base:path-called "a/b/words.txt")))
+         (base:write-file-anew (lambda (out) (write-string "some words" out)) file "the text")
+         (is (null (base:unusable-file-text file)))
+         (is (string= "some words" (base:file-text file)))
+         (base:cut-file file 4)
+         (is (string= "some" (base:file-text file)))
+         (base:replace-file (base:path-called "a/c/other") file))
+       (is-true (base:existing-path (merge-pathnames "a/c/other" directory)))))))

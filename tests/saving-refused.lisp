@@ -53,3 +53,15 @@ FILE as it is."
         (let ((box (world:make-new-thing 'box '(hermitage 5 5) '((:size 1) (:capacity 5)))))
           (setf (world::thing-location box) box)
           (check-refused #'run:save-simulation "BOX" file))))))
+
+(test relative-names.begin-at-one-place-when-saved-and-when-loaded
+  (with-hermits ()
+    (call-in-directory
+     (lambda (directory)
+       (let ((*default-pathname-defaults* directory))
+         (run:with-simulation (hermit :journal t)
+           (run:run-ticks 1)
+           (dolist (path (list (run:save-simulation "run.sim") (run:save-journal "run.journal")))
+             (is (equal (truename directory) (uiop:pathname-directory-pathname path)))))
+         (is (= 1 (run:simulation-tick (run:load-simulation "run.sim"))))
+         (is-true (run:load-journal "run.journal")))))))

@@ -67,7 +67,7 @@
   "Write the manual into DIRECTORY, a name, which is made if there is none. Return the path of its
 first page."
   (let ((directory (uiop:ensure-directory-pathname
-                    (merge-pathnames (path-called directory) (uiop:getcwd))))
+                    (merge-pathnames (path-called directory) (base-directory))))
         (book (read-book)))
     (make-directories directory)
     (write-pages book directory)

@@ -31,6 +31,18 @@ directory; ~ and ~/ are the home directory."
            (merge-pathnames (path (subseq name 2)) (user-homedir-pathname)))
           (t (path name)))))
 
+;;; Relative names begin where Lisp's functions for files begin, not where the system's calls do.
+
+(defun base-directory ()
+  "Return the absolute path of the directory in which relative names of files begin: that of
+*DEFAULT-PATHNAME-DEFAULTS*, which by default is the current directory."
+  (uiop:pathname-directory-pathname (uiop:get-pathname-defaults)))
+
+(defun system-name (path)
+  "Return the name of PATH, a pathname or string, for calls of the system: one that is relative
+begins in the BASE-DIRECTORY."
+  (native-name (merge-pathnames path (base-directory))))
+
 (defun many-files-p (name)
   "True if NAME, a pathname or string, stands for many files, or has a [ that nothing closes."
   (handler-case (wild-pathname-p name)
@@ -62,26 +74,26 @@ NIL."
       (native-name directory))))
 
 (defun replace-file (file by)
-  "Let the file BY have the name FILE, in place of what is there, at one stroke. Both are pathnames
-as they are, with nothing to be filled in. Signals an error if the system refuses."
-  (sb-posix:rename (native-name by) (native-name file))
+  "Let the file BY have the name FILE, in place of what is there, at one stroke. Both are pathnames;
+only a directory is filled in. Signals an error if the system refuses."
+  (sb-posix:rename (system-name by) (system-name file))
   (values))
 
 (defun copy-permissions (file from)
   "Give FILE the permissions of the file FROM, if there is one."
-  (let ((status (ignore-errors (sb-posix:stat (native-name from)))))
+  (let ((status (ignore-errors (sb-posix:stat (system-name from)))))
     (when status
-      (sb-posix:chmod (native-name file) (logand #o777 (sb-posix:stat-mode status))))))
+      (sb-posix:chmod (system-name file) (logand #o777 (sb-posix:stat-mode status))))))
 
 (defun plain-file-p (path)
   "True if PATH is a file of bytes: no directory, device or pipe. Signals an error if there is
 nothing."
   (= sb-posix:s-ifreg
-     (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (native-name path))))))
+     (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (system-name path))))))
 
 (defun write-protected-p (path)
   "True if nobody may write the file PATH, by its permissions, or this process may not."
-  (let ((name (native-name path)))
+  (let ((name (system-name path)))
     (or (zerop (logand #o222 (sb-posix:stat-mode (sb-posix:stat name))))
         (handler-case (progn (sb-posix:access name sb-posix:w-ok) nil)
           (sb-posix:syscall-error () t)))))
@@ -94,7 +106,7 @@ nothing."
 
 (defun dangling-link-p (path)
   "True if PATH, a pathname or string, is a link to something that there is not."
-  (let ((name (native-name (merge-pathnames path))))
+  (let ((name (system-name path)))
     (and (ignore-errors (sb-posix:lstat name))
          (not (ignore-errors (sb-posix:stat name))))))
 
@@ -105,7 +117,7 @@ nothing."
   "Return why PATH, a pathname or string, is the name of no file of bytes, in words, or NIL."
   (cond ((many-files-p path) *many-files-text*)
         ((string= "" (native-name path)) "that is no name; give the name of a file")
-        ((not (ignore-errors (sb-posix:stat (native-name path))))
+        ((not (ignore-errors (sb-posix:stat (system-name path))))
          "there is no such file, or none that may be seen")
         ((not (plain-file-p path)) "it is a directory or a device")))
 
@@ -130,7 +142,7 @@ nothing."
 
 (defun cut-file (path length)
   "Let the file PATH end after LENGTH octets."
-  (sb-posix:truncate (native-name path) length)
+  (sb-posix:truncate (system-name path) length)
   (values))
 
 (defun make-directories (path)
@@ -139,7 +151,7 @@ nothing."
   (unless (uiop:directory-exists-p path)
     (let ((parent (uiop:pathname-parent-directory-pathname path)))
       (unless (equal parent path) (make-directories parent)))
-    (handler-case (sb-posix:mkdir (string-right-trim "/" (native-name path)) #o777)
+    (handler-case (sb-posix:mkdir (string-right-trim "/" (system-name path)) #o777)
       (sb-posix:syscall-error ()
         (unless (uiop:directory-exists-p path)
           (error "~A cannot be made; give the name of a directory that can be"
@@ -147,7 +159,7 @@ nothing."
 
 (defun make-new-directory (path)
   "Make the directory PATH, in one that is there. True if nothing of that name was there before."
-  (handler-case (progn (sb-posix:mkdir (string-right-trim "/" (native-name path)) #o700) t)
+  (handler-case (progn (sb-posix:mkdir (string-right-trim "/" (system-name path)) #o700) t)
     (sb-posix:syscall-error (condition)
       ;; Whoever had it may have removed it by now.
       (unless (= sb-posix:eexist (sb-posix:syscall-errno condition)) (error condition)))))
@@ -156,7 +168,7 @@ nothing."
   "Call FUNCTION while no other process that asks so has the file PATH, which is made if there is
 none; the system lets go of it when this process ends, in whatever way. Return true and what
 FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFUSED instead."
-  (let ((descriptor (handler-case (sb-posix:open (native-name path)
+  (let ((descriptor (handler-case (sb-posix:open (system-name path)
                                                  (logior sb-posix:o-creat sb-posix:o-rdwr) #o644)
                       (sb-posix:syscall-error () (funcall refused)))))
     (unwind-protect

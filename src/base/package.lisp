@@ -44,7 +44,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; printing
   (:export #:call-printing-plainly #:printing-plainly #:printing-words)
   ;; files, file-text, kinds-of-files, processes
-  (:export #:native-name #:native-path #:native-path-of-directory #:path-called #:existing-path
+  (:export #:base-directory #:native-name #:native-path #:native-path-of-directory
+           #:path-called #:existing-path
            #:missing-directory #:many-files-p
            #:replace-file #:plain-file-p #:check-unprotected #:dangling-link-p #:name-in-directory
            #:file-size

@@ -48,4 +48,4 @@ UNUSABLE-FLOOR for ~user."
   (let ((trouble (unusable-file-text file)))
     (when trouble
       (reject-floor file nil "~A (relative names begin in ~A)"
-                    trouble (native-name (uiop:getcwd))))))
+                    trouble (native-name (base-directory))))))

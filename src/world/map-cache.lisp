@@ -173,7 +173,7 @@ or damaged, or that cannot be told."
 (defun cache-path (name)
   "Return the pathname of the cache called NAME, a string or pathname: as seen from the file that
 the definition at hand stands in, or from the current directory if that was typed."
-  (let ((directory (uiop:getcwd))
+  (let ((directory (base-directory))
         (file (source-file (current-source))))
     (merge-pathnames (path-called name)
                      (if file

@@ -27,4 +27,4 @@
 
 (defun directory-called (name)
   "Return the absolute path of the directory NAME, a string or pathname."
-  (uiop:ensure-directory-pathname (merge-pathnames (path-called name :directory t) (uiop:getcwd))))
+  (uiop:ensure-directory-pathname (merge-pathnames (path-called name :directory t) (base-directory))))
