@@ -191,10 +191,47 @@
            (put description (format nil "# mine~%image: other.pgm~%"))
            (is-true (refused-p "room.yaml: it is not the description of a map" description))
            (put description (format nil "# mine~%image: room.pgm~%"))
+           (is-true (refused-p "room.pgm: it is not a PGM or PNG image" image))
+           (dolist (beginning '("" "P2 1 1 255 0" "P5 "))
+             (put image beginning)
+             (is-true (ars:export-map 'plain-room description)))
            (is-true (ars:export-map 'plain-room description))
            (is-true (ars:export-map 'plain-room description))
            (put description "notes: none")
            (is-true (refused-p "room.yaml: it is not the description of a map" description))))))))
+
+(test export.through-a-link-writes-the-pair-beside-its-target
+  (with-own-definitions
+    (eval '(world:defmap plain-room (6 5) (rect (0 0) (5 4) slate 1)))
+    (call-in-directory
+     (lambda (directory)
+       (flet ((file (name) (base:native-name (merge-pathnames name directory)))
+              (put (file text)
+                (base:call-replacing-file (lambda (out) (write-string text out)) file)))
+         (ensure-directories-exist (file "sub/"))
+         (put (file "sub/real.yaml") "image: q.pgm")
+         (sb-posix:symlink (file "sub/real.yaml") (file "room.yaml"))
+         (is (equal (list (file "sub/real.yaml") (file "sub/real.pgm"))
+                    (mapcar #'base:native-name
+                            (multiple-value-list
+                             (ars:export-map 'plain-room (file "room.yaml"))))))
+         (is (null (base:existing-path (file "room.pgm"))))
+         (is-true (ars:import-map (file "room.yaml") :name 'plain-room))
+         (put (file "notes.pgm") "my notes")
+         (delete-file (file "sub/real.pgm"))
+         (sb-posix:symlink (file "notes.pgm") (file "sub/real.pgm"))
+         (signals ars:unusable-floor (ars:export-map 'plain-room (file "room.yaml")))
+         (is (string= "my notes" (base:read-file-into-string (file "notes.pgm")))))))))
+
+(test relative-names.begin-where-lisp-says
+  (with-own-definitions
+    (eval '(world:defmap plain-room (6 5) (rect (0 0) (5 4) slate 1)))
+    (call-in-directory
+     (lambda (directory)
+       (let ((*default-pathname-defaults* directory))
+         (is (equal (truename directory)
+                    (uiop:pathname-directory-pathname (ars:export-map 'plain-room "room.yaml"))))
+         (is-true (ars:import-map "room.yaml" :name 'plain-room)))))))
 
 (defun spoiled-text (text dice)
   "Return TEXT with some characters changed, left out or put in, as DICE say."

@@ -100,6 +100,10 @@ not possible."
     (reject-argument 'export-map 'file file
                      "a name without line ends and the like, which cannot stand in the file")))
 
+(defun linked-file (path)
+  "Return the truename of the file PATH, which may be a link; PATH if there is none."
+  (or (ignore-errors (existing-path path)) path))
+
 (defun image-named-in (file)
   "Return the truename of the image that the description FILE names, or NIL if it is none."
   (ignore-errors
@@ -109,7 +113,7 @@ not possible."
 
 (defun check-pair (path image)
   "Signal UNUSABLE-FLOOR if there is a file PATH that is no description of a map, or a file IMAGE
-that PATH does not name."
+that PATH does not name, or that is no image."
   (let ((named (image-named-in path)) (there (ignore-errors (existing-path image))))
     (flet ((reject (file what)
              (reject-floor file nil "it is not ~A, and is left as it is. Give another name, or ~
@@ -117,7 +121,9 @@ that PATH does not name."
       (when (and (null named) (foreign-file-p path :floor))
         (reject path "the description of a map"))
       (unless (or (null there) (equal there named) (zerop (file-size there)))
-        (reject image (format nil "the image of ~A" (native-name path)))))))
+        (reject image (format nil "the image of ~A" (native-name path))))
+      (when (foreign-file-p image :image)
+        (reject image "a PGM or PNG image")))))
 
 (addition export-map)
 (defun export-map (map file &key unknown)
@@ -127,13 +133,13 @@ is called the same. ~/ is the home directory. A pixel is a cell, as wide as MAP-
 IMPORT-MAP makes the same cells of it. UNKNOWN says, as for IMPORT-MAP, which walls are written as
 what nobody knows: a substance, or a list of that and a parameter, such as (glass 5); NIL and :WALLS
 say none; a substance that MAP has no walls of is for no pixel. Substances and things are not
-written. A description of a map that is there is replaced, and the image that it names. Return the
-truenames of both. Signals UNUSABLE-FLOOR, as where something else has one of these names, and
+written. A description of a map that is there is replaced, and the image that it names. If FILE is a
+link, both are written where it leads to, called as that is. Return the truenames of both. Signals UNUSABLE-FLOOR, as where something else has one of these names, and
 WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they were."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-said-p unknown)
                   "the name of a substance, or a list of that and a parameter, as in (glass 5)")
-  (let ((map (map-from 'export-map map)) (path (file-called file)))
+  (let ((map (map-from 'export-map map)) (path (linked-file (file-called file))))
     (check-description-name file path)
     (let* ((grid (map-grid map unknown))
            (image (make-pathname :type "pgm" :defaults path))
