@@ -134,7 +134,8 @@ IMPORT-MAP makes the same cells of it. UNKNOWN says, as for IMPORT-MAP, which wa
 what nobody knows: a substance, or a list of that and a parameter, such as (glass 5); NIL and :WALLS
 say none; a substance that MAP has no walls of is for no pixel. Substances and things are not
 written. A description of a map that is there is replaced, and the image that it names. If FILE is a
-link, both are written where it leads to, called as that is. Return the truenames of both. Signals UNUSABLE-FLOOR, as where something else has one of these names, and
+link, both are written where it leads to, called as that is. Return the truenames of both. Signals
+UNUSABLE-FLOOR, as where something else has one of these names, and
 WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they were."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-said-p unknown)

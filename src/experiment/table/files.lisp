@@ -27,4 +27,5 @@
 
 (defun directory-called (name)
   "Return the absolute path of the directory NAME, a string or pathname."
-  (uiop:ensure-directory-pathname (merge-pathnames (path-called name :directory t) (base-directory))))
+  (uiop:ensure-directory-pathname
+   (merge-pathnames (path-called name :directory t) (base-directory))))
