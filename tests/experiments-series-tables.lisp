@@ -198,7 +198,7 @@
     (let ((results (walk directory :trials 2)))
       (dolist (designator (list results directory 'walk))
         (is (equal (getf (experiment:replay-trial 'walk 3 2) :series)
-                   (experiment:trial-series designator 3 2))))
+                   (let ((*print-base* 2)) (experiment:trial-series designator 3 2)))))
       (destructuring-bind (tick x phase what rolled chance)
           (first (last (experiment:trial-series results 1 1)))
         (is (= 8 tick))

@@ -344,6 +344,26 @@
     (is (equal '(10 10) (measured results 'base)))
     (is (equal '("(SOME 1.0d0 1.0 \"x\")" "(SOME 1.0d0 1.0 \"x\")") (measured results 'text)))))
 
+;; The second measure sees what the first has set.
+(test trials.write-numbers-alike-whatever-they-set-the-printer-to
+  (define-for-test (:robots ars-worlds:dot)
+    (:run (setf *print-base* 16 *print-radix* t *print-case* :capitalize *print-length* 1) 17)
+    (:measure (number 17) (list '(17 red 1/2)) (small (setf *read-base* 8)) (float 17.5d0))
+    (:each-tick (number 17)))
+  (let ((results (experiment:run-experiment 'question :trials 1 :workers 1 :stream nil)))
+    (is (equal '((17) ("[17, \"red\", 0.5]") (8) (17.5d0))
+               (mapcar (lambda (name) (measured results name)) '(number list small float))))))
+
+(test reports.write-numbers-alike-whatever-the-printer-is-set-to
+  (define-for-test (:robots ars-worlds:dot) (:vary (way 10 20)) (:run way) (:measure (w way)))
+  (let ((results (experiment:run-experiment 'question :trials 20 :workers 1 :stream nil)))
+    (flet ((texts ()
+             (with-output-to-string (out)
+               (experiment:print-results results out)
+               (experiment:compare-conditions results 1 2 :stream out))))
+      (is (string= (texts)
+                   (let ((*print-base* 16) (*print-radix* t) (*read-base* 8)) (texts)))))))
+
 (test digests.are-those-of-the-bare-run
   (define-for-test (:robots ars-worlds:dot)
     (:run (command:robot-go-forward ars-worlds:dot 3) (run:run-ticks 12) t))

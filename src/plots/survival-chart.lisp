@@ -93,7 +93,7 @@ time END."
       (draw-sample canvas (curve-index curve) +margin+ (- y 4) t)
       (dolist (mark (axis-marks (plane-across plane)))
         (write-lines canvas (place (first mark) (plane-across plane)) y
-                     (list (princ-to-string (at-risk (first mark) curve)))
+                     (list (format nil "~D" (at-risk (first mark) curve)))
                      :anchor :middle)))))
 
 (defun survival-chart (curves &rest options

@@ -8,7 +8,7 @@
   "Return the texts of the table for DIFFERENCE."
   (let ((write (number-writer difference)) (rate-p (eq :rate (paired-kind difference))))
     (flet ((text (value) (if value (funcall write value) "-")))
-      (list (paired-measure difference) (princ-to-string (paired-trials difference))
+      (list (paired-measure difference) (integer-text (paired-trials difference))
             (format nil "~A~:[~; %~]" (text (paired-first difference)) rate-p)
             (format nil "~A~:[~; %~]" (text (paired-second difference)) rate-p)
             (format nil "~A (~A to ~A)" (text (paired-estimate difference))

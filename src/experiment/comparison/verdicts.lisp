@@ -12,7 +12,7 @@
 
 (defun hundredths-text (share trials)
   "Return SHARE, seen in TRIALS, in hundredths."
-  (decimals-text (* 100 share) (max 0 (- (length (princ-to-string (max 1 (1- trials)))) 2))))
+  (decimals-text (* 100 share) (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
 
 (defun decimals-known (low high estimate)
   "Return how many decimals a mean is worth whose ESTIMATE lies between LOW and HIGH, or NIL."

@@ -107,7 +107,7 @@ estimate for a sample."
         for chunk in chunks
         for number from 1
         collect (make-picture (format nil "spread-of-~A" name)
-                              (and (rest chunks) (princ-to-string number))
+                              (and (rest chunks) (integer-text number))
                               (measure-chart chunk :middle-label "mean" :title (title-of results)
                                                    :x-label name
                                                    :subtitle (intervals-words :mean summaries)))))
@@ -219,7 +219,7 @@ makes; NIL if there is nothing to compare."
   (loop with chunks = (in-chunks (contrasts-in measure comparison) +most-rows+)
         for chunk in chunks
         for number from 1
-        collect (make-picture name (and (rest chunks) (princ-to-string number))
+        collect (make-picture name (and (rest chunks) (integer-text number))
                               (comparison-chart comparison measure :contrasts chunk))))
 
 (defun difference-pictures (results summaries)

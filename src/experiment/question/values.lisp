@@ -74,9 +74,13 @@ and is the same in each run."
   "True if VALUE may stand in a table: a number, symbol, string, character, or list of such."
   (and (tree-p value) (plain-part-p value)))
 
+(defun integer-text (integer)
+  "Return INTEGER in decimal digits, whatever the printer is set to."
+  (format nil "~D" integer))
+
 (defun number-text (number)
   (etypecase number
-    (integer (princ-to-string number))
+    (integer (integer-text number))
     (ratio (float-text (float number 1d0)))
     (float (float-text number))))
 
@@ -95,19 +99,21 @@ and is the same in each run."
   "Return TEXT between quotes, as JSON has it."
   (with-output-to-string (out) (write-json-string (plain-text text) out)))
 
-;; A trial may have set the printer's variables.
+(defun plain-value-text (value)
+  (typecase value
+    (number (number-text value))
+    (cons (plain-text (json-text value)))
+    (string (plain-text value))
+    (t (plain-text (bare-text value)))))
+
+;; A trial's own forms may set the printer's variables.
 (defun value-text (value)
-  "Return how VALUE stands in a table."
+  "Return how VALUE stands in a table, whatever the reader and the printer are set to."
   (case value
     ((t) "TRUE")
     ((nil) "FALSE")
     (:none "")
-    (t (printing-plainly ()
-         (typecase value
-           (number (number-text value))
-           (cons (plain-text (json-text value)))
-           (string (plain-text value))
-           (t (plain-text (bare-text value))))))))
+    (t (call-plainly (lambda () (plain-value-text value))))))
 
 ;;; Back from a table.
 
@@ -117,7 +123,7 @@ and is the same in each run."
        (notany (lambda (char) (find char "/dDfFsS")) text)
        (char/= #\+ (char text 0))
        ;; What begins with an exponent is a name.
-       (let* ((*read-default-float-format* 'double-float)
+       (let* ((*read-default-float-format* 'double-float) (*read-base* 10)
               (value (ignore-errors (values (read-from-string text)))))
          (and (realp value) value))))
 

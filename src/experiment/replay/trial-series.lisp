@@ -25,8 +25,8 @@
   "Return the texts with which the row at PLACE of SAMPLE begins, up to the number of the trial."
   (append (list (sample-experiment sample) (sample-fingerprint sample) (sample-condition sample))
           (sample-texts sample)
-          (list (princ-to-string (aref (sample-seeds sample) place))
-                (princ-to-string (aref (sample-trials sample) place)))))
+          (list (integer-text (aref (sample-seeds sample) place))
+                (integer-text (aref (sample-trials sample) place)))))
 
 (defun block-of-trial (index sample place)
   "Return the block in INDEX of the trial at PLACE of SAMPLE; NIL if it has no lines. Signals MISUSE

@@ -53,7 +53,7 @@ the index of a trial, and returns a text, or NIL if nothing did."
   "Write OCCURRENCES below TITLE, under which conditions each was if there are SEVERAL-P, and how to
 see one of each."
   (when occurrences
-    (let ((width (length (princ-to-string (occurrence-count (first occurrences))))))
+    (let ((width (length (integer-text (occurrence-count (first occurrences))))))
       (format stream "~%~A~%" title)
       (dolist (one (subseq occurrences 0 (min +most-told+ (length occurrences))))
         (write-wrapped (format nil "~A~@[: ~A~]" (occurrence-text one)

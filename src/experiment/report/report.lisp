@@ -21,7 +21,7 @@ they are too large or small for that."
 
 (defun percent-writer (trials)
   "Return a function that writes a share seen in TRIALS in hundredths."
-  (let ((decimals (max 0 (- (length (princ-to-string (max 0 (1- trials)))) 2))))
+  (let ((decimals (max 0 (- (length (integer-text (max 0 (1- trials)))) 2))))
     (lambda (share) (fixed-text (* 100 (rational share)) decimals))))
 
 ;;; Columns of estimates.
@@ -84,7 +84,7 @@ they are too large or small for that."
 (defun count-column (heading counts)
   "Return a column of COUNTS in a list, or an empty list if all are 0."
   (unless (every #'zerop counts)
-    (list (make-text-column heading (mapcar #'princ-to-string counts) :anchor :end))))
+    (list (make-text-column heading (mapcar #'integer-text counts) :anchor :end))))
 
 ;;; The table.
 

@@ -156,9 +156,9 @@ there for good when this returns."
 
 (defun machine-texts (result milliseconds worker)
   (list (condition-name (result-condition result))
-        (princ-to-string (result-seed result)) (princ-to-string (result-trial result))
+        (integer-text (result-seed result)) (integer-text (result-trial result))
         (float-text (/ (round milliseconds 1/1000) 1000d0))
-        (princ-to-string worker) (princ-to-string (process-number)) (host-name)))
+        (integer-text worker) (integer-text (process-number)) (host-name)))
 
 ;;; What is there. For each condition the trials are a row of bits.
 

@@ -21,8 +21,8 @@
                   (condition-fingerprint condition)
                   (condition-name condition))
             (condition-texts condition)
-            (list (princ-to-string (result-seed result))
-                  (princ-to-string (result-trial result))))))
+            (list (integer-text (result-seed result))
+                  (integer-text (result-trial result))))))
 
 (defun result-texts (experiment result)
   "Return the texts of the row for RESULT, of a trial of EXPERIMENT, in the order of its columns."
@@ -45,7 +45,7 @@ none."
     (with-output-to-string (out)
       (loop for (tick . texts) in (result-series result)
             do (write-string beginning out)
-               (write-string (csv-line (cons (princ-to-string tick) texts)) out)))))
+               (write-string (csv-line (cons (integer-text tick) texts)) out)))))
 
 (defun series-mark (text)
   "Return a check sum of TEXT, the lines of a trial's series."

@@ -44,4 +44,6 @@ NIL."
                    (restart-case (call-until-error function)
                      (abort () :report "End this trial." "aborted")))))
     (when (typep trouble 'condition) (regain-room trouble))
-    (if (typep trouble 'condition) (text-of-condition trouble) trouble)))
+    (if (typep trouble 'condition)
+        (call-plainly (lambda () (text-of-condition trouble)))
+        trouble)))
