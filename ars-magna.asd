@@ -132,7 +132,7 @@
                  (:file "user-drawing") (:file "terrain") (:file "place-marks")
                  (:file "things") (:file "robots") (:file "sight-layers")
                  (:file "belief-layers") (:file "way-lines") (:file "trail-layer")
-                 (:file "name-boxes") (:file "leaders") (:file "names")
+                 (:file "box-index") (:file "name-boxes") (:file "leaders") (:file "names")
                  (:file "world-display") (:file "entries") (:file "legend") (:file "arrangement")
                  (:file "margins") (:file "view-margins") (:file "details") (:file "displays")
                  (:file "text-view") (:file "text-glyphs") (:file "text-layers")

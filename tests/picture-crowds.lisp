@@ -44,12 +44,13 @@ of the lines that lead to names, x y x y each."
      (let* ((robots (display:snapshot-robots snapshot))
             (spots (loop for robot in robots collect (display::robot-spot robot robots)))
             (spot (first spots))
-            (rivals (display::rivals spot spots 200)))
+            (rivals (display::rivals spot spots 200)) (taken (display::index-boxes '())))
        (destructuring-bind (x y) (display::pixels-of '(5 5))
          (is-true (display::own-box-p spot (list (- x 60) (- y 5) (- x 20) (+ y 5)) rivals))
          (is (not (display::own-box-p spot (list (+ x 34) (- y 5) (+ x 80) (+ y 5)) rivals)))
-         (is (not (display::leader-clear-p spot (list (+ x 70) y (+ x 99) (+ y 11)) '() rivals)))
-         (is-true (display::leader-clear-p spot (list (- x 99) y (- x 70) (+ y 11)) '() rivals)))))
+         (flet ((clear-p (box) (display::leader-clear-p spot box taken rivals)))
+           (is (not (clear-p (list (+ x 70) y (+ x 99) (+ y 11)))))
+           (is-true (clear-p (list (- x 99) y (- x 70) (+ y 11))))))))
    *crowd* 14 14))
 
 (test names.of-robots-stand-close-beside-them
@@ -193,3 +194,39 @@ of the lines that lead to names, x y x y each."
   (let ((names (names-with-a-pile 2 2 2 2)))
     (is (member "d and 3 more" names :test #'equal))
     (is (not (member "a" names :test #'equal)))))
+
+(defun rolled-box (dice)
+  "Return a box that DICE roll, some of them large, some of none's width."
+  (flet ((roll (limit) (abs (base:roll-within limit dice))))
+    (let ((x (- (roll 900) 50)) (y (roll 700)))
+      (list x y (+ x (roll (if (< (roll 10) 1) 3000 90))) (+ y (roll 40))))))
+
+(test boxes.in-an-index-are-found-as-by-a-look-at-all
+  (let* ((dice (base:make-dice 6 "boxes"))
+         (boxes (list* '(-9000 -9000 9000 9000) (loop repeat 300 collect (rolled-box dice))))
+         (index (display::index-boxes boxes)))
+    (loop repeat 200
+          for box = (rolled-box dice)
+          for found = (display::all-overlapping box index)
+          do (is (null (set-exclusive-or
+                        found
+                        (remove-if-not (lambda (other) (display::overlap-p box other)) boxes)))))))
+
+(test boxes.far-from-each-other-are-not-compared
+  "So a picture of many things takes no longer for each than one of few."
+  (let ((index (display::index-boxes (loop for x below 4000 by 40
+                                           append (loop for y below 4000 by 40
+                                                        collect (display::box-around x y 5))))))
+    (is (null (display::box-index-large index)))
+    (is (<= (loop for entries being the hash-values of (display::box-index-squares index)
+                  maximize (length entries))
+            4))))
+
+(test names.of-a-pile-say-how-many-are-hidden
+  (in-studio (robot)
+    (let* ((coin (world:make-new-thing 'coin (list (robot:robot-world robot) 3.5 4.5)
+                                       '((:size 1))))
+           (images (loop repeat 5000
+                         collect (display::make-thing-image :thing coin :x 3.5d0 :y 4.5d0))))
+      (is (equal '("coin and 4999 more")
+                 (mapcar #'display::spot-name (display::thing-spots images)))))))

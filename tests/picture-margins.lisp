@@ -160,8 +160,10 @@ room."
            (boxes '((20 20 60 31) (40 40 80 51))))
       (is (equal (second boxes)
                  (display::best-box snapshot '() boxes
-                                    (list (display::widened '(-26 20 15 31) 6)))))
-      (flet ((best (layers &rest boxes) (display::best-box snapshot layers boxes '())))
+                                    (display::index-boxes
+                                     (list (display::widened '(-26 20 15 31) 6))))))
+      (flet ((best (layers &rest boxes)
+               (display::best-box snapshot layers boxes (display::index-boxes '()))))
         (is (equal '(40 40 80 51) (best '(:places) '(8 8 20 19) '(40 40 80 51))))
         (is (equal '(8 8 20 19) (best '() '(8 8 20 19) '(40 40 80 51))))
         (is (equal '(8 8 20 19) (best '(:places) '(70 12 110 23) '(8 8 20 19))))))))
@@ -183,7 +185,7 @@ room."
   "Of a thing in a niche the name is too long for; what is free comes first, along the thing, too."
   (in-studio (robot)
     (let ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 8))
-      (flet ((best (&rest boxes) (display::best-box snapshot '() boxes '())))
+      (flet ((best (&rest boxes) (display::best-box snapshot '() boxes (display::index-boxes '()))))
         (is (equal '(70 12 110 23) (best '(70 12 110 23))))
         (is (equal '(20 40 60 51) (best '(70 12 110 23) '(20 40 60 51))))))
     (is (find '(97 84 137 95) (display::name-boxes 100 100 3 40) :test #'equal))))
@@ -192,9 +194,12 @@ room."
   "Those of things are left out there."
   (in-studio (robot)
     (let ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 3) (box '(6 0 26 11)))
-      (is (null (display::best-box snapshot '() (list box) '())))
-      (is (equal box (display::best-box snapshot '() (list box) '() :anywhere-p t)))
-      (is (null (display::best-box snapshot '() (list box) (list box) :anywhere-p t))))))
+      (flet ((best (taken &rest options)
+               (apply #'display::best-box snapshot '() (list box) (display::index-boxes taken)
+                      options)))
+        (is (null (best '())))
+        (is (equal box (best '() :anywhere-p t)))
+        (is (null (best (list box) :anywhere-p t)))))))
 
 (test names.of-robots-on-one-spot-are-beside-each-other
   (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)

@@ -59,6 +59,15 @@ are around each other, and what has a place in common has its names there, too."
         never (< (gap rival box)
                  (+ own (if (and (spot-robot spot) (spot-robot rival)) +own+ +own-thing+)))))
 
+(defun rivals-near (spot box spots reach)
+  "Return the rivals, as RIVALS does, of SPOT within REACH among the index SPOTS that are so near to
+BOX that its name there could be taken for theirs."
+  (let ((off (+ 1 +own+ (max 0 (gap spot box)))))
+    (destructuring-bind (left top right bottom) box
+      (rivals spot
+              (all-overlapping (list (- left off) (- top off) (+ right off) (+ bottom off)) spots)
+              reach))))
+
 (defun beside-robot-p (spot rivals)
   "True if one of RIVALS is a robot so near to SPOT that their names are in each other's way."
   (some (lambda (rival) (and (spot-robot rival) (< (gap rival (spot-box spot)) +own+))) rivals))
@@ -93,35 +102,40 @@ ANGLE."
       (append (around x y (arctangent (- to-y y) (- to-x x)) (spot-half spot))
               (list to-x to-y)))))
 
-(defun off-leaders (spot taken rivals)
-  "Return those boxes of TAKEN, and of RIVALS the images of those robots, which a line from SPOT is
-to leave alone: from a thing within a ring a line leads out of that."
-  (let ((own (spot-box spot)) (robots (remove nil rivals :key #'spot-robot)))
-    (if (spot-robot spot)
-        (values taken (mapcar #'spot-robot robots))
-        (values (remove-if (lambda (box) (overlap-p box own)) taken)
-                (loop for rival in robots
-                      unless (< (gap rival own) 2) collect (spot-robot rival))))))
+(defun off-leaders (spot rivals)
+  "Return of RIVALS the images of the robots that a line from SPOT is to leave alone: from a thing
+within a ring a line leads out of that."
+  (loop for rival in rivals
+        when (and (spot-robot rival)
+                  (or (spot-robot spot) (<= 2 (gap rival (spot-box spot)))))
+          collect (spot-robot rival)))
+
+(defun blocked-p (spot at taken)
+  "True if the box AT of a line from SPOT meets a box of the index TAKEN, off SPOT; if that is of a
+thing, of a box that does not meet it, either."
+  (let ((own (spot-box spot)))
+    (and (not (overlap-p at own))
+         (find-overlapping at taken (lambda (other)
+                                      (or (spot-robot spot) (not (overlap-p other own))))))))
 
 (defun leader-clear-p (spot box taken rivals)
-  "True if the line from SPOT to BOX meets no ring of a robot among RIVALS and none of the boxes
-TAKEN but that of SPOT."
-  (multiple-value-bind (taken robots) (off-leaders spot taken rivals)
+  "True if the line from SPOT to BOX meets no ring of a robot among RIVALS and none of the boxes in
+the index TAKEN but that of SPOT."
+  (let ((robots (off-leaders spot rivals)))
     (destructuring-bind (x y to-x to-y) (leader-ends spot box)
       (loop for step from 0 to 8
             for at-x = (+ x (* step 1/8 (- to-x x))) and at-y = (+ y (* step 1/8 (- to-y y)))
-            for at = (box-around at-x at-y 1)
             always (and (every (lambda (robot) (< 2 (off-ring robot at-x at-y))) robots)
-                        (or (overlap-p at (spot-box spot))
-                            (notany (lambda (other) (overlap-p at other)) taken)))))))
+                        (not (blocked-p spot (box-around at-x at-y 1) taken)))))))
 
 (defun led-box (snapshot layers spot width taken rivals)
   "Return the box farther off where the name of SPOT, WIDTH pixels wide, hides least, or NIL: if it
 can be, one to which a clear line leads; that of a thing must be clear."
   (let ((boxes (led-boxes spot width)))
-    (flet ((best (boxes) (best-box snapshot layers boxes taken :anywhere-p t)))
-      (or (best (remove-if-not (lambda (box) (leader-clear-p spot box taken rivals)) boxes))
-          (and (spot-robot spot) (best boxes))))))
+    (flet ((best (own-p)
+             (best-box snapshot layers boxes taken :anywhere-p t :own-p own-p)))
+      (or (best (lambda (box) (leader-clear-p spot box taken rivals)))
+          (and (spot-robot spot) (best (constantly t)))))))
 
 (defun draw-leader (canvas spot box)
   "Draw the line from SPOT to its name in BOX."

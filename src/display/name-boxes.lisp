@@ -39,10 +39,11 @@ first."
           collect (list left top (+ left width) (+ top high)))))
 
 (defun boxes-beside (x y half width marks)
-  "Return boxes as NAME-BOXES does; if one of the boxes MARKS lies there, such as that of the ring
-of a track, also boxes beside such a ring. Elsewhere a name so far away would be taken for others'."
+  "Return boxes as NAME-BOXES does; if one of the box index MARKS lies there, such as that of the
+ring of a track, also boxes beside such a ring. Elsewhere a name so far away would be taken for
+others'."
   (append (name-boxes x y half width)
-          (and (some (lambda (mark) (overlap-p mark (box-around x y half))) marks)
+          (and (find-overlapping (box-around x y half) marks)
                (name-boxes x y (max half (+ 2 (track-radius))) width))))
 
 (defun within-shown-p (snapshot box)
@@ -90,13 +91,13 @@ nothing; NIL if it may not stand there, on a wall that is not thick, unless ANYW
 
 (defun best-box (snapshot layers boxes taken &key anywhere-p (own-p (constantly t)))
   "Return the first of those of BOXES that hide least, are in the part of the map that SNAPSHOT
-shows, meet none of TAKEN, and for which OWN-P is true; or NIL. Rather than nothing a name hides a
-trail, then the mark of a place, and at last a part of a wall that is thick, or of any if
+shows, meet none of the index TAKEN, and for which OWN-P is true; or NIL. Rather than nothing a name
+hides a trail, then the mark of a place, and at last a part of a wall that is thick, or of any if
 ANYWHERE-P."
   (loop with best = nil and least = nil
         for box in boxes
         for cost = (and (within-shown-p snapshot box)
-                        (notany (lambda (other) (overlap-p box other)) taken)
+                        (not (find-overlapping box taken))
                         (funcall own-p box)
                         (box-cost snapshot layers box anywhere-p))
         when (and cost (or (null least) (< cost least)))

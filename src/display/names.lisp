@@ -35,13 +35,9 @@ have small letters of their own."
 
 ;;; Of things in one place the small ones lie above. One of the same size hides what is below it.
 
-(defun same-place-p (image other)
-  (and (= (thing-image-x image) (thing-image-x other))
-       (= (thing-image-y image) (thing-image-y other))))
-
-(defun hides-p (image other)
-  "True if IMAGE, which is drawn later than OTHER, hides that."
-  (and (same-place-p image other) (<= (half-width other) (half-width image))))
+(defun pile-key (image)
+  "Return an object that is EQUALP to that of another image of a thing if one hides the other."
+  (list (thing-image-x image) (thing-image-y image) (half-width image)))
 
 (defun thing-spot (image hidden)
   "Return the spot of the thing of IMAGE, which hides so many others as HIDDEN says."
@@ -51,12 +47,13 @@ have small letters of their own."
              (half-width image)))
 
 (defun thing-spots (images)
-  "Return the spots of those of IMAGES, of things in the order in which they are drawn, that no
-other hides."
-  (loop for (image . above) on images
-        for below = (ldiff images (member image images))
-        unless (find-if (lambda (other) (hides-p other image)) above)
-          collect (thing-spot image (count-if (lambda (other) (hides-p image other)) below))))
+  "Return the spots of those of IMAGES, of things in the order in which they are drawn, the largest
+first, that no other hides."
+  (let ((piles (make-hash-table :test 'equalp)))
+    (dolist (image images) (push image (gethash (pile-key image) piles)))
+    (loop for image in images
+          for (top . hidden) = (gethash (pile-key image) piles)
+          when (eq image top) collect (thing-spot image (length hidden)))))
 
 (defun named-spots (snapshot)
   "Return the spots of what has a name on the map, in order of importance."
@@ -103,35 +100,37 @@ other hides."
     (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
                 :size +name-size+)))
 
-(defun near-box (snapshot layers spot width taken marks rivals)
-  "Return the box beside SPOT where its name, WIDTH pixels wide, hides least and is not taken for
-that of one of RIVALS, or NIL."
-  (best-box snapshot layers
-            (boxes-beside (spot-x spot) (spot-y spot) (spot-half spot) width marks)
-            taken :anywhere-p (and (spot-robot spot) t)
-                  :own-p (lambda (box) (own-box-p spot box rivals))))
+;;; SPOTS are those of what has a name, as an index.
 
 (define-constant +reach-of-names+ 100
   :documentation "How far around a name what is near to it is looked for, in pixels.")
 
-(defun boxes-near (spot reach boxes)
-  "Return those of BOXES that come within REACH pixels of SPOT: a film looks at them in each frame."
-  (let ((area (box-around (spot-x spot) (spot-y spot) reach)))
-    (remove-if-not (lambda (box) (overlap-p area box)) boxes)))
+(defun reach-of-name (spot width)
+  "Return how far from SPOT what its name, WIDTH pixels wide, could be taken for is looked for."
+  (+ width (spot-half spot) +reach-of-names+))
+
+(defun near-box (snapshot layers spot width taken marks spots)
+  "Return the box beside SPOT where its name, WIDTH pixels wide, hides least and is not taken for
+that of another of SPOTS, or NIL."
+  (flet ((own-p (box)
+           (own-box-p spot box (rivals-near spot box spots (reach-of-name spot width)))))
+    (best-box snapshot layers
+              (boxes-beside (spot-x spot) (spot-y spot) (spot-half spot) width marks)
+              taken :anywhere-p (and (spot-robot spot) t) :own-p #'own-p)))
 
 (defun on-another-p (spot spots)
   "True if SPOT lies on or right beside another of SPOTS."
-  (some (lambda (other)
-          (and (not (eq other spot)) (overlap-p (spot-box spot) (spot-box other))))
-        spots))
+  (and (find-overlapping (spot-box spot) spots (lambda (other) (not (eq other spot)))) t))
 
-(defun name-box (snapshot layers spot width taken marks rivals led-p)
+(defun name-box (snapshot layers spot width taken marks spots robots)
   "Return the box for the name of SPOT, WIDTH pixels wide, or NIL, and as a second value whether a
-line has to lead there, as it may if LED-P."
-  (let ((near (near-box snapshot layers spot width taken marks rivals)))
-    (cond (near (values near nil))
-          ((or led-p (spot-robot spot) (beside-robot-p spot rivals))
-           (values (led-box snapshot layers spot width taken rivals) t)))))
+line has to lead there. ROBOTS are those of SPOTS that are of robots, a list."
+  (let ((near (near-box snapshot layers spot width taken marks spots)))
+    (if near
+        (values near nil)
+        (let ((rivals (rivals spot robots (reach-of-name spot width))))
+          (when (or (spot-robot spot) (on-another-p spot spots) (beside-robot-p spot rivals))
+            (values (led-box snapshot layers spot width taken rivals) t))))))
 
 (defun draw-names (canvas snapshot layers &optional boxes)
   "Write the names of robots and things where there is room beside what LAYERS list and BOXES; those
@@ -139,15 +138,17 @@ of robots, and of things right beside one or on another, where there is none at 
   (let* ((spots (named-spots snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
          (marks (append boxes (loop for robot in robots append (marked-spots robot layers))))
-         (taken (append marks (boxes-of-robots robots)
-                        (loop for spot in spots collect (widened (spot-box spot) 1)))))
+         (taken (index-boxes (append marks (boxes-of-robots robots)
+                                     (loop for spot in spots
+                                           collect (widened (spot-box spot) 1)))))
+         (marks (index-boxes marks))
+         (index (index-boxes (mapcar #'spot-box spots) spots))
+         (robot-spots (remove nil spots :key #'spot-robot)))
     (dolist (spot spots)
-      (let* ((width (+ 2 (* per-character (length (spot-name spot)))))
-             (reach (+ width (spot-half spot) +reach-of-names+)))
-        (multiple-value-bind (box led-p)
-            (name-box snapshot layers spot width (boxes-near spot reach taken) marks
-                      (rivals spot spots reach) (on-another-p spot spots))
-          (when box
-            (push (widened box +apart+) taken)
-            (when led-p (draw-leader canvas spot box))
-            (write-name canvas (spot-name spot) box)))))))
+      (multiple-value-bind (box led-p)
+          (name-box snapshot layers spot (+ 2 (* per-character (length (spot-name spot))))
+                    taken marks index robot-spots)
+        (when box
+          (let ((box (widened box +apart+))) (enter-box box box taken))
+          (when led-p (draw-leader canvas spot box))
+          (write-name canvas (spot-name spot) box))))))
