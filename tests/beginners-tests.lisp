@@ -121,6 +121,24 @@
                                       (rpl:wait-time 1))
                                 (if driver:robot-movement-error* '(if driver:robot-stopped* 1))))))
 
+(test plans.warn-of-waits-for-several-pulses-at-once
+  (dolist (warning (list (told-of-plan (rpl:wait-for (and (nisp:vref driver:camera-moved* 0)
+                                                          driver:robot-stopped*)))
+                         (told-of-plan (rpl:wait-until (or *level*
+                                                           (and (nisp:vref driver:camera-moved* 0)
+                                                                driver:robot-stopped*))))
+                         (told-of-plan (rpl:whenever (and (nisp:vref driver:camera-moved* 0)
+                                                          *level* driver:robot-stopped*)
+                                         (return)))))
+    (is-true (has-words-p warning "is never true" "no two come at once"
+                          "(par (wait-for (vref camera-moved* 0)) (wait-for robot-stopped*))")))
+  (is (string= "" (told-of-plan (rpl:wait-for (and driver:robot-stopped* *level*))
+                                (rpl:wait-for (or driver:robot-stopped*
+                                                  (nisp:vref driver:camera-moved* 0)))
+                                (rpl:wait-for (and (rpl:fl-pulsed driver:robot-stopped*)
+                                                   (rpl:fl-pulsed
+                                                    (nisp:vref driver:camera-moved* 0))))))))
+
 (test plans.warn-of-values-of-commands
   (dolist (warning (list (told-of-plan (let ((view (driver:rpl-camera-view 0))) (print view)))
                          (told-of-plan (print (driver:rpl-camera-view 0)))

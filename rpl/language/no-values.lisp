@@ -19,11 +19,15 @@
 
 ;;; Pulses take no time: between two waits nobody finds them true.
 
+(defun pulse-form-p (form)
+  "True if FORM is the variable of a fluent that is only pulsed, or one of a vector of such."
+  (or (known-pulse-p form)
+      (and (operator-in-p form '("VREF")) (consp (rest form)) (known-pulse-p (second form)))))
+
 (defun pulse-in-test (test)
   "Return the form of a fluent that is only pulsed if TEST reads one by value; or NIL."
-  (cond ((known-pulse-p test) test)
+  (cond ((pulse-form-p test) test)
         ((not (proper-list-p test)) nil)
-        ((operator-in-p test '("VREF")) (and (known-pulse-p (second test)) test))
         ((operator-in-p test '("FLUENT-VALUE" "NOT" "NULL" "AND" "OR"))
          (some #'pulse-in-test (rest test)))))
 
@@ -41,6 +45,25 @@
       (doubt-own-form form "the test of ~A is never true: a pulse takes no time. (wait-for ~:*~A) ~
                             waits for the next one. A view that is made first, (fl-pulsed ~:*~A), ~
                             is true if there was one since." pulse))))
+
+;; Each pulse has ended before the next begins.
+(defun joined-pulses (form)
+  "Return the pulses that FORM, a call, joins by AND, if it is one of several; or NIL."
+  (and (operator-in-p form '("AND"))
+       (proper-list-p form)
+       (let ((pulses (remove-duplicates (remove-if-not #'pulse-form-p (rest form)) :test #'equal)))
+         (and (rest pulses) pulses))))
+
+(defun doubt-joined-pulses (form)
+  "Warn if FORM, a call in a plan's text, waits for several pulses at one time."
+  (let* ((join (and (operator-in-p form '("WAIT-FOR" "WAIT-UNTIL" "WHENEVER"))
+                    (proper-list-p form)
+                    (find-call #'joined-pulses (list (second form)))))
+         (pulses (joined-pulses join)))
+    (when pulses
+      (doubt-own-form form "~A is never true: a pulse takes no time, and no two come at once. To ~
+                            wait for all of them write (par~{ (wait-for ~A)~})."
+                      join pulses))))
 
 ;;; Commands return nothing.
 
@@ -78,4 +101,8 @@
 
 (defun doubt-values (form)
   "Warn of values that FORM, the text of a plan, uses and never gets."
-  (map-calls (lambda (call) (doubt-pulse-read call) (doubt-command-used call)) form))
+  (map-calls (lambda (call)
+               (doubt-pulse-read call)
+               (doubt-joined-pulses call)
+               (doubt-command-used call))
+             form))
