@@ -139,6 +139,21 @@
                                                    (rpl:fl-pulsed
                                                     (nisp:vref driver:camera-moved* 0))))))))
 
+(test plans.warn-of-fluents-sought-in-constants
+  (dolist (warning (list (told-of-plan (if (member driver:robot-movement-error* '(:robot-blocked))
+                                           1 2))
+                         (told-of-plan (let ((code driver:robot-movement-error*))
+                                         (print (find code '(:robot-blocked) :test #'eq))))
+                         (told-of-plan (cdr (assoc driver:robot-movement-error*
+                                                   '((:robot-blocked . 1)))))))
+    (is-true (has-words-p warning "never finds" "which is a fluent" "Write (fluent-value ")))
+  (is (string= "" (told-of-plan
+                   (print (member driver:robot-movement-error* (list *level*)))
+                   (print (member (rpl:fluent-value driver:robot-movement-error*)
+                                  '(:robot-blocked)))
+                   (print (find driver:robot-movement-error* '(:robot-blocked)
+                                :key #'symbol-value))))))
+
 (test plans.warn-of-values-of-commands
   (dolist (warning (list (told-of-plan (let ((view (driver:rpl-camera-view 0))) (print view)))
                          (told-of-plan (print (driver:rpl-camera-view 0)))

@@ -131,6 +131,16 @@ one."
                          (not (takes-fluents-p (first types))))
                  return argument))))
 
+;; What a quoted list holds is never a fluent. With a :test of the author's it may still be found.
+(defun sought-in-vain (form environment)
+  "Return the fluent that FORM, a call, looks for in a constant, where none can be; or NIL."
+  (and (operator-in-p form '("MEMBER" "FIND" "POSITION" "COUNT" "ASSOC" "RASSOC"))
+       (cddr form)
+       (constantp (third form))
+       (subsetp (cdddr form) '(:test #'eq #'eql #'equal #'equalp) :test #'equal)
+       (known-fluent-p (second form) environment)
+       (second form)))
+
 (defun look-at-operands (form environment)
   "Warn if FORM, of the plan's text, gives a fluent to a function that cannot take it. Return NIL."
   (let ((name (first form)))
@@ -148,8 +158,10 @@ one."
                (not (macro-function name))
                (not (special-operator-p name)))
       (if (fboundp name)
-          (let ((fluent (misplaced-fluent form environment)))
-            (when fluent (warn-of-fluent form fluent)))
+          (let ((fluent (misplaced-fluent form environment))
+                (sought (sought-in-vain form environment)))
+            (cond (fluent (warn-of-fluent form fluent))
+                  (sought (warn-of-fluent form sought "never finds"))))
           (look-later #'look-at-lisp-call form)))
     nil))
 
@@ -180,14 +192,14 @@ one."
                    "~(~A~) puts ~S in the place of the fluent ~S, which is lost. Write ~S."
                    (first form) value fluent `(set-value ,fluent ,value)))))
 
-(defun warn-of-fluent (form fluent)
+(defun warn-of-fluent (form fluent &optional (what "cannot take"))
   (call-at-place
    form
    (lambda ()
      (warn-of-call #'warn-of-definition form
-                   "~(~A~) cannot take ~S, which is a fluent. Write (fluent-value ~:*~S) for its ~
-                    value now, or (fl-funcall #'~(~2:*~A~) ...) for a network."
-                   (first form) fluent))))
+                   "~(~A~) ~A ~S, which is a fluent. Write (fluent-value ~:*~S) for its ~
+                    value now, or (fl-funcall #'~(~3:*~A~) ...) for a network."
+                   (first form) what fluent))))
 
 ;;; Variables.
 
