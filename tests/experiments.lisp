@@ -80,6 +80,10 @@
       (is (search "the third and the fourth are both \"a\"" (princ-to-string condition))))
     (:no-error (name) (fail "~A was defined" name))))
 
+(test definition.refuses-values-that-are-one-number
+  (rejected-clause (size 1 2 1.0) (:robots ars-worlds:dot) (:run size) (:vary (size 1 2 1.0)))
+  (rejected-clause (size 1/2 0.5) (:robots ars-worlds:dot) (:run size) (:vary (size 1/2 0.5))))
+
 (test definition.doubts-what-is-varied-and-not-used
   (signals base:definition-warning
     (define-for-test (:robots ars-worlds:dot) (:run t) (:vary (motion-nois* 0 1)))))

@@ -172,11 +172,17 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
       (reject-clause definition part
                      (format nil "robots of one map, not of ~{~(~A~)~^ and ~}" maps)))))
 
+(defun equal-in-table-p (text other)
+  "True if TEXT and OTHER, of a table, are the same text or the same number, such as 1 and 1.0."
+  (or (string= text other)
+      (let ((number (number-in text)) (other-number (number-in other)))
+        (and number other-number (= number other-number)))))
+
 (defun check-values-differ (definition part texts)
   "Signal MALFORMED-DEFINITION if two of TEXTS, of the values of PART in the table, are equal."
   (loop for (text . others) on texts
         for first from 1
-        for place = (position text others :test #'string=)
+        for place = (position text others :test #'equal-in-table-p)
         when place
           do (reject-clause definition part
                             (format nil "values that differ in the table, where the ~:R and the ~
