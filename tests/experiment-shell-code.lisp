@@ -34,6 +34,21 @@
       (is-true (has-words-p errors "Mind the step"))
       (is-false (has-words-p errors "compilation")))))
 
+
+(test rows.that-come-first-are-checked-when-an-experiment-goes-on
+  (in-place
+    (write-stroll-that "(progn (run-ticks 3) t)")
+    (flet ((go-on (trials)
+             (shell "experiment" (placed "leaver.lisp") "--quiet" "--trials" trials
+                    "--out" (placed "there"))))
+      (is (eql 0 (go-on "5")))
+      (is (eql 0 (go-on "6")))
+      (let* ((text (text-in "there/rows.csv")) (place (search "success,,3," text)))
+        (write-file "there/rows.csv" "~A4~A"
+                    (subseq text 0 (+ place 9)) (subseq text (+ place 10))))
+      (is-true (has-words-p (said-by (lambda () (go-on "7")))
+                            "Trial 1 " "its ticks is 3, and 4 in the table")))))
+
 ;;; Shards without trials, and directories of other code.
 
 (test shards.without-trials-say-so

@@ -8,11 +8,19 @@
 
 ;;; What is there already.
 
+(defun samples-among (conditions &rest tables)
+  "Return what TABLES have for CONDITIONS, each once, those of the first table first."
+  (remove nil (remove-duplicates
+               (loop for table in tables
+                     append (loop for condition in conditions collect (gethash condition table)))
+               :test #'eq :from-end t)))
+
 (defun rows-there (experiment parts directory)
-  "Return the presence of rows of EXPERIMENT in DIRECTORY, and a list of the texts of one of each
-condition. PARTS are those of the fingerprints of its conditions. Signals MISUSE for rows of other
-code."
-  (let ((samples (make-hash-table :test 'eq)) (columns (columns experiment)))
+  "Return the presence of rows of EXPERIMENT in DIRECTORY, and a list of the texts of the last and,
+after these, the first of each condition. PARTS are those of the fingerprints of its conditions.
+Signals MISUSE for rows of other code."
+  (let ((firsts (make-hash-table :test 'eq)) (lasts (make-hash-table :test 'eq))
+        (columns (columns experiment)))
     (multiple-value-bind (presence series)
         (present-rows experiment directory
                       (lambda (condition texts)
@@ -20,13 +28,13 @@ code."
                         (reject-foreign experiment condition parts directory))
                       (lambda (condition texts)
                         (unless (timed-out-p texts columns)
-                          (setf (gethash condition samples) texts))))
+                          (unless (gethash condition firsts)
+                            (setf (gethash condition firsts) texts))
+                          (setf (gethash condition lasts) texts))))
       (values presence
-              (loop for condition in (experiment-conditions experiment)
-                    for texts = (gethash condition samples)
-                    when texts
-                      collect (texts-with-mark texts experiment
-                                               (series-text-there series texts)))))))
+              (mapcar (lambda (texts)
+                        (texts-with-mark texts experiment (series-text-there series texts)))
+                      (samples-among (experiment-conditions experiment) lasts firsts))))))
 
 ;;; Looking at intervals.
 
