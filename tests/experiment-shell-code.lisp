@@ -34,6 +34,19 @@
       (is-true (has-words-p errors "Mind the step"))
       (is-false (has-words-p errors "compilation")))))
 
+(test threads.that-trials-start-end-by-themselves
+  "What nothing handles in them is told of once, with the name of the thread; the program goes on."
+  (let ((session cli::*session*) (own-p cli::*own-process-p*) (told '()))
+    (setf cli::*session* nil cli::*own-process-p* t)
+    (flet ((err () (base:with-debugger-hook ('cli::debugger-disabled-hook) (error "no, boo."))))
+      (unwind-protect
+           (loop repeat 2
+                 do (base:join-thread (bordeaux-threads:make-thread #'err :name "of a trial")))
+        (setf told (shiftf cli::*told-of-threads* '())
+              cli::*session* session cli::*own-process-p* own-p)))
+    (is (equal (list (format nil "Error in a thread, of a trial, that a program has started: no, ~
+                                  boo. That thread ends; all else goes on."))
+               told))))
 
 (test rows.that-come-first-are-checked-when-an-experiment-goes-on
   (in-place

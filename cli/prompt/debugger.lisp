@@ -290,12 +290,32 @@ does other things too, and no prompt runs in it."
   (say-on-error-output (condition-text condition))
   (end-process 1))
 
+(defun users-thread-text (condition)
+  "Return what is said of CONDITION, which nothing handles in this thread of a program's."
+  (let ((serious-p (typep condition 'serious-condition)))
+    (format nil "~:[Break~;Error~] in a thread~@[, ~A,~] that a program has started: ~A. ~
+                 ~:[It goes~;That thread ends; all else goes~] on."
+            serious-p (thread-name (current-thread))
+            (string-right-trim "." (complaint-text (condition-text condition))) serious-p)))
+
+(defvar *told-of-threads* '() "What has been said of threads of programs; each is said once.")
+(defvar *told-lock* (make-lock "told of threads"))
+
+(defun tell-of-users-thread (condition)
+  "Say on the error output, unless that was said before, what CONDITION is."
+  (let ((text (users-thread-text condition)))
+    (when (with-lock (*told-lock*)
+            (unless (member text *told-of-threads* :test #'string=)
+              (push text *told-of-threads*)))
+      (say-on-error-output text))))
+
 ;; By this name the rest of the program knows that there is none.
 (defun debugger-disabled-hook (condition hook)
   "Say what CONDITION is and go on, if it is no error, or give up what this thread is at. Called
 instead of Lisp's debugger where nobody sits, or a break is being answered."
   (declare (ignore hook))
   (cond (*session* (complain *session* (format nil "Break: ~A" (condition-text condition))))
+        ((and *own-process-p* (users-thread-p)) (tell-of-users-thread condition))
         (*own-process-p* (end-unheard condition)))
   (unless (typep condition 'serious-condition) (continue condition))
   (give-up condition))

@@ -251,7 +251,8 @@ only asks whether the core starts."
   (die-of-termination)
   (mind-interrupts)
   (call-on-continuing #'take-terminal-again)
-  (refuse-exits "EXIT would end the whole program amid a run. QUIT at the prompt leaves.")
+  (refuse-exits (format nil "EXIT would end the whole program here. Signal an error instead, or ~
+                             return; at the prompt, QUIT leaves."))
   ;; An interrupt that still waits when all is done is not to be taken then.
   (call-holding-interrupts (lambda () (end-process (run-process)))))
 

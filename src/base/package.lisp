@@ -50,7 +50,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:replace-file #:plain-file-p #:check-unprotected #:dangling-link-p #:name-in-directory
            #:file-size
            #:unusable-file-text #:shown-name
-           #:encoded #:decoded #:file-text #:illegible-file-line #:illegible-file #:cut-file
+           #:encoded #:decoded #:file-text
+           #:illegible-file-line #:illegible-file #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number #:note-kind-of-file #:file-advice
            #:foreign-file-p #:check-not-foreign
@@ -90,7 +91,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:*leaving-p* #:call-when-leaving
            #:start-thread #:own-thread-p #:join-thread #:interrupt-thread
            #:thread-alive-p
-           #:current-thread #:yield-thread #:thread-name #:spread-specials)
+           #:current-thread #:users-thread-p #:yield-thread #:thread-name #:spread-specials)
   ;; finishing
   (:export #:in-any-case #:call-opening #:call-each)
   ;; elsewhere

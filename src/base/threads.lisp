@@ -66,6 +66,11 @@ others need this thread for meanwhile is done, and what interrupts this thread i
   "True if this thread is one of ours, not a REPL or another one of a user's."
   *own-thread-p*)
 
+(defun users-thread-p ()
+  "True if this thread is one that a program has started: not ours, nor the one that this Lisp began
+with."
+  (not (or (own-thread-p) (sb-thread:main-thread-p))))
+
 (defun start-thread (function name)
   "Call FUNCTION in a new thread called NAME; return the thread."
   (bordeaux-threads:make-thread (lambda () (let ((*own-thread-p* t)) (funcall function)))
