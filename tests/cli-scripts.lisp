@@ -115,7 +115,8 @@ frobnicate")
 (defun ars-user::half-of (x) (/ x 2))
 (null (setf zz 3))
 (half-of 8)")))
-    (is (equal '("The function half-of is not defined." "The variable yy is not defined.")
+    (is (equal '("SCRIPT, line 1: The function half-of is not defined."
+                 "SCRIPT, line 1: The variable yy is not defined.")
                (loop for line in lines
                      when (search "*WARNING* -> " line) collect (subseq line 13)))
         "~A" lines)))
@@ -285,3 +286,8 @@ frobnicate")
                         "{\"type\":\"output\",\"text\":\"1 \"}"
                         "{\"type\":\"value\",\"text\":\"2\"}"
                         "{\"type\":\"value\",\"text\":\"\\\"three\\\"\"}")))
+
+(test scripts.place-warnings-about-definitions
+  (let ((text (joined (run-script (joined '("say hello" "(defmap kolored (9 9)"
+                                            "  (obj pen (3 3) ((:kolor 1))))"))))))
+    (is-true (has-words-p text "*WARNING* -> SCRIPT, line 2: defmap kolored: pen has :kolor"))))

@@ -197,10 +197,10 @@ told, and may recover from an error."
 
 (defun message-words (message session)
   "Return what SESSION says for MESSAGE: whose command it tells of, if another robot's; and if it is
-an error in a script, with the place of its line."
+an error or warning in a script, with the place of its line."
   (let ((text (format nil "~@[~(~A~): ~]~A" (other-robot message session) (message-text message)))
         (account (session-account session)))
-    (if (eq :error (message-kind message))
+    (if (member (message-kind message) '(:error :warning))
         (placed-text account text (line-of-message account message))
         text)))
 
