@@ -291,3 +291,26 @@ frobnicate")
   (let ((text (joined (run-script (joined '("say hello" "(defmap kolored (9 9)"
                                             "  (obj pen (3 3) ((:kolor 1))))"))))))
     (is-true (has-words-p text "*WARNING* -> SCRIPT, line 2: defmap kolored: pen has :kolor"))))
+
+(defun script-with-bytes (&rest parts)
+  "Return what RUN-SCRIPT does for PARTS, strings, with a byte that is no UTF-8 between each two."
+  (uiop:with-temporary-file (:pathname path :stream stream :type "ars"
+                             :external-format :latin-1)
+    (format stream (format nil "~~{~~A~~^~C~~}" (code-char 233)) parts)
+    :close-stream
+    (call-as-process (list (uiop:native-namestring path) "--world" "tiny"))))
+
+(test scripts.refuse-lines-that-are-not-utf-8
+  "In forms and commands; comments may have any bytes."
+  (multiple-value-bind (lines status)
+      (script-with-bytes (format nil "; caf") (format nil "~%(print \"caf")
+                         (format nil "\")~%(list 1~%  \"") (format nil "\"~%  2)~%say caf")
+                         (format nil "~%(print :good)~%"))
+    (is (= 1 status))
+    (is (= 3 (count-if (lambda (line) (search "*ERROR*" line)) lines)))
+    (loop for number in '(2 4 6)
+          do (is-true (find-if (lambda (line)
+                                 (has-words-p line (format nil "line ~D: The line has bytes" number)
+                                              "UTF-8"))
+                               lines)))
+    (is-true (find ":GOOD" lines :test #'search))))

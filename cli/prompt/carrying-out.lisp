@@ -50,4 +50,5 @@ for, or 79."
                    (evaluate-line session text)
                    (multiple-value-bind (name rest) (split-line text)
                      (tell-of-comment text)
+                     (check-legible session text 0 nil)
                      (run-line session (find-line name) rest))))))))

@@ -143,13 +143,27 @@ what Lisp says of a full stack, of which users are told."
                                           (malformed-definition-clause condition)))))))
     (evaluate session form)))
 
+(defun check-legible (session text start end)
+  "Signal BAD-LINE if TEXT, which ends with what SESSION has read last, has bytes from START to END
+that could not be read."
+  (let ((place (position +illegible+ text :start start :end end)))
+    (when place
+      (note-trouble-line (session-account session)
+                         (- (lines-typed (session-input session))
+                            (count #\Newline text :start place)))
+      (reject-line "The line has bytes that are not UTF-8, or U+FFFD, which stands for such. Write ~
+                    it in UTF-8."))))
+
 (defun evaluate-forms (session text)
   (loop with position = 0
+        with start = 0
         with form
         do (setf (values text position) (skip-comments session text position))
         until (blank-from-p text position)
         do (check-parenthesis text position)
-           (setf (values form position text) (read-form session text position))
+           (setf start position
+                 (values form position text) (read-form session text position))
+           (check-legible session text start position)
            (check-line-in-parentheses form)
            (check-typed-call form)
            (check-typed-load form)

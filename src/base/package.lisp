@@ -50,7 +50,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:replace-file #:plain-file-p #:check-unprotected #:dangling-link-p #:name-in-directory
            #:file-size
            #:unusable-file-text #:shown-name
-           #:encoded #:decoded #:file-text
+           #:+illegible+ #:encoded #:decoded #:file-text
            #:illegible-file-line #:illegible-file #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number #:note-kind-of-file #:file-advice
