@@ -314,3 +314,7 @@ frobnicate")
                                               "UTF-8"))
                                lines)))
     (is-true (find ":GOOD" lines :test #'search))))
+
+(test load.of-a-name-for-many-files-says-what-to-write
+  (is-true (has-words-p (joined (run-script (joined '("(load \"st*r.lisp\")"))))
+                        "line 1: st*r.lisp cannot be loaded" "write \\\\ before each *")))

@@ -49,6 +49,8 @@ lines; or NIL."
 (defun check-typed-load (form)
   "Signal BAD-LINE if FORM, as typed, loads a file that cannot be Lisp."
   (when (typep form '(cons (eql load) (cons string)))
+    (when (many-files-p (second form))
+      (reject-line "~A cannot be loaded: ~A." (second form) (unusable-file-text (second form))))
     (let ((path (existing-file (second form))))
       (when path
         (check-lisp-file path)
