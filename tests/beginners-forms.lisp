@@ -138,3 +138,14 @@
     (is-true (has-words-p (told (plan-of (rpl:handle-failure ((:a () (rpl:retry)))
                                            (loop (identity 1)))))
                           "If it is to wait, write (wait-time 1) there"))))
+
+;;; Runs that are over, goals, pulses.
+
+(test run-plan.says-that-its-run-is-over
+  (run:with-simulation (rover)
+    (run:end-simulation time:*simulation* "it is enough")
+    (dolist (function '(driver:run-plan driver:begin-plan))
+      (is-true (has-words-p (handler-case (funcall function (plan-of 1))
+                              (base:outlived (condition) (princ-to-string condition))
+                              (:no-error (&rest values) (princ-to-string values)))
+                            "is over" "it is enough" "(simulator ROBOT) starts another")))))

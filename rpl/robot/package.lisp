@@ -11,7 +11,7 @@
   (:import-from :ars-magna.time
                 #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
-                #:timeline-tick #:check-not-secluded
+                #:timeline-tick #:check-not-secluded #:check-not-over
                 #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
                 #:hog-seconds)
   (:import-from :ars-magna.run

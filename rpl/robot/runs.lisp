@@ -8,7 +8,8 @@
 
 (defun robot-to-drive ()
   "Return the robot of the current simulation that plans are to drive if nobody has said which: the
-only one, or that of the prompt. Signals MISUSE if that could be several."
+only one, or that of the prompt. Signals MISUSE if that could be several, or the run is over."
+  (check-not-over (current-simulation))
   (let ((robots (simulation-robots (current-simulation))))
     (cond ((= 1 (length robots)) (first robots))
           ((find (commanded-robot) robots))
@@ -210,7 +211,7 @@ was stopped or started anew, the robot defined anew, or the run rewound by anoth
 it succeeded the second value says: a failure is true, and the value of a good plan may be NIL.
 Failures, deadlocks and limits are reported. A plan that is not over when RUN-PLAN returns or is
 left, as by an abort, ends, but one of a run that was rewound goes on in the run that takes its
-place. Signals UNKNOWN-NAME and MISUSE."
+place. Signals UNKNOWN-NAME and MISUSE, also if the run is over before it begins."
   (let ((interface (ensure-interface)))
     (check-outside interface)
     (let ((task nil) (state nil))
