@@ -149,3 +149,12 @@
                               (base:outlived (condition) (princ-to-string condition))
                               (:no-error (&rest values) (princ-to-string values)))
                             "is over" "it is enough" "(simulator ROBOT) starts another")))))
+
+(test plans.say-that-goals-are-quoted
+  (with-own-definitions
+    (eval '(rpl:def-goal (rpl:achieve (brought-in ?what)) what))
+    (is-true (has-words-p (princ-to-string
+                           (list (with-messages
+                                   (rpl:run-plan-alone
+                                    (eval '(plan-of (rpl:achieve (brought-in 1))))))))
+                          "it begins a goal, which is quoted: (achieve '(brought-in ...))"))))

@@ -62,6 +62,17 @@ if there is none."
           (setf best goal
                 values found))))))
 
+(defun advice-on-goal (name)
+  "Return in a sentence how to write a goal, if NAME begins the pattern of one; or NIL."
+  (let ((goal (find-if (lambda (goal)
+                         (let ((first (first (goal-pattern goal))))
+                           (and first (symbolp first) (same-name-p name first))))
+                       (all-goals))))
+    (and goal
+         (format nil "it begins a goal, which is quoted: (~(~A~) '(~(~A~) ...)), or with values ~
+                      of variables (~2:*~(~A~) `(~(~A~) ,x ...))."
+                 (goal-operator goal) (plain-name name)))))
+
 ;;; Defining. A pattern that matches the same as one defined before means that one.
 
 (defun goal-name (operator pattern shape count)

@@ -12,7 +12,8 @@ DEFINE-CONSTRUCT, which also exports its name.")
            #:policy-check-condition-met #:policy-failure #:policy-get #:policy-init-failed
            #:policy-lambda-list #:policy-name #:policy-p #:policy-setf)
   ;; goals, achieving
-  (:export #:all-goals #:def-goal #:failed-goal #:failed-goal-operator #:find-goal #:goal-failure
+  (:export #:advice-on-goal #:all-goals #:def-goal #:failed-goal #:failed-goal-operator
+           #:find-goal #:goal-failure
            #:goal-not-achieved #:goal-operator #:goal-p #:goal-pattern #:goals-under-way
            #:unknown-goal #:unknown-goal-known)
   ;; at-location

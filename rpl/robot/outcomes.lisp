@@ -226,4 +226,6 @@ RPL-; or NIL."
                    (mapcar #'spec-name (command-results found)))))))
 
 (setf *advice-on-call* (lambda (name)
-                         (or (advice-on-prompt-name name) (advice-on-command name))))
+                         (or (advice-on-prompt-name name)
+                             (advice-on-command name)
+                             (advice-on-goal name))))

@@ -66,7 +66,7 @@
                 #:part-of-p #:frame-node #:frame-up #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
                 #:entity-realm #:entity-like
-                #:*on-outside-change* #:note-word #:task-now #:*advice-on-call*)
+                #:*on-outside-change* #:note-word #:task-now #:*advice-on-call* #:advice-on-goal)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place* #:camera-input* #:camera-views*
