@@ -158,3 +158,18 @@
                                    (rpl:run-plan-alone
                                     (eval '(plan-of (rpl:achieve (brought-in 1))))))))
                           "it begins a goal, which is quoted: (achieve '(brought-in ...))"))))
+
+(test deadlock.says-when-the-pulse-came
+  (is-true (has-words-p (rover-writes ()
+                          (driver:run-plan (plan-of (driver:rpl-camera-turn 0 1/10)
+                                                    (driver:rpl-robot-turn 3)
+                                                    (rpl:wait-for driver:robot-stopped*)
+                                                    (rpl:wait-for
+                                                     (nisp:vref driver:camera-moved* 0)))))
+                        "camera-moved* 0 was pulsed at tick" "before this wait began"
+                        "(par (wait-for fluent) (wait-for fluent))"))
+  (is (not (search "was pulsed" (rover-writes ()
+                                  (driver:run-plan (plan-of (driver:rpl-robot-turn 1)
+                                                            (rpl:wait-for driver:robot-stopped*)))
+                                  (driver:run-plan (plan-of
+                                                    (rpl:wait-for driver:robot-stopped*))))))))

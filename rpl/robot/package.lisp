@@ -35,7 +35,7 @@
                 #:simulation-past #:simulation-journal #:remark #:unremark)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:declare-pulse
-                #:fluent-value
+                #:fluent-value #:fluent-name
                 #:set-value #:pulse
                 #:apply-settings #:looked-at-p #:forget-looks
                 #:*home-in-use* #:*runner* #:post-call #:react-to-all
@@ -51,7 +51,7 @@
                 #:waiting-parts #:failure-text #:missed-text #:lisp-failure
                 #:text-of-plans #:advice-on-stillness #:fluents-awaited
                 #:fluent-text #:note-twin #:has-twin-p #:twin-text #:pulse-of-command
-                #:last-command #:endless-advice
+                #:last-command #:last-pulse #:endless-advice
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure

@@ -8,12 +8,30 @@
 ;;; follows a command hears that command. What the simulator answers in the end for what has been
 ;;; told so sets only the fluents that say what the robot is or has: no error fluent, no pulse.
 
+(defun note-pulses (interface deed settings)
+  "Note which fluents SETTINGS, of the end of DEED of INTERFACE, pulse in this tick."
+  (when (deed-task deed)
+    (loop with plan = (task-serial (task-top (deed-task deed)))
+          for (kind fluent) in settings
+          for name = (and (eq :pulse kind) (fluent-name fluent))
+          when name
+            do (setf (interface-pulses interface)
+                     (cons (list name plan (simulation-tick (interface-simulation interface)))
+                           (remove name (interface-pulses interface)
+                                   :key #'first :test #'equal))))))
+
+(defmethod last-pulse ((interface interface) task fluent)
+  (destructuring-bind (&optional name plan tick)
+      (assoc (fluent-name fluent) (interface-pulses interface) :test #'equal)
+    (and name (eql plan (task-serial (task-top task))) tick)))
+
 (defun hear (answer interface)
   "Let plans hear ANSWER, unless they have. The caller holds the plans."
   (when (take-answer answer interface)
     (let ((deed (answer-deed answer)) (settings (answer-settings answer)))
       (setf (deed-begun-p deed) t)
       (note-unread interface deed (answer-err answer))
+      (unless (deed-told-p deed) (note-pulses interface deed settings))
       (with-answer ((deed-issue deed) (answer-err answer))
         (apply-settings (if (deed-told-p deed)
                             (state-settings settings)

@@ -59,7 +59,8 @@ plans nor a simulator.")
   ;; shape
   (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; twins
-  (:export #:note-twin #:has-twin-p #:twin-text #:end-text #:last-command #:plan-function-p
+  (:export #:note-twin #:has-twin-p #:twin-text #:end-text #:last-command #:last-pulse
+           #:plan-function-p
            #:results-of-command #:pulse-of-command #:teller-of-code)
   ;; procedure
   (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list

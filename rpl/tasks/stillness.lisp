@@ -88,6 +88,18 @@ others."
          (format nil "~A has been pulsed ~D time~:P so far, before this wait began; a wait hears ~
                       only pulses that come later." (fluent-text fluent) (fluent-pulses fluent)))))
 
+(defun missed-end-text (tasks)
+  "Return in sentences when a command pulsed the fluent that one of TASKS waits for; or NIL."
+  (loop for task in tasks
+        for subject = (traced-subject (task-awaiting task))
+        for tick = (and (fluent-p subject)
+                        (last-pulse (runner-client (task-runner task)) task subject))
+        when tick
+          return (format nil "~A was pulsed at tick ~D, before this wait began; a wait hears only ~
+                              pulses that come later. To wait for several, write (par (wait-for ~
+                              fluent) (wait-for fluent))."
+                         (fluent-text subject) tick)))
+
 ;;; What does not end.
 
 (defun exit-in-p (form)
@@ -128,7 +140,7 @@ others."
               (and robots (command-advice tasks))
               (remove-duplicates (mapcar #'fluent-text others) :test #'string=)
               (mapcar #'status-text states)
-              (missed-pulses-text tasks)
+              (or (missed-pulses-text tasks) (missed-end-text tasks))
               (endless-advice tasks)))))
 
 ;;; Reports.

@@ -58,3 +58,10 @@ and the number of the part that it is for, if any, as CLIENT knows; NIL if it ha
   (:method (client task)
     (declare (ignore client task))
     nil))
+
+(defgeneric last-pulse (client task fluent)
+  (:documentation "Return the tick at which FLUENT was pulsed last by the end of a command, if that
+was one of the plan that TASK is of, as CLIENT knows; or NIL.")
+  (:method (client task fluent)
+    (declare (ignore client task fluent))
+    nil))
