@@ -173,3 +173,12 @@
                                                             (rpl:wait-for driver:robot-stopped*)))
                                   (driver:run-plan (plan-of
                                                     (rpl:wait-for driver:robot-stopped*))))))))
+
+;;; Other objects than those that are wanted.
+
+(test manipulations.say-that-a-designator-is-not-local
+  (with-own-manipulations
+    (define-way 'poke '(it - () :by hand) '(nil done))
+    (outcome-of 'poke (designate 'crate :type :non-local) (hand 0))
+    (is-true (has-words-p (texts) "poke failed: Designator 0 is not local"
+                          "search again with the type :local"))))

@@ -19,8 +19,8 @@
            "Wait for a command's continuation before you give the part another one. (under-way
 robot) says what it is doing, and for whom.")
           (:failed
-           "It did not succeed: by chance, because nothing was defined for the things meant, or by
-an error in its own code, which an error message then tells."
+           "It did not succeed: by chance, because nothing was defined for the things meant or a
+designator was not local, or by an error in its own code, which an error message then tells."
            "Try again. If it never works, look with (describe (find-manipulation 'name)) at what
 its methods want.")
           ;; Moving.

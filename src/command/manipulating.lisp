@@ -137,6 +137,18 @@ is NIL (manual E)."
                 when (designator-p argument) collect (destination-name argument))
           (operation-resource operation)))
 
+(defun far-designator (operation)
+  "Return the designator given to OPERATION, a manipulation, that is not local, or NIL."
+  (find-if (lambda (argument)
+             (and (designator-p argument) (not (eq :local (designator-type argument)))))
+           (operation-arguments operation)))
+
+(defun failed-text (operation)
+  "Return in words that the manipulation OPERATION failed, and why if that is its designator."
+  (format nil "~A failed~@[: ~A is not local, as objects of manipulations must be. Go there, as by ~
+               robot-goto-designator, and search again with the type :local~]"
+          (command-prefix (operation-command operation)) (far-designator operation)))
+
 (defstruct (manipulation-command (:include command) (:copier nil)
                                  (:constructor %make-manipulation-command))
   "The command by which a manipulation is carried out.")
@@ -157,7 +169,7 @@ is NIL (manual E)."
      :documentation (format nil "Carry out the manipulation ~A." name)
      :resource (make-spec 'by t "the robot or part that does it")
      :results (list (make-spec 'value t "what the manipulation returns"))
-     :errors (list (make-error-code :failed (format nil "~A failed" prefix)))
+     :errors (list (make-error-code :failed #'failed-text))
      :delay (constantly 1)
      :report #'outcome-text
      :body #'begin-manipulation)))
