@@ -182,3 +182,12 @@
     (outcome-of 'poke (designate 'crate :type :non-local) (hand 0))
     (is-true (has-words-p (texts) "poke failed: Designator 0 is not local"
                           "search again with the type :local"))))
+
+(test lisp.says-which-part-of-a-robot-is-wanted
+  (flet ((told (function)
+           (handler-case (funcall function rover)
+             (type-error (condition) (base:text-of-condition condition)))))
+    (is-true (has-words-p (told 'robot:hand-contents)
+                          "Give a hand, as (robot-hand ROBOT 0) returns."))
+    (is-true (has-words-p (told 'robot:storage-bin-capacity)
+                          "Give a storage bin, as (robot-storage-bin ROBOT 0) returns."))))

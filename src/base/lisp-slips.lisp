@@ -127,11 +127,16 @@ it is of no use; or NIL.")
 no more to say."
   (or (type-remedy datum type) (value-behind datum)))
 
+(defun source-known-p (type)
+  "True if the words for TYPE, an argument type, say what returns such an object."
+  (and (our-own-p (argument-type-name type))
+       (search " returns" (argument-type-words type))))
+
 (defun type-remedy (datum type)
-  "Return in a sentence what is wrong with DATUM for the argument type TYPE, or NIL."
-  (let* ((type (and (symbolp type) (find-argument-type type nil)))
-         (trouble (and type (argument-type-trouble type))))
-    (when (and trouble (funcall trouble datum))
+  "Return in a sentence what is wrong with DATUM for the argument type TYPE, or what to give; NIL if
+there is no more to say."
+  (let ((type (and (symbolp type) (find-argument-type type nil))))
+    (when (and type (or (trouble-with datum type) (source-known-p type)))
       (sentence (format nil "Give ~A" (argument-type-text type datum))))))
 
 (defmethod slip-text ((condition error))
