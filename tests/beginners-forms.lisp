@@ -191,3 +191,14 @@
                           "Give a hand, as (robot-hand ROBOT 0) returns."))
     (is-true (has-words-p (told 'robot:storage-bin-capacity)
                           "Give a storage bin, as (robot-storage-bin ROBOT 0) returns."))))
+
+(test definitions.warn-of-bodies-that-are-functions
+  (flet ((told (&rest body)
+           (with-own-definitions
+             (list (warning-about `(world:defkicker hop-up (thing) (:prob 1) ,@body))
+                   (warning-about `(command:defmanipulation hop-on (it - () :by hand) ()
+                                     ,@body))))))
+    (dolist (text (told '(lambda () (setf *level* 1))))
+      (is-true (has-words-p text "which is made and never called"
+                            "Write what is in it alone: (setf *level* 1)")))
+    (is (equal '("" "") (told '(mapc (lambda (each) each) '()) nil)))))

@@ -152,7 +152,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; csv
   (:export #:csv-number-p #:csv-line #:csv-texts #:broken-line #:broken-line-text)
   ;; user-macros
-  (:export #:define-user-macro #:advice-on-use #:strange-keyword #:test-advice
+  (:export #:define-user-macro #:advice-on-use #:strange-keyword #:test-advice #:body-advice
            #:user-macro-form #:call-blaming-form)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register

@@ -172,3 +172,14 @@ if it is neither."
          (format nil "~S is ~:[a function~;data~], which always counts as true. Write the form ~
                       alone: ~S."
                  (abridged form) (eq 'quote (first form)) (abridged (first meant))))))
+
+(defun body-advice (forms)
+  "Return in sentences that FORMS, a body, is nothing but a function, which is never called, and
+what to write; else NIL."
+  (let ((form (first forms)) (*print-case* :downcase) (*print-pretty* nil))
+    (and (typep form '(cons symbol (cons list)))
+         (null (rest forms))
+         (string= "LAMBDA" (first form))
+         (format nil "the body is a function, ~S, which is made and never called. Write what is in ~
+                      it alone: ~S."
+                 (abridged form) (abridged (body-form (cddr form)))))))

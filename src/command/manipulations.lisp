@@ -206,6 +206,7 @@ parameter list, BODY a function of as many arguments. Return NAME."
   (let* ((parsed (parse-parameters definition parameters))
          (variables (parameter-variables parsed)))
     (doubt-types definition parsed)
+    (when (body-advice body) (doubt-definition "~A: ~A" definition (body-advice body)))
     `((define-manipulation ',name ',parameters
         (lambda ,variables (declare (ignorable ,@variables)) ,@body)
         ,@options))))

@@ -98,6 +98,7 @@ a thing. Return the kicker."
   (check-options definition options '(:prob :test))
   (let ((advice (test-advice (getf options :test))))
     (when advice (doubt-definition "~A, :test: ~A" definition advice)))
+  (when (body-advice body) (doubt-definition "~A: ~A" definition (body-advice body)))
   (flet ((thing-function (forms)
            `(lambda (,variable) (declare (ignorable ,variable)) ,@forms)))
     `(:prob ,(getf options :prob 1)
