@@ -86,11 +86,14 @@ function and its arguments."
     (let ((driver::*interface* nil))
       (start-dray)
       (driver:rpl-init-robot (symbol-value 'dray))
+      ;; A tick that found the plan would begin its thread.
+      (time:pause)
       (is (eq :left
               (coming-between (base:start-thread (start function name)
                          (declare (ignore start function name))
                          (leave))
                 (interrupted (driver:begin-plan (rpl:make-plan '(rpl:wait-time 1)))))))
+      (time:resume)
       (is (eq :succeeded (nth-value 1 (driver:run-plan (rpl:make-plan '(rpl:wait-time 1)))))))))
 
 ;;; A rewind, and what comes between.
