@@ -219,11 +219,11 @@
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "guarding")
                  (:file "rounds") (:file "stopping") (:file "repeatable") (:file "running")))
    (:module "src/experiment/report" :serial t
-    :components ((:file "estimates") (:file "summary") (:file "text-table") (:file "texts")
-                 (:file "remarks") (:file "report")))
+    :components ((:file "scaling") (:file "estimates") (:file "summary") (:file "text-table")
+                 (:file "texts") (:file "remarks") (:file "report")))
    (:module "src/experiment/comparison" :serial t
-    :components ((:file "differences") (:file "contrasts") (:file "overall") (:file "verdicts")
-                 (:file "comparison-table") (:file "levels") (:file "meaning")
+    :components ((:file "differences") (:file "contrasts") (:file "overall") (:file "figures")
+                 (:file "verdicts") (:file "comparison-table") (:file "levels") (:file "meaning")
                  (:file "comparing") (:file "changes") (:file "comparing-versions")
                  (:file "comparison-picture")))
    (:module "src/experiment/pictures" :serial t

@@ -129,48 +129,6 @@
                  (third (experiment:comparison-verdicts
                          (experiment:compare-conditions results 1 2 :stream nil)))))))
 
-;;; Numbers that are near each other, and very large and small ones.
-
-(defun mentions-all-p (text &rest words)
-  (every (lambda (word) (mentions-p text word)) words))
-
-(defun told-of-means (function)
-  "Return what a comparison says of a measure that FUNCTION gives for a seed and 1 or 2."
-  (let ((difference (experiment::mean-difference
-                     "x"
-                     (loop for seed from 1 to 12 collect (funcall function seed 1))
-                     (loop for seed from 1 to 12 collect (funcall function seed 2)))))
-    (experiment::adjust-for-all (list difference))
-    (experiment::verdict difference (experiment::make-contrast "" "one" "two"))))
-
-(test compare.calls-equal-only-what-is
-  (flet ((told (base step)
-           (told-of-means (lambda (seed way) (declare (ignore seed)) (+ base (* way step))))))
-    (is (mentions-all-p (told 4d9 1d-3) "x is less with one than with two" "4000000000.001"
-                    "4000000000.002"))
-    (let ((text (told 1 1d-15)))
-      (is (mentions-all-p text "differs by no more than rounding may, at most 8.88178"
-                          "1.000000000000001" "1.000000000000002"))
-      (is (not (mentions-p text "equal"))))
-    (is (mentions-all-p (told 5 0) "is equal, seed by seed"))))
-
-(test compare.shows-small-differences
-  (is (mentions-all-p (told-of-means (lambda (seed way) (* 1d-300 (+ seed way))))
-                  "7.500e-300 against 8.500e-300" "difference -1.000e-300"))
-  (is (mentions-all-p (told-of-means (lambda (seed way) (+ 1 (* way 1d-9 (+ 1 (/ seed 1d6))))))
-                  "1.000000001" "1.000000002")))
-
-(test compare.tells-of-numbers-that-are-too-large
-  (let ((difference (experiment::difference-of-values "x" '(1d99 5 5) '(5 5 5))))
-    (is (mentions-all-p (experiment::verdict difference (experiment::make-contrast "" "one" "two"))
-                        "x of one and two cannot be compared: under 1 of 3 common seeds it is "
-                        "beyond 1e15" ":none"))))
-
-(test tables.have-decimal-numbers-whatever-a-trial-sets
-  (let ((*print-base* 16) (*print-radix* t))
-    (is (equal '("17" "-255" "[17, 1]" "100")
-               (mapcar #'experiment::value-text '(17 -255 (17 1) 100))))))
-
 (test compare.is-the-same-the-other-way-round
   (with-made-up (results (patrol-and-spiral))
     (let ((one (difference-in "success" (experiment:compare-conditions results 1 2 :stream nil)))
@@ -191,7 +149,7 @@
       (is (equal '(0 2 0 1) (experiment:paired-table success)))
       (is (mentions-p text "Left out, as only one has their seeds: noise=0: 2 of a and 2 of b."))
       (is (mentions-p text "with an error, and counted as not succeeded: noise=0: 2 of b."))
-      (is (mentions-p text "way of a and b cannot be compared: over 1 common seed.")))))
+      (is (mentions-p text "way of a and b cannot be compared: over 1 common seed (2 left out,")))))
 
 (test compare.needs-something-to-compare
   (with-made-up (results (append (rows-of-outcomes "a" "0" "+++" :first 8)
@@ -303,15 +261,57 @@
                             (experiment:compare-conditions results 1 2 :stream nil)))
                     "at most 0.14. This bound is right about 95 times in 100."))))
 
-(test compare.takes-for-equal-only-what-rounding-parts
-  "Whole numbers are what they are, however large; floats, but for their last digits."
-  (flet ((means (firsts seconds)
-           (let ((difference (experiment::mean-difference "x" firsts seconds)))
-             (list (experiment::paired-same-p difference)
-                   (experiment::paired-first difference)
-                   (experiment::paired-second difference)))))
-    (is (equalp '(nil 1700000010 1700000000)
-                (means (make-list 30 :initial-element 1700000010)
-                       (make-list 30 :initial-element 1700000000))))
-    (is-false (first (means '(1d9 2d9) '(1000000000.5d0 2000000000.25d0))))
-    (is-true (first (means (list (+ .1d0 .2d0 .3d0) 1) (list (+ .3d0 .2d0 .1d0) 1))))))
+;;; Small, large and nearly equal numbers.
+
+(defun verdict-on (firsts seconds)
+  "Return the verdict on x, measured as FIRSTS in a and as SECONDS in b, trial by trial."
+  (let ((difference (experiment::mean-difference "x" firsts seconds)))
+    (experiment::adjust-for-all (list difference))
+    (experiment::verdict difference (experiment::make-contrast nil "a" "b"))))
+
+(defun verdict-on-all (first second)
+  (verdict-on (make-list 30 :initial-element first) (make-list 30 :initial-element second)))
+
+(test compare.takes-for-equal-only-what-is-equal
+  (loop for (first second) in '((1700000010 1700000000) (4000000000.002d0 4000000000.001d0)
+                                (1.000000000002d0 1.000000000001d0) (2d-300 1d-300)
+                                (100000000000000000002 100000000000000000001))
+        do (is (mentions-p (verdict-on-all first second) "x is more with a than with b: p < .001")))
+  (is (mentions-p (verdict-on '(1d9 2d9) '(1000000000.5d0 2000000000.25d0)) "No difference in x"))
+  (is (mentions-p (verdict-on '(1 0.1d0) '(1.0d0 0.1d0)) "x of a and b is equal, seed by seed")))
+
+(test compare.tells-rounding-as-what-it-is
+  (is (string= (format nil "x of a and b differs by no more than rounding, seed by seed at most ~
+                            1.1e-16: 0.6000000000000001 against 0.6 on average over 30 common ~
+                            seeds.")
+               (verdict-on-all (+ .1d0 .2d0 .3d0) (+ .3d0 .2d0 .1d0))))
+  (is-false (experiment::tested-p (experiment::mean-difference "x" '(.1d0 .3d0)
+                                                               (list .1d0 (+ .1d0 .2d0)))))
+  (is (mentions-p (verdict-on '(.1d0 .3d0 2d0) (list .1d0 (+ .1d0 .2d0) 3d0))
+                  "No difference in x")))
+
+(test compare.writes-digits-that-tell-numbers-apart
+  (loop for (first second . texts)
+          in '((2d-300 1d-300 "2e-300 against 1e-300" "difference 1e-300")
+               (1.000000002d0 1.000000001d0 "1.00000000200 against 1.00000000100" "1e-9")
+               (4000000000.002d0 4000000000.001d0 "4000000000.00200 against 4000000000.00100")
+               (3d99 1d99 "3e99 against 1e99" "difference 2e99")
+               (12 11 "12.000 against 11.000" "difference 1.000 (95 % interval 1.000 to 1.000)"))
+        for verdict = (verdict-on-all first second)
+        do (dolist (text texts) (is (mentions-p verdict text)))))
+
+(test compare.takes-numbers-of-any-size
+  (let ((numbers (loop for i below 30 collect (if (< (mod i 10) 3) 1d99 5))))
+    (is (mentions-p (verdict-on numbers (make-list 30 :initial-element 5))
+                    "x is more with a than with b: p = .004")))
+  (is (mentions-p (verdict-on-all 1.5d308 -1.5d308)
+                  "difference 3e308 (95 % interval 3e308 to 3e308)"))
+  (is (mentions-p (verdict-on-all 1d15 -1d15) "x is more with a")))
+
+(test compare.says-how-many-seeds-have-no-number
+  (with-made-up (results (append (rows-of-outcomes "a" "0" "++++"
+                                                   :way (lambda (seed) (if (evenp seed) "w" 5)))
+                                 (rows-of-outcomes "b" "0" "++++" :way 7)))
+    (is (mentions-p (third (experiment:comparison-verdicts
+                            (experiment:compare-conditions results 1 2 :stream nil)))
+                    "over 2 common seeds (2 left out, without a number in both)"))))

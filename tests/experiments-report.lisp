@@ -169,6 +169,23 @@ And more."
       (is (search "2 conditions, 1 to 3 trials each" text))
       (is (search "noise  trials  success" text)))))
 
+(test report.and-pictures-take-numbers-of-any-size
+  (with-report (results '("way") '("x") '((("a") ("success" :values (1.5d308))
+                                           ("success" :values (-1.5d308)))
+                                          (("b") ("success" :values (1d99))
+                                           ("success" :values (5)))))
+    (destructuring-bind (wide other)
+        (loop for summary in (experiment:summarize-results results)
+              collect (first (experiment:summary-measures summary)))
+      (is (equal '(:mean 2 0) (list (experiment:estimate-kind wide) (experiment:estimate-count wide)
+                                    (experiment:estimate-left-out wide))))
+      (is (zerop (experiment:estimate-value wide)))
+      (is (< (expt 10 308) (experiment:estimate-high wide)))
+      (is (< 4.9d98 (experiment:estimate-value other) 5.1d98)))
+    (is (mentions-p (report-text results) "5e98"))
+    (with-directories (directory)
+      (is-true (experiment:save-result-pictures results directory)))))
+
 (test report.tells-what-is-left-out-and-what-was-outlived
   (with-report (results '() '("way")
                         `((() ("success" :values (1) :error "kicker failed")

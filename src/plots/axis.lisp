@@ -53,8 +53,8 @@ numbers."
 (defun widened (low high from to inset)
   "Return the ends of an axis between the pixels FROM and TO on which LOW and HIGH are INSET from
 these, but no more than a sixth of it."
-  (let* ((span (- to from))
-         (inset (min inset (/ span 6)))
+  (let* ((span (rational (- to from)))
+         (inset (min (rational inset) (/ span 6)))
          (margin (* (- high low) (/ inset (- span (* 2 inset))))))
     (values (- low margin) (+ high margin))))
 

@@ -8,7 +8,7 @@
 (defun exact (value)
   "Return VALUE, a finite number, as a rational, 0.1 as 1/10; NIL if it is NIL. Signals
 WRONG-ARGUMENT."
-  (check-argument chart value (or (null value) (finite-p value))
+  (check-argument chart value (or (null value) (rationalp value) (finite-p value))
                   "a number that is not infinite, or NIL if there is none")
   (and value (rationalize value)))
 

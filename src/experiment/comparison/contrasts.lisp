@@ -103,7 +103,7 @@ indexes."
 (defun only-numbers (firsts seconds)
   (loop for a in firsts
         for b in seconds
-        when (and (quantity-p a) (quantity-p b))
+        when (and (finite-value-p a) (finite-value-p b))
           collect a into numbers and collect b into others
         finally (return (values numbers others))))
 
@@ -112,9 +112,14 @@ indexes."
   (flet ((all (test) (and (every test firsts) (every test seconds))))
     (cond ((all (lambda (value) (typep value 'boolean))) (rate-difference name firsts seconds))
           ((or (some #'realp firsts) (some #'realp seconds))
-           (or (too-large-difference name :mean firsts seconds)
-               (multiple-value-call #'mean-difference name (only-numbers firsts seconds))))
+           (multiple-value-call #'mean-difference name (only-numbers firsts seconds)))
           (t nil))))
+
+(defun noting-left-out (difference pairs)
+  "Enter into DIFFERENCE, unless it is NIL, how many of so many PAIRS it does not count. Return it."
+  (when difference
+    (setf (paired-left-out difference) (- pairs (paired-trials difference))))
+  difference)
 
 (defun difference-in (name results first other-results second pairs)
   "Return the difference in NAME between FIRST, of RESULTS, and SECOND, of OTHER-RESULTS."
@@ -123,7 +128,8 @@ indexes."
         (paired-values (column-of results first name) (column-of other-results second name) pairs)
       (cond ((string-equal name "ticks") (mean-difference "ticks" firsts seconds))
             ((or firsts (string-equal name "success"))
-             (difference-of-values (string-downcase name) firsts seconds))))))
+             (noting-left-out (difference-of-values (string-downcase name) firsts seconds)
+                              (length pairs)))))))
 
 ;;; The whole.
 

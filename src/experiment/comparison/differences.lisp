@@ -9,7 +9,7 @@
 (defstruct (paired-difference (:conc-name paired-)
                               (:constructor make-difference
                                   (measure kind trials first second low high p
-                                   &optional table same-p note))
+                                   &optional table rounding))
                               (:copier nil))
   "How two conditions differ in MEASURE, a KIND of number: :RATE or :MEAN."
   (measure "" :type string :read-only t)
@@ -21,17 +21,18 @@
   (high nil :read-only t)
   (p nil :read-only t)
   (table '() :type list :read-only t)
-  ;; True if there is no difference in any pair.
-  (same-p nil :type boolean :read-only t)
-  ;; What is said in place of a verdict: that there is only rounding, or why there is none; or NIL.
-  (note nil :type (or null string) :read-only t)
+  ;; The largest difference in any pair, if rounding explains all; 0 if all pairs are equal; or NIL.
+  (rounding nil :type (or null real) :read-only t)
+  ;; How many pairs are not counted, as one of both has no number.
+  (left-out 0 :type integer)
   ;; As one of how many tests it counts, and what P is worth as that.
   (tests 1 :type integer)
   (adjusted-p nil))
 
 (defun paired-estimate (difference)
   "Return by how much the first rate or mean of DIFFERENCE is above the second, or NIL."
-  (and (paired-first difference) (- (paired-first difference) (paired-second difference))))
+  (and (paired-first difference)
+       (number-less (paired-first difference) (paired-second difference))))
 
 (addition paired-difference-p paired-measure paired-trials paired-first paired-second
           paired-estimate paired-low paired-high paired-p paired-adjusted-p paired-table)
@@ -76,7 +77,7 @@ of booleans, are true."
                              (/ (+ both first) trials) (/ (+ both second) trials) low high
                              (values (mcnemar-test first second))
                              (list both first second neither)
-                             (= 0 first second)))))))
+                             (and (= 0 first second) 0)))))))
 
 ;;; Means.
 
@@ -85,67 +86,52 @@ of booleans, are true."
 can be does not depend on it."
   (max 1000 (min 10000 (floor 200000000 (max 1 trials)))))
 
-;; Who adds the same floats in another order gets other last digits: that is no difference. Whole
-;; numbers and ratios have none.
-(defconstant +grain+ 1d-13 "By which share of them two floats may differ that rounding has parted.")
+;; Who adds the same floats in another order gets other last digits. That is told as what it is, and
+;; not tested. Whole numbers have no rounding.
+(defconstant +grain+ (* 4 double-float-epsilon)
+  "What two floats differ in by this share of them at most, may be rounding.")
 
 (defun equal-but-for-rounding-p (a b)
-  (and (or (floatp a) (floatp b))
-       (<= (abs (- a b)) (* +grain+ (max (abs a) (abs b))))))
+  (or (= a b)
+      (and (or (floatp a) (floatp b))
+           (<= (abs (- (rational a) (rational b)))
+               (* (rational +grain+) (max (abs (rational a)) (abs (rational b))))))))
 
-(defun without-rounding (firsts seconds)
-  "Return FIRSTS with the numbers of SECONDS in place of those that are equal but for rounding."
-  (mapcar (lambda (a b) (if (equal-but-for-rounding-p a b) b a)) firsts seconds))
+(defun rounding-of (firsts seconds)
+  "Return the largest difference between FIRSTS and SECONDS if rounding explains all, 0 if they are
+equal; or NIL."
+  (cond ((every #'= firsts seconds) 0)
+        ((every #'equal-but-for-rounding-p firsts seconds)
+         (reduce #'max (mapcar (lambda (a b) (abs (number-less a b))) firsts seconds)))))
 
-(defun rounding-note (firsts seconds)
-  "Return in words that FIRSTS and SECONDS, numbers that rounding may have parted, differ; NIL if
-they are equal."
-  (unless (every #'= firsts seconds)
-    (format nil "differs by no more than rounding may, at most ~A, seed by seed: ~A against ~A on ~
-                 average"
-            (float-text (double (loop for a in firsts
-                                      for b in seconds
-                                      maximize (abs (- (rational a) (rational b))))))
-            (float-text (mean firsts))
-            (float-text (mean seconds)))))
+(defun exact-mean (numbers)
+  "Return the mean of NUMBERS: a float if one of them is, else a rational."
+  (let ((mean (/ (reduce #'+ numbers :key #'rational) (length numbers))))
+    (if (some #'floatp numbers) (nearest-float mean) mean)))
 
-(defun too-large-p (value)
-  (and (realp value) (not (quantity-p value))))
-
-(defun too-large-difference (measure kind firsts seconds)
-  "Return, as a difference, that MEASURE has numbers among FIRSTS and SECONDS that statistics do not
-take; NIL if it has none."
-  (let ((count (loop for a in firsts
-                     for b in seconds
-                     count (or (too-large-p a) (too-large-p b)))))
-    (when (plusp count)
-      (make-difference measure kind 0 nil nil nil nil nil '() nil
-                       (format nil "cannot be compared: under ~D of ~D common seed~:P it is beyond ~
-                                    1e15. Measure :none where there is no number, or use a larger ~
-                                    unit" count (length firsts))))))
+(defun test-mean (numbers)
+  "Return how likely so large a mean of the differences NUMBERS is by chance."
+  (values (permutation-test numbers :resamples (draws-for (length numbers)) :rare-too t)))
 
 (defun mean-difference (measure firsts seconds &optional (kind :mean))
   "Return how large MEASURE is on average, by FIRSTS and SECONDS, lists of numbers."
-  (let* ((trials (length firsts)) (measured firsts) (firsts (without-rounding firsts seconds))
-         (same-p (every #'= firsts seconds)))
-    (if (zerop trials)
-        (make-difference measure kind 0 nil nil nil nil nil)
-        (multiple-value-bind (low high) (mean-difference-interval firsts seconds)
-          (make-difference measure kind trials (mean firsts) (mean seconds) low high
-                           (values (permutation-test (mapcar (lambda (a b)
-                                                               (- (rational a) (rational b)))
-                                                             firsts seconds)
-                                                     :resamples (draws-for trials)
-                                                     :rare-too t))
-                           '()
-                           same-p
-                           (and same-p (rounding-note measured seconds)))))))
+  (if (null firsts)
+      (make-difference measure kind 0 nil nil nil nil nil)
+      (let* ((differences (mapcar (lambda (a b) (- (rational a) (rational b))) firsts seconds))
+             (scale (scale-for differences))
+             (numbers (mapcar (lambda (number) (scaled number scale)) differences))
+             (rounding (rounding-of firsts seconds)))
+        (multiple-value-bind (low high) (student-interval numbers)
+          (make-difference measure kind (length firsts) (exact-mean firsts) (exact-mean seconds)
+                           (unscaled low scale) (unscaled high scale)
+                           (if rounding 1d0 (test-mean numbers))
+                           '() rounding)))))
 
 ;;; Several.
 
 ;; What is the same in all pairs could not be told to differ, whatever chance did: it is no test.
 (defun tested-p (difference)
-  (and (paired-p difference) (not (paired-same-p difference))))
+  (and (paired-p difference) (not (paired-rounding difference))))
 
 (defun adjust-for-all (differences)
   "Let each of DIFFERENCES know what its test is worth among them."

@@ -36,14 +36,13 @@ trials of SEEDS."
     (loop for (seed a b) in values
           for entry = (or (gethash seed sums)
                           (progn (push seed seeds)
-                                 (setf (gethash seed sums) (list 0 0 0))))
-          do (incf (first entry))
-             (incf (second entry) (rational a))
-             (incf (third entry) (rational b)))
+                                 (setf (gethash seed sums) (list '() '()))))
+          do (push a (first entry))
+             (push b (second entry)))
     (loop for seed in (sort seeds #'<)
-          for (count a b) = (gethash seed sums)
-          collect (/ a count) into firsts
-          collect (/ b count) into seconds
+          for (firsts-of-seed seconds-of-seed) = (gethash seed sums)
+          collect (exact-mean firsts-of-seed) into firsts
+          collect (exact-mean seconds-of-seed) into seconds
           finally (return (values firsts seconds)))))
 
 (defun overall-difference (name values)
@@ -56,10 +55,8 @@ trials of SEEDS."
            (difference :rate (loop for (seed a b) in values
                                    collect (list seed (if a 1 0) (if b 1 0)))))
           ((some (lambda (entry) (some #'realp (rest entry))) values)
-           (or (too-large-difference (string-downcase name) :mean
-                                     (mapcar #'second values) (mapcar #'third values))
-               (difference :mean (remove-if-not (lambda (entry) (every #'quantity-p (rest entry)))
-                                                values)))))))
+           (difference :mean (remove-if-not (lambda (entry) (every #'finite-value-p (rest entry)))
+                                            values))))))
 
 (defun overall-contrast (first second pairs names results &optional (other-results results))
   "Return the contrast of what is called FIRST and SECOND over all PAIRS, lists of samples of

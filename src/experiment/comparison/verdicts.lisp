@@ -2,44 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-;;; Numbers, with as many digits as they are known to.
-
-(defun decimals-text (value decimals)
-  (let ((text (format nil "~,VF" decimals (double value))))
-    (string-right-trim "." (if (string= "-" (string-right-trim "0." text))
-                               (subseq text 1)  ; no minus before nothing
-                               text))))
-
-(defun hundredths-text (share trials)
-  "Return SHARE, seen in TRIALS, in hundredths."
-  (decimals-text (* 100 share) (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
-
-(defun decimals-known (low high estimate)
-  "Return how many decimals a mean is worth whose ESTIMATE lies between LOW and HIGH, or NIL."
-  (flet ((decimals (size) (- 1 (power-of-ten (rational size)))))
-    (let ((enough (if (member estimate '(nil 0 0d0)) 6 (max 3 (+ 2 (decimals estimate))))))
-      (if (and low (< low high))
-          (max 0 (min enough (decimals (- high low))))
-          (if (member estimate '(nil 0 0d0)) 3 enough)))))
-
-(defun exponent-text (value)
-  "Return VALUE with four digits and its power of ten."
-  (if (zerop value)
-      "0"
-      (let* ((power (power-of-ten (* 100005/100000 (rational value))))
-             (share (/ (rational value) (expt 10 power))))
-        (format nil "~,3Fe~D" (double share) power))))
-
-(defun number-writer (difference)
-  "Return a function that writes the numbers of DIFFERENCE, without units."
-  (if (eq :rate (paired-kind difference))
-      (lambda (value) (hundredths-text value (paired-trials difference)))
-      (let ((decimals (decimals-known (paired-low difference) (paired-high difference)
-                                      (paired-estimate difference))))
-        (lambda (value)
-          (if (<= decimals 15)
-              (decimals-text value decimals)
-              (exponent-text value))))))
+;;; Parts of sentences.
 
 (defun p-figure (p)
   "Return the probability P as people write it: .032, .15."
@@ -85,9 +48,17 @@
         (format nil "~A against ~A on average" (funcall write (paired-first difference))
                 (funcall write (paired-second difference))))))
 
+(defun left-out-words (difference)
+  "Return how many pairs DIFFERENCE does not count, and why; NIL if none."
+  (let ((count (paired-left-out difference)))
+    (when (plusp count)
+      (format nil "~D left out, without a ~:[number~;value~] in both" count
+              (eq :rate (paired-kind difference))))))
+
 (defun trials-words (difference)
-  (format nil "~:[over~;where both succeed,~] ~D common seed~:P"
-          (string= "ticks" (paired-measure difference)) (paired-trials difference)))
+  (format nil "~:[over~;where both succeed,~] ~D common seed~:P~@[ (~A)~]"
+          (string= "ticks" (paired-measure difference)) (paired-trials difference)
+          (left-out-words difference)))
 
 (defun figures-words (difference)
   (format nil "~A, ~A ~A, ~A" (p-words difference) (both-words difference)
@@ -148,13 +119,17 @@
   "Return in words what DIFFERENCE, of CONTRAST, tells."
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
     (format nil "~@[~A: ~]~A." (contrast-where contrast)
-            (cond ((paired-note difference)
-                   (format nil "~A of ~A and ~A ~A" (paired-measure difference) first second
-                           (paired-note difference)))
-                  ((or (null (paired-p difference)) (null (paired-low difference)))
-                   (format nil "~A of ~A and ~A cannot be compared: ~A"
+            (cond ((or (null (paired-p difference)) (null (paired-low difference)))
+                   (format nil "~A of ~A and ~A cannot be compared: ~A, and at least 2 are needed"
                            (paired-measure difference) first second (trials-words difference)))
-                  ((= 0 (paired-low difference) (paired-high difference))
+                  ((plusp (or (paired-rounding difference) 0))
+                   (format nil "~A of ~A and ~A differs by no more than rounding, seed by seed at ~
+                                most ~A: ~A ~A"
+                           (paired-measure difference) first second
+                           (figure-text (paired-rounding difference) :digits 2)
+                           (both-words difference) (trials-words difference)))
+                  ((and (eql 0 (paired-rounding difference))
+                        (= 0 (paired-low difference) (paired-high difference)))
                    (format nil "~A of ~A and ~A is equal, seed by seed: ~A ~A"
                            (paired-measure difference) first second (both-words difference)
                            (trials-words difference)))

@@ -91,7 +91,7 @@ estimate for a sample."
 (defun spread-row (results sample estimate)
   "Return the row of MEASURE-CHART for all numbers of SAMPLE that ESTIMATE is of."
   (list (sample-condition sample)
-        (remove-if-not #'quantity-p (sample-measure results sample (estimate-name estimate)))
+        (remove-if-not #'finite-value-p (sample-measure results sample (estimate-name estimate)))
         (estimate-value estimate) (estimate-low estimate) (estimate-high estimate)))
 
 (defconstant +most-rows+ 30 "How many rows a picture has at most.")

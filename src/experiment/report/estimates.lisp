@@ -44,7 +44,7 @@
   "Return which kind of estimate is made of COLUMNS, of one measure under all conditions."
   (flet ((some-value (test)
            (some (lambda (column) (some test column)) columns)))
-    (cond ((some-value #'quantity-p) :mean)
+    (cond ((some-value #'finite-value-p) :mean)
           ((some-value (lambda (value) (not (typep value '(or boolean (eql :none)))))) :texts)
           ((some-value (lambda (value) (typep value 'boolean))) :rate)
           (t :nothing))))
@@ -68,9 +68,13 @@
                                      :high (if (zerop trials) nil high))))
 
 (defun mean-estimate (name numbers left-out confidence)
-  (multiple-value-bind (low high) (student-interval numbers :confidence confidence)
-    (make-estimate name :mean (length numbers) :value (mean numbers) :low low :high high
-                                               :left-out left-out)))
+  (let* ((scale (scale-for numbers))
+         (sample (cl:map 'vector (lambda (number) (scaled number scale)) numbers)))
+    (multiple-value-bind (low high) (student-interval sample :confidence confidence)
+      (make-estimate name :mean (length numbers) :value (unscaled (mean sample) scale)
+                                                 :low (unscaled low scale)
+                                                 :high (unscaled high scale)
+                                                 :left-out left-out))))
 
 (defun median-estimate (name numbers confidence)
   (multiple-value-bind (low high) (median-interval numbers :confidence confidence)
@@ -82,7 +86,7 @@
     (ecase kind
       (:nothing (make-estimate name kind 0))
       (:rate (rate-estimate name (count t values) (length values) confidence))
-      (:mean (let ((numbers (remove-if-not #'quantity-p values)))
+      (:mean (let ((numbers (remove-if-not #'finite-value-p values)))
                (mean-estimate name numbers (- (length values) (length numbers)) confidence)))
       (:texts (make-estimate name kind (length values)
                              :texts (tally (cl:map 'list #'value-text values)))))))
