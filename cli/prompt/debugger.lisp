@@ -298,16 +298,22 @@ does other things too, and no prompt runs in it."
             serious-p (thread-name (current-thread))
             (string-right-trim "." (complaint-text (condition-text condition))) serious-p)))
 
+(defconstant +most-told+ 100 "How many different errors in threads of programs are told.")
+
 (defvar *told-of-threads* '() "What has been said of threads of programs; each is said once.")
 (defvar *told-lock* (make-lock "told of threads"))
 
 (defun tell-of-users-thread (condition)
-  "Say on the error output, unless that was said before, what CONDITION is."
-  (let ((text (users-thread-text condition)))
-    (when (with-lock (*told-lock*)
-            (unless (member text *told-of-threads* :test #'string=)
-              (push text *told-of-threads*)))
-      (say-on-error-output text))))
+  "Say on the error output, unless that or very many others were said before, what CONDITION is."
+  (let* ((text (users-thread-text condition))
+         (count (with-lock (*told-lock*)
+                  (unless (or (member text *told-of-threads* :test #'string=)
+                              (< +most-told+ (length *told-of-threads*)))
+                    (length (push text *told-of-threads*))))))
+    (when count
+      (say-on-error-output (if (<= count +most-told+)
+                               text
+                               "There are more errors in threads; they are told no more.")))))
 
 ;; By this name the rest of the program knows that there is none.
 (defun debugger-disabled-hook (condition hook)

@@ -6,12 +6,6 @@
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
 ;;; plans that were begun one after the other know nothing of each other.
 
-(defun operator-called-p (form names)
-  "True if FORM is a call of an operator that is called one of NAMES."
-  (and (consp form)
-       (symbolp (first form))
-       (member (symbol-name (first form)) names :test #'string=)))
-
 (defun common-task (task other)
   "Return the innermost task that TASK and OTHER are parts of, or NIL."
   (loop for each = task then (task-parent each)
@@ -22,7 +16,7 @@
   "True if TASK is at a construct all whose branches are to succeed."
   (let ((frame (task-frame task)))
     (and frame
-         (operator-called-p (node-form (frame-node frame)) '("PAR" "PAR-LOOP" "PARTIAL-ORDER")))))
+         (operator-called-p (node-form (frame-node frame)) "PAR" "PAR-LOOP" "PARTIAL-ORDER"))))
 
 (defun reacting-to-events-p (task whole)
   "True if TASK, a part of WHOLE (NIL: of nothing), runs what a construct does when something
@@ -32,12 +26,11 @@ happens."
         thereis (loop for frame = (task-frame each) then (frame-up frame)
                       while frame
                       thereis (operator-called-p (node-form (frame-node frame))
-                                                 '("WHENEVER" "AT-LOCATION")))))
+                                                 "WHENEVER" "AT-LOCATION"))))
 
 (defun watches-p (task)
   "True if TASK waits in a loop, or for whatever may come: to wait is what it is for."
-  (find-if (lambda (form)
-             (and (consp form) (member (first form) '("LOOP" "WHENEVER") :test #'string=)))
+  (find-if (lambda (form) (operator-called-p form "LOOP" "WHENEVER"))
            (plan-backtrace task (task-frame task))))
 
 (defun clash-p (older newer)
@@ -93,7 +86,7 @@ priority."
   (loop for frame = (task-frame task) then (frame-up frame)
         while frame
         do (let ((form (node-form (frame-node frame))))
-             (when (operator-called-p form '("SEQ"))
+             (when (operator-called-p form "SEQ")
                (let ((at (current-form (frame-node frame) frame)))
                  (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
 
@@ -114,7 +107,7 @@ deed NEWER, most likely by mistake; NIL if that may be meant, as where it reacts
          (or (= 0 ticks)
              (and (= 1 ticks)
                   (not (drives-p older))
-                  (operator-called-p (step-before task) '("WAIT-TIME"))
+                  (operator-called-p (step-before task) "WAIT-TIME")
                   (not (watches-p task))))
          ticks)))
 

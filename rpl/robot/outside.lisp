@@ -9,10 +9,10 @@
 (defun name-of-outside-command (interface)
   "Return the name of the command that the robot of INTERFACE carries out for others than plans, or
 NIL."
-  (let ((robot (interface-robot interface)))
-    (and (resource-event robot)
+  (let* ((robot (interface-robot interface)) (event (resource-event robot)))
+    (and (operation-p event)
          (not (find robot (interface-deeds interface) :key #'deed-resource))
-         (values (under-way robot)))))
+         (command-name (operation-command event)))))
 
 (defun watcher-of-end (interface command)
   "Return a top-level task of INTERFACE, which this thread holds, that watches for the end of

@@ -52,7 +52,8 @@
                 #:text-of-plans #:advice-on-stillness #:fluents-awaited
                 #:fluent-text #:note-twin #:has-twin-p #:twin-text #:pulse-of-command
                 #:last-command #:last-pulse #:endless-advice
-                #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:task-awaiting #:task-since
+                #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:operator-called-p
+                #:task-awaiting #:task-since
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure
                 #:plan-trace #:write-trace #:valve #:make-valve #:valve-losers #:note-command

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(defun operator-called-p (form &rest names)
+  "True if FORM, of a plan's text, is a use of an operator that is called like one of NAMES."
+  (and (typep form '(cons symbol)) (member (first form) names :test #'string=)))
+
 (defun plan-backtrace (task frame)
   "Return the expressions under way in TASK at FRAME and around it, innermost first."
   (loop for each = task then (task-parent each)

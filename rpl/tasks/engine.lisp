@@ -108,21 +108,17 @@ returns true if it brought something new. Return :idle or :budget."
             ((runner-spent runner) (release-spent runner))
             (t (return :idle))))))
 
-(defun form-of-p (form &rest names)
-  "True if FORM is a use of an operator that is called like one of NAMES."
-  (and (typep form '(cons symbol)) (member (first form) names :test #'same-name-p)))
-
 (defun use-in (name form)
   "Return the first use of the operator called NAME in FORM, or NIL."
-  (cond ((form-of-p form name) form)
+  (cond ((operator-called-p form name) form)
         ((consp form) (or (use-in name (car form)) (use-in name (cdr form))))))
 
 (defun runaway-remedy (task)
   "Return in sentences how TASK, which runs away, can be made to wait."
   (let* ((form (find-if (lambda (form)
-                          (form-of-p form "LOOP" "HANDLE-FAILURE" "WITH-FAILURE-HANDLING"))
+                          (operator-called-p form "LOOP" "HANDLE-FAILURE" "WITH-FAILURE-HANDLING"))
                         (plan-backtrace task (task-frame task))))
-         (loop-p (form-of-p form "LOOP"))
+         (loop-p (operator-called-p form "LOOP"))
          (wait (and loop-p (use-in "WAIT-FOR" form))))
     (cond (wait
            (format nil "~A does not wait while that is true already. Wait until it is false too, ~

@@ -72,7 +72,7 @@ plans nor a simulator.")
            #:procedure-p
            #:procedure-source)
   ;; blame
-  (:export #:*failure-hook* #:failure-of #:plan-backtrace)
+  (:export #:*failure-hook* #:failure-of #:plan-backtrace #:operator-called-p)
   ;; report
   (:export #:*plan-end-hooks* #:report-end #:report-failure #:missed-text
            #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line

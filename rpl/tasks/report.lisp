@@ -56,9 +56,8 @@
 
 (defun clause-types (form)
   "Return what the clauses of FORM, an expression of a plan, are for, if it handles failures."
-  (and (typep form '(cons symbol (cons list)))
-       (member (first form) '("HANDLE-FAILURE" "WITH-FAILURE-HANDLING") :test #'string=)
-       (loop for (type) in (second form)
+  (and (operator-called-p form "HANDLE-FAILURE" "WITH-FAILURE-HANDLING")
+       (loop for (type) in (remove-if-not #'consp (ensure-list (second form)))
              append (remove-if-not #'symbolp (ensure-list type)))))
 
 (defun slip-for-p (type class)

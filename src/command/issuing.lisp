@@ -67,14 +67,15 @@
 
 ;;; One simulation inside of another.
 
-(defvar *asked-elsewhere* nil
-  "A cons of the world, and its tick, in which a program last asked for something while inside of a
-simulation of another; or NIL.")
+(defun asked-elsewhere (world)
+  "Return the key under which WORLD notes that something was asked for in it in this tick, inside of
+a simulation of another."
+  (list :asked-elsewhere (world-tick world)))
 
 (defun asked-elsewhere-p (world)
-  "True if a program has last asked for something in WORLD inside of a simulation of another, since
-ticks of WORLD passed."
-  (equal *asked-elsewhere* (cons world (world-tick world))))
+  "True if a program has asked for something in WORLD inside of a simulation of another, since ticks
+of WORLD passed."
+  (said-p (asked-elsewhere world) world))
 
 (defun note-asked-elsewhere (world)
   "Remember if a program asks for something in WORLD, which waits for ticks, inside of a simulation
@@ -85,7 +86,7 @@ of another."
                (not (eq timeline (timeline-of *simulation*)))
                (not (live-p timeline))
                (not (timeline-passing-p timeline)))
-      (setf *asked-elsewhere* (cons world (world-tick world))))))
+      (first-time-p (asked-elsewhere world) world))))
 
 ;;; One command after the other, and no tick between them.
 

@@ -48,9 +48,9 @@
 (defun method-words (comparison)
   (format nil "Differences are first less second, seed by seed, each with its own 95 % interval: ~
                of rates Newcombe's and McNemar's exact test, of means Student's and a permutation ~
-               test (of equal distributions: skewed numbers can differ in that while their averages ~
-               are equal). p: as one of ~D test~:P~@[, over all of ~D~], by Holm's correction ~
-               (alone: without it)."
+               test (of equal distributions: skewed numbers can differ in that while their ~
+               averages are equal). p: as one of ~D test~:P~@[, over all of ~D~], by Holm's ~
+               correction (alone: without it)."
           (length (tested-differences (comparison-contrasts comparison)))
           (and (comparison-overall comparison)
                (length (tested-differences (comparison-overall comparison))))))
