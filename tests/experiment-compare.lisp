@@ -302,8 +302,9 @@
 
 (test compare.takes-numbers-of-any-size
   (let ((numbers (loop for i below 30 collect (if (< (mod i 10) 3) 1d99 5))))
-    (is (mentions-p (verdict-on numbers (make-list 30 :initial-element 5))
-                    "x is more with a than with b: p = .004")))
+    (let ((text (verdict-on numbers (make-list 30 :initial-element 5))))
+      (is (mentions-p text "x is more with a than with b: p = .004"))
+      (is (mentions-p text "against 5 on average"))))
   (is (mentions-p (verdict-on-all 1.5d308 -1.5d308)
                   "difference 3e308 (95 % interval 3e308 to 3e308)"))
   (is (mentions-p (verdict-on-all 1d15 -1d15) "x is more with a")))

@@ -39,6 +39,8 @@
   (let* ((unit (expt 10 (- decimals)))
          (number (* unit (round (rational value) unit))))
     (cond ((and (zerop number) (< 9 decimals)) "0")
+          ;; Beside very large numbers a small one is not nothing.
+          ((and (zerop number) (minusp decimals) (not (zerop value))) (figure-text value :digits 2))
           ((or (zerop number) (<= -6 (power-of-ten number) 14))
            (fixed-text number (max 0 decimals)))
           (t (power-text number decimals)))))
