@@ -135,3 +135,36 @@
                           "(wait-for (vref camera-input* 0)) first"))
     (is (not (search "under way"
                      (told '(rpl:wait-for (svref driver:camera-input* 0))))))))
+
+;;; Kickers and attributes of things.
+
+(defun told-of-run (&rest forms)
+  "Return what two runs of a robot write in a new map, whose thing PAIL has the attribute :level and
+the kicker IN-USE, after the definitions FORMS; in the second run nothing is new."
+  (with-own-definitions
+    (mapc #'eval forms)
+    (eval '(world:defmap loft (10 10) (obj (pail :kickers (in-use)) (5 5) ((:level 3)))))
+    (eval '(robot:defrobot loftman (loft (3 3) 0)))
+    (loop repeat 2
+          collect (error-output (eval '(run:with-simulation (loftman) (run:run-ticks 3)))))))
+
+(test kickers.on-no-thing-are-told-once
+  (destructuring-bind (first second)
+      (told-of-run '(world:defkicker in-use (thing) () nil) '(world:defkicker spare (thing) () nil))
+    (is-true (has-words-p first "The kicker spare is on no thing" "(set-kicker THING 'spare)"))
+    (is (= 1 (count #\Newline first)))
+    (is (string= "" second)))
+  (is (equal '("" "")
+             (told-of-run '(world:defkicker in-use (thing) () nil)
+                          '(world:defkicker for-later (thing) () nil)
+                          '(world:defmap attic (10 10)
+                            (obj chest (5 5) () ((box :kickers (for-later)) ())))))))
+
+(test attributes.asked-for-are-compared-with-those-of-things
+  (flet ((told (key)
+           (first (told-of-run `(world:defkicker in-use (thing) ()
+                                  (world:get-attribute thing ,key))))))
+    (is-true (has-words-p (told :levl) "get-attribute of pail: :levl is not declared"
+                          "nothing here has it" "did you mean :level?"))
+    (is (string= "" (told :level)))
+    (is (string= "" (told :owner)))))

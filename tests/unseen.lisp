@@ -355,7 +355,7 @@ output."
                       (let ((ball (world:new-thing ball (arena 3 3) ())))
                         (loop repeat 3 do (funcall function ball))))
         do (is (= 1 (length texts)))
-           (is-true (has-words-p (first texts) operator "is not declared; did you mean"))))
+           (is-true (has-words-p (first texts) operator "is not declared" "did you mean"))))
 
 (test attributes.of-ones-own-are-quiet
   (is (null (said-in-rover-world

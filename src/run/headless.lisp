@@ -261,6 +261,8 @@ too few have; but not if the run is LEFT-P, as by an error, or ticks may have pa
   (let ((text (and (not left-p)
                    (not (simulation-forked-p simulation))
                    (text-at-end simulation))))
+    (unless (or left-p (zerop (simulation-tick simulation)))
+      (doubt-idle-kickers (simulation-world simulation)))
     (when text
       (queue-message (make-message :warning (list text) :notable-p t)
                      (simulation-messages simulation)))))

@@ -11,7 +11,9 @@
   (name nil :type symbol)
   (prob 1d0 :type (double-float 0d0 1d0))
   (test nil :type (or null function))
-  (body (constantly nil) :type function))
+  (body (constantly nil) :type function)
+  ;; True once it has been on a thing, or a run has ended without it; see DOUBT-IDLE-KICKERS.
+  (known-p nil :type boolean))
 (addition kicker-p kicker-name kicker-prob)
 (document-functions
  kicker-p "True of a kicker."
@@ -85,7 +87,9 @@
 a thing. Return the kicker."
   (let ((new (fill-kicker (make-kicker name) (title "defkicker" name) prob test body))
         (old (definition-to-replace name *kickers*)))
-    (when old (incf *kicker-generation*))
+    (when old
+      (incf *kicker-generation*)
+      (setf (kicker-known-p new) (kicker-known-p old)))
     (register *kickers* name (if old (become old new) new) :variable t)))
 
 (defun kicker-functions (definition variable options body)

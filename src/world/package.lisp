@@ -73,7 +73,7 @@
   ;; forking
   (:export #:octets-of-copy)
   ;; recipes
-  (:export #:recipe #:make-recipe)
+  (:export #:doubt-idle-kickers #:recipe #:make-recipe)
   ;; placing
   (:export #:note-unknown-substance)
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing

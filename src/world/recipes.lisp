@@ -77,6 +77,28 @@ NIL (reading 63)."
          append (mapcar #'first (recipe-attributes recipe))
          append (attribute-names (recipe-contents recipe)))))
 
+;;; Kickers that nothing has.
+
+(defun in-recipe-p (kicker recipes)
+  "True if RECIPES, or those in them, put KICKER on things."
+  (loop for recipe in recipes
+        thereis (or (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil)))
+                    (in-recipe-p kicker (recipe-contents recipe)))))
+
+(defun doubt-idle-kickers (world)
+  "Say of each kicker that was typed since the last run, not loaded, that nothing in WORLD, whose
+run ends, had it, nor will by any map."
+  (dolist (entry (registry-entries *kickers*))
+    (let ((kicker (entry-object entry)))
+      (unless (or (shiftf (kicker-known-p kicker) t)
+                  (source-file (entry-source entry))
+                  (some (lambda (map) (in-recipe-p kicker (map-things map))) (all-maps)))
+        (warn-once (list :kicker (kicker-name kicker)) world
+                   (format nil "The kicker ~(~A~) is on no thing, so it never ran. Put it on one: ~
+                                (obj (NAME :kickers (~:*~(~A~))) ...) in the map, or ~
+                                (set-kicker THING '~:*~(~A~))."
+                           (kicker-name kicker)))))))
+
 ;;; Worlds.
 
 (defun empty-world (world)
