@@ -137,7 +137,19 @@
                           "fails again at once" "(do-retry tries (retry))"))
     (is-true (has-words-p (told (plan-of (rpl:handle-failure ((:a () (rpl:retry)))
                                            (loop (identity 1)))))
-                          "If it is to wait, write (wait-time 1) there"))))
+                          "If it is to wait, write (wait-time 1) there; if it is to end, (return)"
+                          "Ctrl-C interrupts RUN-PLAN"))))
+
+(rpl:def-interp-proc only-waits () (rpl:wait-time 1))
+
+(test plans.typed-as-lisp-name-run-plan
+  (flet ((told (form)
+           (handler-case (macroexpand form)
+             (base:misuse (misuse) (princ-to-string misuse)))))
+    (is-true (has-words-p (told '(rpl:plan only-waits))
+                          "To carry out the plan, write (run-plan 'only-waits)"))
+    (is-true (has-words-p (told '(rpl:plan nothing-yet)) "in a def-interp-proc" "(run-plan 'NAME)"))
+    (is-true (has-words-p (told '(rpl:wait-time 2)) "in a def-interp-proc" "(run-plan 'NAME)"))))
 
 ;;; Runs that are over, goals, pulses.
 

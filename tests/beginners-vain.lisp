@@ -56,14 +56,21 @@
   (let ((watch '(rpl:whenever driver:robot-movement-error* (rpl:fail :class :hit)))
         (react '(rpl:whenever driver:robot-movement-error* (print 1)))
         (leave '(rpl:whenever driver:robot-movement-error* (return 1)))
-        (steps '(rpl:seq (driver:rpl-robot-turn 1) (rpl:wait-for driver:robot-stopped*))))
+        (steps '(rpl:seq (driver:rpl-robot-turn 1) (rpl:wait-for driver:robot-stopped*)))
+        (fail '((rpl:wait-for driver:robot-movement-error*) (rpl:fail :class :hit))))
     (loop for (policy . body) in `((,steps ,watch) ((turn-once) ,watch) (,steps ,react))
           do (is-true (has-words-p (warnings-of-policy policy (first body))
                                    "never ends" "The policy comes first"
                                    "(with-policy (whenever ...) form...)")))
+    (dolist (body `(,fail ((rpl:seq ,@fail))))
+      (is-true (has-words-p (apply #'warnings-of-policy steps body)
+                            "waits, and then fails" "The policy comes first"
+                            "(with-policy (seq (wait-for ...) (fail ...)) form...)")))
     (loop for (policy . body) in `((,watch ,steps) (,watch ,react) (,steps ,leave)
                                    ((turn-once) ,react)
                                    (,steps (print 1) ,watch)
+                                   (,steps (print 1) ,@fail)
+                                   (,watch ,@fail)
                                    ((rpl:seq (rpl:wait-for robot) (rpl:fail)) ,react)
                                    ((rpl:seq (rpl:wait-for robot) (return)) ,react))
           do (is (not (search "comes first" (apply #'warnings-of-policy policy body)))))))
@@ -182,6 +189,14 @@
   (is-true (has-words-p (told-of-ends (driver:rpl-robot-go-distance 1000)
                                       (rpl:wait-for driver:robot-stopped*))
                         "rpl-robot-go-distance ended with :robot-blocked")))
+
+(test plans.that-do-not-look-are-told-so-at-once-in-live-runs
+  (live (simulation)
+    (driver:run-plan (plan-of (driver:rpl-robot-goto-designator 0)
+                              (rpl:wait-for driver:robot-stopped*)))
+    (let ((warning (find :warning (base:take-messages) :key #'base:message-kind)))
+      (is (eq t (base::message-notable-p warning)))
+      (is-true (has-words-p (base:message-text warning) "ended with :not-tracking")))))
 
 (test plans.that-look-at-how-a-command-ended-are-not-told
   (macrolet ((quiet (&body body)

@@ -46,17 +46,28 @@
                    (may-return-p form)))
              (list policy)))
 
+(defun waits-to-fail-p (body)
+  "True if BODY, forms of a plan, only waits and then fails, as policies do."
+  (let ((forms (if (and (null (rest body)) (operator-in-p (first body) '("SEQ" "PROGN")))
+                   (rest (first body))
+                   body)))
+    (and (operator-in-p (first forms) '("WAIT-FOR" "WAIT-UNTIL"))
+         (operator-in-p (first (last forms)) '("FAIL")))))
+
 (defun doubt-order (policy body form)
   "Warn if POLICY and BODY, of FORM, were most likely written in the wrong order: BODY is a WHENEVER
-that never ends, and POLICY a list of steps, or the WHENEVER fails, as policies do."
-  (when (and (endless-whenever-p (first body))
-             (null (rest body))
-             (not (watches-text-p policy))
-             (or (operator-in-p policy '("SEQ" "PROGN"))
-                 (find-call #'fail-p (first body))))
-    (doubt-own-form form "the body ~S never ends, and ~S is done beside it, once. The policy comes ~
-                          first: (with-policy (whenever ...) form...)."
-                    (first body) policy)))
+that never ends, and POLICY a list of steps, or it fails after a wait, as policies do."
+  (let ((endless-p (and (null (rest body)) (endless-whenever-p (first body)))))
+    (when (and (not (watches-text-p policy))
+               (if endless-p
+                   (or (operator-in-p policy '("SEQ" "PROGN"))
+                       (find-call #'fail-p (first body)))
+                   (waits-to-fail-p body)))
+      (doubt-own-form form "the body ~S ~:[waits, and then fails~;never ends~], and ~S is done ~
+                            beside it, once. The policy comes first: (with-policy ~:[(seq ~
+                            (wait-for ...) (fail ...))~;(whenever ...)~] form...)."
+                      (if (rest body) (cons 'seq body) (first body))
+                      endless-p policy endless-p))))
 
 (define-construct with-policy (policy &body body)
   "Run BODY in a plan under POLICY, a form that runs beside it, starts before it and takes

@@ -93,11 +93,18 @@ user's that is called as iterate's are is none."
 
 ;;; What a construct expands to, where a macro of the author's asks.
 
+(defun plan-called-in (form)
+  "Return the name of the plan that FORM, met in ordinary Lisp code, is most likely to carry out, as
+the prompt's line PLAN does; or NIL."
+  (let ((name (and (operator-in-p form '("PLAN")) (second form))))
+    (and name (symbolp name) (find-procedure name nil) name)))
+
 (defun reject-in-lisp (form)
   "Signal MISUSE: FORM, of the plan language, was met in ordinary Lisp code."
-  (reject-use "~S is part of the plan language. Write it in a def-interp-proc, or outside of any ~
-               lambda or Lisp form there that keeps plans from waiting."
-              form))
+  (reject-use "~S is part of the plan language. ~:[Write it in a def-interp-proc, which ~
+               (run-plan 'NAME) carries out, or outside of any lambda or Lisp form there that ~
+               keeps plans from waiting~;To carry out the plan, write (run-plan '~:*~(~A~))~]."
+              form (plan-called-in form)))
 
 (defvar *own-conses* nil
   "While a plan is compiled: a table of the conses of its text.")

@@ -81,9 +81,9 @@ ended."
 (defun tell-of-unread (interface task)
   "Say once if a command of TASK, a plan of INTERFACE that has succeeded, came to nothing, and
 nobody has looked."
-  (let ((unread (find-if #'still-unread-p (take-unread interface task))))
+  (let ((unread (find-if #'still-unread-p (take-unread interface task)))
+        (simulation (interface-simulation interface)))
     (when (and unread (not (message-queue-listener *message-queue*)))
-      (warn-once (list :unread (task-label task))
-                 (simulation-world (interface-simulation interface))
+      (warn-once (list :unread (task-label task)) (simulation-world simulation)
                  (text-of-unread task unread)
-                 :notable (lambda () (still-unread-p unread))))))
+                 :notable (or (live-p simulation) (lambda () (still-unread-p unread)))))))

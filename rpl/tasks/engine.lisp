@@ -126,7 +126,8 @@ returns true if it brought something new. Return :idle or :budget."
           ((and form (not loop-p) (use-in "RETRY" form))
            (one-line "If it fails again at once, write (wait-time 1) before (retry), or count how
 often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
-          (t "If it is to wait, write (wait-time 1) there."))))
+          (t (format nil "If it is to wait, write (wait-time 1) there~:[~;; if it is to end, ~
+                          (return) leaves the loop~]. Ctrl-C interrupts RUN-PLAN." loop-p)))))
 
 (defun warn-of-runaway (runner)
   "Queue a warning that names a task of RUNNER that has used all its steps, once for each form."
