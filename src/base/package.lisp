@@ -200,7 +200,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
            #:parameter-sentence #:parameter-value #:check-parameter-value #:describe-type
            #:define-parameter
            #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
-           #:check-parameters #:call-with-parameter-values #:parameter-values #:follow-parameters
+           #:check-parameters #:call-with-parameter-values #:parameter-values #:digest-parameters
+           #:follow-parameters
            #:changed-parameters
            #:clean-simulation #:dirty-simulation #:*noise-before-cleaning*)
   ;; physics: the parameters of chapter 4, and chance

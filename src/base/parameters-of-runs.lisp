@@ -47,6 +47,18 @@ leave in it what they are afterwards. Return the values of FUNCTION."
   (map 'vector (lambda (parameter) (symbol-value (parameter-symbol parameter)))
        (registry-objects *parameters*)))
 
+(defun digest-parameters (known digest)
+  "Add KNOWN, a vector made by PARAMETER-VALUES, to DIGEST. Of parameters that came later only
+values that are not the default are added, by name: so the digests of runs of before hold."
+  (loop for parameter in (registry-objects *parameters*)
+        for value across known
+        if (parameter-digested-p parameter)
+          collect value into values
+        else unless (eql value (parameter-default parameter))
+          append (list (parameter-name parameter) value) into others
+        finally (digest-add digest (coerce values 'simple-vector))
+                (when others (digest-add digest others))))
+
 (defun changed-parameters (known)
   "Return a list (symbol . value) of the parameters whose value here is not that in KNOWN, a vector
 made by PARAMETER-VALUES."

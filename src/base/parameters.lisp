@@ -17,7 +17,9 @@
   (kind :limit :type (member :noise :delay :limit :setting) :read-only t)
   (clean nil :read-only t)
   (group "" :type string :read-only t)
-  (sentence "" :type string :read-only t))
+  (sentence "" :type string :read-only t)
+  ;; True if digests have its value even where that is the default; see DIGEST-PARAMETERS.
+  (digested-p t :type boolean :read-only t))
 
 (addition parameter-p parameter-default parameter-unit parameter-kind parameter-group
           parameter-sentence)
@@ -70,7 +72,8 @@
                             (&key (unit "") (type t) (kind :limit) (group "") clean addition)
                             sentence)
   "Define SYMBOL as a special variable and simulation parameter. CLEAN is its value in a
-noiseless world, for parameters of kind :noise; ADDITION is true if the manual does not have it."
+noiseless world, for parameters of kind :noise; ADDITION is true if the manual does not have it, and
+:DIGESTED if digests have it even where its value is the default."
   `(progn
      (,(if addition 'addition 'public) ,symbol)
      (defvar ,symbol ,default
@@ -84,7 +87,8 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
       *parameters* ',symbol
       (make-parameter :symbol ',symbol :default ,default :unit ,unit :type ',type
                       :test (lambda (value) (typep value ',type))
-                      :kind ,kind :clean ,clean :group ,group :sentence ,sentence))
+                      :kind ,kind :clean ,clean :group ,group :sentence ,sentence
+                      :digested-p ,(and (member addition '(nil :digested)) t)))
      ',symbol))
 
 (defun check-parameter-value (parameter value)

@@ -78,7 +78,7 @@ as an even number of rays has none in the middle.")
      ;; As reading 135 says.
      (false-thing-prob* 0.01d0 "probability" :noise (real 0 1)
       "The chance that a search for things finds one that is not there. The manual has false
-designators of things, but no parameter for them." :addition t)
+designators of things, but no parameter for them." :addition :digested)
      (pixel-error-range* 2.0d0 "substance units" :noise (real 0 #.+largest+)
       "The normal error of a pixel, uniform to either side.")
      (pixel-outlier-prob* 0.01d0 "probability" :noise (real 0 1)
@@ -112,7 +112,8 @@ designators of things, but no parameter for them." :addition t)
     ("Time"
      (tick-quantum* 1 "ticks" :setting (real 1 1000000)
       "How much time one tick stands for: motion, drift and chances scale with it, and what takes
-time takes fewer ticks. The manual only wishes, in chapter 1.2, to skip ahead." :addition t))))
+time takes fewer ticks. The manual only wishes, in chapter 1.2, to skip ahead."
+       :addition :digested))))
 
 (defun per-tick-probability (probability)
   "Return the chance that something of PROBABILITY per unit of time happens in a tick, which stands

@@ -10,7 +10,8 @@
   (:fixed
    (timeline nil (or null timeline) "the timeline of the simulation" :part)
    (world nil (or null world) "the world that the simulation changes" :part))
-  (:state
+  (:memory
+   ;; It decides the future, but is digested in a way of its own, below.
    (known-parameters (parameter-values) simple-vector
                      "the values of the parameters as the journal knows them"))
   (:link
@@ -40,6 +41,9 @@ to the next, or NIL if there was no rewinding")
 (addition simulation-p simulation-world simulation-journal)
 (document-functions
   simulation-p "True of simulations.")
+
+(defmethod digest-state :after ((simulation simulation) digest)
+  (digest-parameters (simulation-known-parameters simulation) digest))
 
 (defmethod timeline-of ((simulation simulation))
   (simulation-timeline simulation))
