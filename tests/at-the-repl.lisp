@@ -228,6 +228,26 @@ listing what it is given and what it takes for the buffer's package."
     (dolist (name '("/no/such/directory/run.csv" "/dev/null"))
       (signals base:misuse (trails:save-trajectory name)))))
 
+(test trajectories.and-traces-replace-no-files-of-another-kind
+  (with-skater (:journal t)
+    (run:run-ticks 2)
+    (uiop:with-temporary-file (:pathname path :type "csv")
+      (flet ((refused-p (save text)
+               "True if SAVE, called with PATH, is refused, and TEXT stays in it."
+               (let ((told (handler-case (prog1 nil (funcall save path))
+                             (base:misuse (misuse) (princ-to-string misuse)))))
+                 (and (has-words-p told "left as it is" "another name")
+                      (string= text (alexandria:read-file-into-string path))))))
+        (run:save-journal path)
+        (let ((journal (alexandria:read-file-into-string path)))
+          (is-true (refused-p (lambda (path) (trails:save-trajectory path :journal path)) journal))
+          (is-true (refused-p (lambda (path) (tasks:write-trace #() path)) journal)))
+        (write-text (format nil "a letter~%") path)
+        (is-true (refused-p #'trails:save-trajectory (format nil "a letter~%")))
+        (write-text "" path)
+        (is (pathnamep (trails:save-trajectory path)))
+        (is (pathnamep (trails:save-trajectory path)))))))
+
 ;;; Conditions print as sentences.
 
 (defun condition-classes ()

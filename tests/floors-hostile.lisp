@@ -94,7 +94,7 @@
                ("the image is no PGM file" . "P6 1 1 255 aaa")
                ("at byte 2 there is no number that could be the width" . "P5x1 1 255 a")
                ("no number that could be the height" . "P5 1 -1 255 a")
-               ("no number that could be the width" . "P5 1234567890 1 255 a")
+               ("the width has more than 9 digits" . "P5 1234567890 1 255 a")
                ("no number that could be the greatest value" . "P5 1 1")
                ("the image has 0 by 4 pixels" . "P5 0 4 255 ")
                ("the greatest value of a pixel is 0; save" . "P2 1 1 0 0")

@@ -111,6 +111,7 @@
             (is-true (funcall save journal))
             (is (mentions-p (uiop:read-file-string svg) "Repeated with other definitions")))
           (is (null (ars:journal-moments journal :anyway t)))
+          (delete-file svg)
           (is-true (ars:save-trajectory svg :journal journal :anyway t)))))))
 
 (test way-picture.refuses-what-is-no-way-on-its-map

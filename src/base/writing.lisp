@@ -51,10 +51,15 @@ Lisp says only the system's own words, without streams and names that its user d
           (t "no file can be made in that directory"))))
 
 (defun write-file-anew (function file what
-                        &key (check #'identity)
+                        &key (check #'identity) kind
                           (remedy "give the name of a file that you may write"))
   "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals MISUSE, with the REMEDY, if
-WHAT, such as \"the run\", cannot be written there; then FILE is as it was."
+WHAT, such as \"the run\", cannot be written there, or if FILE is there and of another kind than
+KIND, see NOTE-KIND-OF-FILE; then it is as it was."
+  (let ((advice (file-advice file kind)))
+    (when advice
+      (reject-use "~@(~A~) is not written to ~A: ~A. It is left as it is; give another name."
+                  what (shown-name file) advice)))
   (handler-case (call-replacing-file function file :check check)
     (ars-magna-error (trouble) (error trouble))
     (error (trouble)

@@ -81,7 +81,7 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
           ((plusp status) (reject-png file words)))))
 
 (defun convert-to-png (svg file)
-  (write-file-anew (lambda (out) (write-png svg out file)) file "the picture"))
+  (write-file-anew (lambda (out) (write-png svg out file)) file "the picture" :kind :image))
 
 (defun picture-kind (operator file &optional (endings ".svg or .png"))
   "Return :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT if OPERATOR cannot save a

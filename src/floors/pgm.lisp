@@ -36,6 +36,11 @@
           while (and (<= 0 digit 9) (< position (+ start 9)))
           do (setf number (+ (* 10 number) digit))
              (setf (tape-position tape) (1+ position)))
+    (when (and (= 9 (- (tape-position tape) start))
+               (< (tape-position tape) (length octets))
+               (digit-char-p (code-char (aref octets (tape-position tape)))))
+      (reject-image tape "the image says at byte ~D that ~A has more than 9 digits; save one of a ~
+                          size that a map can have" start what))
     (when (or (= start (tape-position tape))
               (and (< (tape-position tape) (length octets))
                    (not (white-octet-p (aref octets (tape-position tape))))

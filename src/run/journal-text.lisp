@@ -236,4 +236,4 @@ file's truename. Signals MISUSE if that cannot be, as when an entry holds a func
 object without a readable form; then FILE is as it was."
   (check-printable journal)
   (write-file-anew (lambda (out) (write-data (journal-data journal) out)) file "the journal"
-                   :check #'check-readable))
+                   :kind :journal :check #'check-readable))

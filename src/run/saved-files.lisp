@@ -25,7 +25,7 @@ Return the truename of FILE."
     (call-with-savable
      (lambda (simulation journal)
        (write-file-anew (lambda (out) (write-saved simulation journal programs out)) file
-                        "the run"
+                        "the run" :kind :run
                         :check (lambda (path)
                                  (check-loadable path (simulation-name simulation)))))
      simulation without-p)))

@@ -9,6 +9,9 @@
   '("tick" "robot" "x" "y" "angle" "estimated_x" "estimated_y" "estimated_angle" "holding" "place")
   "What the first line of a trajectory says.")
 
+(note-kind-of-file :trajectory (format nil "~{~A,~}" (subseq *trajectory-columns* 0 5))
+                   "it is a table of where robots were; any program that reads CSV reads it")
+
 (defun number-as-text (number)
   "Return NUMBER as any program reads it, to the last bit."
   (let ((*read-default-float-format* 'double-float)) (princ-to-string number)))
@@ -60,17 +63,20 @@
 (addition save-trajectory)
 (define-with-keywords save-trajectory
     (file &key journal (every 1) until robots anyway)
-  "Write to FILE, replacing it, as a table of commas (CSV), where the robots of a run were: of that
-of JOURNAL (a journal, or a file that holds one), or else the current one up to now, which must keep
-one. A row for every EVERY ticks, up to the tick UNTIL, and for each robot, or those that ROBOTS, a
-name or a list of names, means: the tick, the robot, x and y in metres and the heading in radians;
-the same as its main odometer has it, put on the map; what its hands hold; the place type that it
-sensed last. The run is repeated for that, with ANYWAY even if its definitions are not
-those at hand. Return the file's truename. Signals WRONG-ARGUMENT, UNKNOWN-NAME, MISUSE if there is
-no journal or FILE cannot be written, when what was there is as before, and what REPLAY does."
+  "Write to FILE, as a table of commas (CSV), where the robots of a run were: of that of JOURNAL (a
+journal, or a file that holds one), or else the current one up to now, which must keep one. FILE may
+be new, empty, or another such table, which is replaced. A row for every EVERY ticks, up to the tick
+UNTIL, and for each robot, or those that ROBOTS, a name or a list of names, means: the tick, the
+robot, x and y in metres and the heading in radians; the same as its main odometer has it, put on
+the map; what its hands hold; the place type that it sensed last. The run is repeated for that, with
+ANYWAY even if its definitions are not those at hand. Return the file's truename. Signals
+WRONG-ARGUMENT, UNKNOWN-NAME, MISUSE if there is no journal or FILE is something else or cannot be
+written, when what was there is as before, and what REPLAY does."
   (let ((journal (journal-meant journal 'save-trajectory)) (robots (ensure-list robots)))
     (check-trajectory file every until robots journal)
+    (check-not-foreign file :trajectory "trajectory")
     (let ((text (with-output-to-string (out)
                   (replaying (anyway)
                     (write-trajectory journal out every until robots)))))
-      (write-file-anew (lambda (out) (write-string text out)) file "the trajectory"))))
+      (write-file-anew (lambda (out) (write-string text out)) file "the trajectory"
+                       :kind :trajectory))))
