@@ -160,6 +160,20 @@ the kicker IN-USE, after the definitions FORMS; in the second run nothing is new
                           '(world:defmap attic (10 10)
                             (obj chest (5 5) () ((box :kickers (for-later)) ())))))))
 
+(test kickers.of-files-are-told-of-if-these-name-them-once
+  (with-own-definitions
+    (flet ((told (more)
+             (uiop:with-temporary-file (:pathname path :type "lisp")
+               (write-text (format nil "(in-package :ars-magna.tests)
+(world:defkicker prowl-about (thing) () nil)
+(world:defmap barn (9 9) (obj cat (5 5) ()))
+(robot:defrobot farmer (barn (3 3) 0))
+~@[~A~]~%" more) path)
+               (load path)
+               (error-output (eval '(run:with-simulation (farmer) (run:run-ticks 3)))))))
+      (is-true (has-words-p (told nil) "The kicker prowl-about is on no thing"))
+      (is (string= "" (told "(defun prowl (cat) (world:set-kicker cat 'prowl-about))"))))))
+
 (test attributes.asked-for-are-compared-with-those-of-things
   (flet ((told (key)
            (first (told-of-run `(world:defkicker in-use (thing) ()

@@ -268,3 +268,37 @@
                           "a plan that fails has its failure as the value" "Write only"))
     (is (string= "" (told '(driver:run-plan 'turn-once))))
     (is (string= "" (told '(if (driver:run-plan 'turn-once) :hit :missed))))))
+
+;;; Experiments.
+
+(defun told-of-experiment (success &optional (run '(driver:run-plan 'only-waits)))
+  "Return the warnings of an experiment with the forms RUN and SUCCESS."
+  (warning-about `(experiment:defexperiment idle (:robots rover) (:run ,run) (:success ,success))))
+
+(test experiments.warn-of-states-compared-with-the-first-value
+  (is-true (has-words-p (told-of-experiment '(eq (first (experiment:trial-values)) :succeeded))
+                        "RUN-PLAN returns :succeeded as its second value"
+                        "(eq (second (trial-values)) :succeeded)"))
+  (is (string= "" (told-of-experiment '(eq (second (experiment:trial-values)) :succeeded))))
+  (is (string= "" (told-of-experiment '(eq (first (experiment:trial-values)) :there)))))
+
+(test experiments.warn-of-quoted-runs
+  (is-true (has-words-p (told-of-experiment t ''(driver:run-plan 'only-waits 5))
+                        ":run" "is data" "Write the form alone")))
+
+(test experiments.take-no-failure-for-a-success
+  (with-own-definitions
+    (eval '(experiment:defexperiment idle (:robots rover)
+            (:run (driver:run-plan (plan-of (rpl:fail :class :hit))))
+            (:success (first (experiment:trial-values)))))
+    (let ((text (with-output-to-string (*standard-output*)
+                  (experiment:print-results (experiment:run-experiment 'idle :trials 1)))))
+      (is-true (has-words-p text "the failure of a plan, which is true"
+                            "(eq (second (trial-values)) :succeeded)")))
+    (eval '(experiment:defexperiment idle (:robots rover)
+            (:run (driver:run-plan 'only-waits))
+            (:success (eq :there (first (experiment:trial-values))))))
+    (is-true (has-words-p (with-output-to-string (*standard-output*)
+                            (experiment:print-results
+                             (experiment:run-experiment 'idle :trials 1)))
+                          "only-believed (a success by the values of :run, but not by :success)"))))

@@ -52,6 +52,17 @@
                       (rpl:wait-until (rpl:seq (rpl:wait-time 1) (turn-once)))))
       (is (string= "" (told policy))))))
 
+(test policies.whose-value-is-lost-are-warned-of
+  (flet ((told (policy) (warnings-of-policy policy '(rpl:wait-time 3) ':drove)))
+    (is-true (has-words-p (told '(rpl:whenever driver:robot-movement-error* (return :saw)))
+                          "(return :saw) ends only the policy" "its value is lost" "(pursue (seq "))
+    (dolist (policy '((rpl:whenever driver:robot-movement-error* (return))
+                      (rpl:whenever driver:robot-movement-error* (return t))
+                      (rpl:whenever driver:robot-movement-error* (when robot (return nil)))
+                      (rpl:whenever driver:robot-movement-error*
+                       (print (loop (rpl:wait-time 1) (return :saw))))))
+      (is (string= "" (told policy))))))
+
 (test policies.in-the-place-of-the-body-are-warned-of
   (let ((watch '(rpl:whenever driver:robot-movement-error* (rpl:fail :class :hit)))
         (react '(rpl:whenever driver:robot-movement-error* (print 1)))
@@ -76,6 +87,31 @@
           do (is (not (search "comes first" (apply #'warnings-of-policy policy body)))))))
 
 ;;; Handlers of what is no failure.
+
+(test handlers.want-their-clauses-in-a-list
+  (is-true (complains-p '(rpl:def-interp-proc careful-one ()
+                           (rpl:handle-failure (:stuck () (return :gave-up)) (rpl:fail :stuck)))
+                        "a list of clauses" "write ((:stuck nil (return :gave-up)))")))
+
+(test failures.are-named-in-errors-about-them
+  (let ((text (rover-writes ()
+                (driver:run-plan (plan-of (rpl:handle-failure ((:lost (f) (return (car f))))
+                                            (rpl:fail :class :lost)))))))
+    (is-true (has-words-p text "The value #<Plan failure :LOST at tick 0 in" "is not a list"))))
+
+(test waits.for-a-status-are-warned-of
+  (flet ((told (wait)
+           (warnings-of-procedure 'robot `(rpl:par (:tag w (rpl:wait-time 3)) ,wait))))
+    (is-true (has-words-p (told '(rpl:wait-for (rpl:task-status w)))
+                          "always true" "Compare it: (wait-for (eq ("))
+    (is (string= "" (told '(rpl:wait-for (eq (rpl:task-status w) :succeeded)))))))
+
+(test plans.cannot-wait-for-themselves
+  (is-true (has-words-p (warnings-of-procedure '(list robot) '(run:await-idle))
+                        "await-idle is for programs" "(wait-for fluent)"))
+  (live (simulation)
+    (let ((failure (driver:run-plan (plan-of (funcall 'run:await-idle)))))
+      (is-true (has-words-p (princ-to-string failure) "a plan would wait for itself")))))
 
 (test handlers.of-codes-of-commands-are-warned-of
   (flet ((told (clauses &rest body)

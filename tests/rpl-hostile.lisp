@@ -116,7 +116,8 @@
     (rpl:interp-lambda () (rpl:handle-failure (((or :late 3) (e) e)) (rpl:wait-time 1))))
   (refused-each "one variable or none"
     (rpl:interp-lambda () (rpl:handle-failure ((t (a b) 1)) (rpl:wait-time 1)))
-    (rpl:interp-lambda () (rpl:handle-failure ((t () . 1)) (rpl:wait-time 1)))
+    (rpl:interp-lambda () (rpl:handle-failure ((t () . 1)) (rpl:wait-time 1))))
+  (refused-each "a list of clauses: write ((t))"
     (rpl:interp-lambda () (rpl:handle-failure (t) (rpl:wait-time 1))))
   (is (eq :there (plan-value
                    (rpl:handle-failure (((or :lost (or :late simple-error)) (e) e

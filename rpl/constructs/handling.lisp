@@ -85,6 +85,9 @@ at the handler's end the failure goes on. Return all values of BODY."
    (progn
      (unless (proper-list-p clauses)
        (reject-clause (author) form "a list of clauses such as (type (variable) form...)"))
+     (when (and clauses (atom (first clauses)))
+       (reject-clause (author) clauses (format nil "a list of clauses: write (~(~S~))"
+                                               (abridged clauses))))
      (dolist (clause clauses)
        (check-clause clause form scope)
        (dolist (code (ensure-list (first clause))) (doubt-code code body form)))

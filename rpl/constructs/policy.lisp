@@ -24,8 +24,24 @@
        (operator-in-p policy '("WAIT-FOR" "WAIT-UNTIL"))
        (not (suspends-p (second policy) scope))))
 
+(defparameter *constructs-left-by-return*
+  '("LOOP" "DO" "DO*" "DOTIMES" "DOLIST" "N-TIMES" "BLOCK" "PROG" "PROG*" "WHENEVER" "PAR-LOOP"
+    "HANDLE-FAILURE" "WITH-FAILURE-HANDLING")
+  "Operators in which (return value) gives them the value.")
+
+(defun value-lost-in (policy)
+  "Return the (return value) that ends POLICY, a WHENEVER whose value nobody gets; or NIL."
+  (and (operator-in-p policy '("WHENEVER"))
+       (null (find-call (lambda (form) (operator-in-p form *constructs-left-by-return*))
+                        (cddr policy)))
+       (find-call (lambda (form)
+                    (and (operator-in-p form '("RETURN"))
+                         (not (member (second form) '(nil t)))))
+                  (cddr policy))))
+
 (defun doubt-policy (policy form scope)
-  "Warn if POLICY, of FORM in SCOPE, has ended before anything happens, or does nothing then."
+  "Warn if POLICY, of FORM in SCOPE, has ended before anything happens, does nothing then, or
+returns a value."
   (let ((once-p (tests-once-p policy scope)))
     (cond ((or once-p (not (suspends-p policy scope)))
            (doubt-own-form form "the policy ~S waits for nothing: it is done once, before the ~
@@ -36,7 +52,12 @@
            (doubt-own-form form "the policy ~S does nothing when its wait is over, and then has ~
                                  ended. Write what is to be done then: (seq ~:*~S form...), or ~
                                  (whenever fluent form...) for each time."
-                           policy)))))
+                           policy))
+          ((value-lost-in policy)
+           (doubt-own-form form "~S ends only the policy, and its value is lost; the rest goes on. ~
+                                 (fail ...) there ends the whole; (pursue (seq (wait-for fluent) ~
+                                 value) form...) returns what ends first."
+                           (value-lost-in policy))))))
 
 (defun watches-text-p (policy)
   "True if POLICY, plan text, reacts to something, fails or leaves."

@@ -241,6 +241,7 @@ not in what is called later."
   '(("SLEEP" . "sleep stops all plans for so many seconds, and no tick need pass meanwhile.")
     ("RUN-TICKS" . "run-ticks is for programs: it cannot be called inside of a tick or plan.")
     ("STEP-TICKS" . "step-ticks is for programs: it cannot be called inside of a tick or plan.")
+    ("AWAIT-IDLE" . "await-idle is for programs: a plan would wait for itself.")
     ("RUN-UNTIL" . "run-until is for programs: it cannot be called inside of a tick or plan."))
   "Lists (operator . what is wrong with it in plans).")
 
@@ -255,6 +256,7 @@ not in what is called later."
     (warn-of-call #'doubt-definition form "~A In a plan write ~A."
                   (cdr (assoc (symbol-name name) *vain-waits* :test #'string=))
                   (cond ((string= "RUN-UNTIL" name) "(wait-until condition)")
+                        ((string= "AWAIT-IDLE" name) "(wait-for fluent), such as robot-stopped*")
                         ((string= "SLEEP" name) (format nil "(wait-time ~S :unit :seconds)" time))
                         (t (format nil "(wait-time ~S), for so many ticks" time))))))
 

@@ -84,6 +84,9 @@ one."
            (format nil "~(~A~) needs a fluent, and ~S is a value, which never changes. Write ~
                         (~(~A~) ~S~:[~; ...~])."
                    name condition name (as-fluents condition) (cddr form)))
+          ((and (consp condition) (operator-in-p condition '("TASK-STATUS")))
+           (format nil "the status of a task is always true, so ~(~A~) does not wait. Compare it: ~
+                        (~(~:*~A~) (eq ~S :succeeded)~:[~; ...~])." name condition (cddr form)))
           ((and (typep condition '(or (not (or cons null keyword))
                                      (cons (eql quote) (cons (not null)))))
                 (constantp condition))

@@ -87,7 +87,7 @@ CONDITION."
 (defun failure-text (failure)
   "Return what FAILURE, or another condition, reports: of what is deep, long or circular a part; its
 type if that signals an error."
-  (reporting (failure) (or (our-text failure) (format-briefly nil "~A" failure))))
+  (reporting (failure) (or (our-text failure) (report-briefly failure))))
 
 (defun failure-type-p (object)
   (and (symbolp object)

@@ -109,8 +109,10 @@ second value; NIL if there is none."
 ;; What a REPL shows of the value of a plan that failed.
 (defmethod print-object ((failure plan-failure) stream)
   (if *print-escape*
-      (print-unreadable-object (failure stream)
-        (write-string (cut (failure-story failure) 600) stream))
+      ;; The story prints the failure, too, which is no circle.
+      (let ((*print-circle* nil))
+        (print-unreadable-object (failure stream)
+          (write-string (cut (failure-story failure) 600) stream)))
       (call-next-method)))
 
 (defun report-failure (failure &optional awaited-p)

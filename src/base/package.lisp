@@ -114,7 +114,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; tests-in-code
   (:export #:*test-doubt* #:map-calls #:map-comparisons #:code-doubt)
   ;; telling
-  (:export #:format-briefly #:own-text #:our-text #:report-anyhow #:of-lines-typed-p
+  (:export #:format-briefly #:report-briefly #:own-text #:our-text #:report-anyhow
+           #:of-lines-typed-p
            #:reading-trouble #:text-of-condition #:one-line-text #:point-in-text #:hundredths
            #:editors-output)
   ;; breaking-lines
@@ -137,7 +138,8 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; variables
   (:export #:users-symbol-p #:variable-name-p #:variable-forms #:variable-name-trouble)
   ;; sources, definitions
-  (:export #:source-here #:source-file #:part-in-file-p #:skip-comment #:current-source
+  (:export #:source-here #:source-file #:count-in-file #:part-in-file-p
+           #:skip-comment #:current-source
            #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause
            #:call-with-definition #:expand-definition #:title
            #:call-as-definition

@@ -205,6 +205,15 @@ CLAUSE is not found in it, or NIL; and which of the definitions of that name it 
   "Return what LINE-OF-CLAUSE does for the text in FILE; NIL if that cannot be read."
   (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
+(defun count-in-file (word file)
+  "Return how often WORD stands in FILE, in whatever case, also in comments; NIL if that cannot be
+read."
+  (ignore-errors
+    (loop with text = (text-of-file file)
+          for start = (search word text :test #'char-equal)
+            then (search word text :test #'char-equal :start2 (1+ start))
+          while start count t)))
+
 (defun part-in-file-p (file form part)
   "True if a form in FILE, as that is now, has operator and name of FORM, and PART, a list, in it."
   (ignore-errors

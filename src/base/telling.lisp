@@ -4,11 +4,21 @@
 
 ;;; A condition may have to report a list without an end, or an object that cannot be printed.
 
+(defmacro printing-briefly (() &body body)
+  "Run BODY, which makes text for people. Of what is deep, long or circular, only a part is shown."
+  `(printing-words ()
+     (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
+       ,@body)))
+
 (defun format-briefly (destination control &rest arguments)
   "Do as FORMAT does. Of ARGUMENTS that are deep, long or circular, only a part is shown."
-  (printing-words ()
-    (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
-      (apply #'format destination control arguments))))
+  (printing-briefly () (apply #'format destination control arguments)))
+
+(defun report-briefly (condition)
+  "Return what CONDITION, or another object, says of itself, as FORMAT-BRIEFLY would. It may be in
+the midst of being printed, and is no circle for that: so it is not printed as a part."
+  (with-output-to-string (out)
+    (printing-briefly () (let ((*print-escape* nil)) (print-object condition out)))))
 
 ;;; Conditions.
 
@@ -62,7 +72,7 @@ streams that no user knows."
 (defun own-text (condition)
   "Return what CONDITION says of itself, as much of it as can be printed; or what another object
 does, an empty text if it cannot."
-  (handler-case (without-reference (format-briefly nil "~A" condition))
+  (handler-case (without-reference (report-briefly condition))
     ((or error storage-condition) ()
       ;; Nothing at all may be left that can be printed.
       (or (and (typep condition 'condition) (ignore-errors (report-anyhow condition)))

@@ -86,6 +86,9 @@ MISUSE if the simulator has failed and is paused for that: it would wait in vain
     (cond ((not (live-p simulation)) (idle-p simulation))
           ((eq (current-thread) (simulation-thread simulation))
            (reject-use "await-idle: the simulator would wait for itself. Go on in a continuation."))
+          ((some #'participant-around-p (simulation-participants simulation))
+           (reject-use "await-idle: a plan would wait for itself. Wait for a fluent there, such as ~
+                        robot-stopped*."))
           ((wait-until-idle simulation seconds))
           ((and (not given-p) (live-p simulation)) (tell-of-vain-wait simulation seconds)))))
 

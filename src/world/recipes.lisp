@@ -85,13 +85,23 @@ NIL (reading 63)."
         thereis (or (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil)))
                     (in-recipe-p kicker (recipe-contents recipe)))))
 
+(defun perhaps-used-p (entry world)
+  "True if a program may put the kicker of ENTRY on things of WORLD: it is from another file than
+the map, or named there more than once."
+  (let ((file (source-file (entry-source entry)))
+        (map-entry (lookup-entry (map-name (world-map world)) *maps*)))
+    (and file
+         (not (and map-entry
+                   (equal file (source-file (entry-source map-entry)))
+                   (eql 1 (count-in-file (name-string (entry-name entry)) file)))))))
+
 (defun doubt-idle-kickers (world)
-  "Say of each kicker that was typed since the last run, not loaded, that nothing in WORLD, whose
-run ends, had it, nor will by any map."
+  "Say of each kicker that is new since the last run, and that no program seems to use, that nothing
+in WORLD, whose run ends, had it, nor will by any map."
   (dolist (entry (registry-entries *kickers*))
     (let ((kicker (entry-object entry)))
       (unless (or (shiftf (kicker-known-p kicker) t)
-                  (source-file (entry-source entry))
+                  (perhaps-used-p entry world)
                   (some (lambda (map) (in-recipe-p kicker (map-things map))) (all-maps)))
         (warn-once (list :kicker (kicker-name kicker)) world
                    (format nil "The kicker ~(~A~) is on no thing, so it never ran. Put it on one: ~

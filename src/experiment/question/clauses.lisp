@@ -201,7 +201,9 @@ true of; or about CLAUSE if there is none at all."
   "Signal MALFORMED-DEFINITION if CLAUSE, :run, has no more than the name of a plan."
   (let ((name (and (null (cddr clause)) (quoted-name (second clause)))))
     (when (and name (find-procedure name nil))
-      (reject-clause definition clause (run-plan-text name)))))
+      (reject-clause definition clause (run-plan-text name))))
+  (let ((advice (test-advice (first (last clause)))))
+    (when advice (doubt-definition "~A, :run: ~A" definition advice))))
 
 ;;; All of them.
 
@@ -255,6 +257,25 @@ CLAUSES vary, and what the clause KEY names."
     (format nil "a plan that fails has its failure as the value, which is true. Let the call of ~
                  RUN-PLAN be the last form of :run: its second value says how it ended.")))
 
+(defun first-value-p (form)
+  "True if FORM gives the first value of :run, or of RUN-PLAN."
+  (flet ((call-p (form name) (and (typep form '(cons symbol)) (same-name-p name (first form)))))
+    (or (call-p form 'run-plan)
+        (and (or (call-p form 'first) (call-p form 'car))
+             (call-p (second form) 'trial-values)))))
+
+(defun state-as-test-advice (form)
+  "Return in sentences that FORM compares the first value of a plan with how plans end; else NIL."
+  (block advice
+    (map-comparisons (lambda (subject word comparison)
+                       (declare (ignore comparison))
+                       (when (and (first-value-p subject) (member word '(:succeeded :failed)))
+                         (return-from advice
+                           (format nil "RUN-PLAN returns ~(~S~) as its second value. Write ~
+                                        (eq (second (trial-values)) ~:*~(~S~))." word))))
+                     form)
+    nil))
+
 (defun check-clause (definition clause)
   "Signal MALFORMED-DEFINITION unless CLAUSE has the right shape."
   (ecase (first clause)
@@ -297,6 +318,7 @@ CLAUSES vary, and what the clause KEY names."
          (doubt (or (funcall *test-doubt* test)
                     (test-advice test)
                     (number-as-test-advice test)
+                    (state-as-test-advice test)
                     (plan-as-test-advice test))))
     (when doubt (doubt-definition "~A: ~(~S~): ~A" definition (first clause) doubt))))
 

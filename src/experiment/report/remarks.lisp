@@ -74,7 +74,11 @@ see one of each."
                         (reason (aref (sample-reasons sample) index)))
                     (cond ((string= "limit" outcome) "limit of ticks")
                           ((string= "timeout" outcome) "limit of time")
-                          ((failed-p outcome) (if (string= "" reason) "no reason given" reason))))))
+                          ((not (failed-p outcome)) nil)
+                          ((string= "" reason) "no reason given")
+                          ((string= "only-believed" reason)
+                           "only-believed (a success by the values of :run, but not by :success)")
+                          (t reason)))))
    (rest (results-samples results)) stream))
 
 (defun write-errors (results stream)

@@ -7,11 +7,16 @@
   (apply (the function function) (condition-arguments condition)))
 
 (defun truth-of (clause function condition)
-  "Return what FUNCTION, of the form of CLAUSE, returns. Signals MISUSE if that is a fluent."
+  "Return what FUNCTION, of the form of CLAUSE, returns. Signals MISUSE if that is a fluent, or how
+a plan has failed."
   (let ((value (call-form function condition)))
     (when (fluent-p value)
       (reject-use "The value of ~(~S~) is the fluent ~A itself, which is true whatever its value ~
                    is. Write (fluent-value ...)." clause (fluent-text value)))
+    (when (typep value 'plan-failure)
+      (reject-use "The value of ~(~S~) is the failure of a plan, which is true. RUN-PLAN returns ~
+                   how a plan ended as its second value: (eq (second (trial-values)) :succeeded)."
+                  clause))
     value))
 
 (defun text-of-measure (clause name function condition)
