@@ -1,4 +1,4 @@
-;;;; kinds-of-lines.lisp -- whether a line, as typed, is a comment or Lisp.
+;;;; kinds-of-lines.lisp -- whether a line is a comment or Lisp, and what its words are.
 
 (in-package :ars-magna.cli)
 
@@ -42,3 +42,35 @@ with Nisp's mark of a slot."
     (or (find (char text start) "()")
         (sharp-form-p text start)
         (eql start (search "!>" text)))))
+
+;;; The words of a line.
+
+(defun skip-blanks (text start)
+  "Return where, from START, TEXT goes on after blanks; its length if no more than a comment does."
+  (let ((position (position-if-not #'blank-p text :start start)))
+    (if (and position (not (comment-at-p text position)))
+        position
+        (length text))))
+
+(defun word-end (text start)
+  "Return where the word ends that begins in TEXT at START: at a blank, or a comment after ;."
+  (or (position-if (lambda (char) (or (blank-p char) (char= #\; char))) text :start start)
+      (length text)))
+
+(defun token-end (text start)
+  "Return where the token that begins in TEXT at START ends; one in double quotes may hold blanks,
+and goes on to the end of TEXT if there is no second one."
+  (if (char= (char text start) #\")
+      (let ((quote (position #\" text :start (1+ start))))
+        (if quote (1+ quote) (length text)))
+      (word-end text start)))
+
+(defun without-quotes (token)
+  "Return TOKEN without the double quotes around it, if any."
+  (string-trim "\"" token))
+
+(defun split-line (text)
+  "Return the first word of TEXT and what follows it."
+  (let* ((start (position-if-not #'blank-p text))
+         (end (token-end text start)))
+    (values (subseq text start end) (subseq text end))))

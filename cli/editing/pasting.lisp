@@ -60,7 +60,7 @@ far, returns the next line of it, or signals an error at the end."
   "Return which of LINES, as pasted below TEXT, are the rest of the form that it begins, without
 their prompts, and the LINES below them. What was typed at another prompt is not."
   (let ((taken '()))
-    (flet ((next-line (text)
+    (flet ((next-of-form (text)
              (declare (ignore text))
              (loop for line = (first lines)
                    when (or (null lines) (and (after-label line) (typed-line-of line)))
@@ -68,7 +68,7 @@ their prompts, and the LINES below them. What was typed at another prompt is not
                    do (pop lines)
                    unless (after-label line)
                      return (first (push (or (typed-line-of line) line) taken)))))
-      (read-over text #'next-line)
+      (read-over text #'next-of-form)
       (values (nreverse taken) lines))))
 
 (defun typed-by-label (lines)

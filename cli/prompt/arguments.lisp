@@ -78,30 +78,6 @@ method, DATUM is the argument.")
 
 ;;; Reading.
 
-(defun skip-blanks (text start)
-  "Return where, from START, TEXT goes on after blanks; its length if no more than a comment does."
-  (let ((position (position-if-not #'blank-p text :start start)))
-    (if (and position (not (comment-at-p text position)))
-        position
-        (length text))))
-
-(defun word-end (text start)
-  "Return where the word ends that begins in TEXT at START: at a blank, or a comment after ;."
-  (or (position-if (lambda (char) (or (blank-p char) (char= #\; char))) text :start start)
-      (length text)))
-
-(defun token-end (text start)
-  "Return where the token that begins in TEXT at START ends; one in double quotes may hold blanks,
-and goes on to the end of TEXT if there is no second one."
-  (if (char= (char text start) #\")
-      (let ((quote (position #\" text :start (1+ start))))
-        (if quote (1+ quote) (length text)))
-      (word-end text start)))
-
-(defun without-quotes (token)
-  "Return TOKEN without the double quotes around it, if any."
-  (string-trim "\"" token))
-
 (defun refuse-syntax (stream char argument)
   (declare (ignore stream argument))
   (error "#~C is for programs" char))

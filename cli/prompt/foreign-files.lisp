@@ -1,6 +1,17 @@
-;;;; foreign-files.lisp -- files given as Lisp, or as scripts, that are something else.
+;;;; foreign-files.lisp -- which file a name means, and files given as Lisp that are something else.
 
 (in-package :ars-magna.cli)
+
+(defun existing-file (name)
+  "Return the path of the Lisp file NAME, with or without its type, or NIL."
+  (let ((path (path-called name)))
+    (and (pathname-name path)
+         (or (existing-path path)
+             (existing-path (make-pathname :type "lisp" :defaults path))))))
+
+(defun file-called (name)
+  "Return the path of the Lisp file NAME, with or without its type. Signals BAD-LINE."
+  (or (existing-file name) (reject-line "There is no file ~A." name)))
 
 (defun foreign-text (path)
   "Return in a sentence what is in the file PATH, and what reads it, if that is neither Lisp nor
@@ -28,6 +39,14 @@ lines; or NIL."
   "Signal BAD-LINE if FORM, from the file PATH, which is being loaded, is the beginning of a line."
   (when (line-name-p form)
     (reject-line "~A is a command of the prompt. ~A" form (script-text path))))
+
+(defun form-start (text start)
+  "Return where, from START, the next form in TEXT begins; its length if there is none."
+  (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
+        for end = (and (< position (length text)) (skip-comment text position))
+        while end
+        do (setf start end)
+        finally (return position)))
 
 (defun first-form-of (path)
   "Return the first form in the file PATH; NIL if there is none that can be read."

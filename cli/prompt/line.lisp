@@ -88,3 +88,30 @@ DETAILS, strings, what it says below the parameters, a paragraph each."
   (format nil "~A~:[ takes no arguments~;~:*: ~{~A is ~A~^, ~}~]." (usage line)
           (loop for slot in (line-parameters line)
                 collect (slot-name slot) collect (slot-words slot))))
+
+;;; What a plan takes.
+
+(defun parameter-word (parameter keyword)
+  "Return how PARAMETER, of a plan's lambda list after the lambda list keyword KEYWORD, is typed."
+  (let ((name (if (consp parameter) (first parameter) parameter)))
+    (ecase keyword
+      ((nil) (format nil "~(~A~)" name))
+      (&optional (format nil "[~(~A~)]" name))
+      (&key (if (consp name)
+                (format nil "[~(~S~)]" (first name))
+                (format nil "[:~(~A~)]" name)))
+      ((&rest &body) (format nil "[~(~A~)...]" name)))))
+
+(defun parameter-words (lambda-list)
+  "Return how each parameter of LAMBDA-LIST, of a plan, is typed."
+  (loop with keyword = nil
+        for parameter in lambda-list
+        until (eq parameter '&aux)
+        if (member parameter lambda-list-keywords)
+          do (setf keyword parameter)
+        else
+          collect (parameter-word parameter keyword)))
+
+(defun plan-usage (plan)
+  "Return how PLAN, a plan procedure, is typed after the word PLAN."
+  (format nil "~A~{ ~A~}" (procedure-name plan) (parameter-words (procedure-lambda-list plan))))

@@ -2,14 +2,6 @@
 
 (in-package :ars-magna.cli)
 
-(defun form-start (text start)
-  "Return where, from START, the next form in TEXT begins; its length if there is none."
-  (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
-        for end = (and (< position (length text)) (skip-comment text position))
-        while end
-        do (setf start end)
-        finally (return position)))
-
 (defun call-watched-at (place function)
   "Call FUNCTION, while PLACE, a function, says to whoever watches where in a file that is."
   (let ((calls *user-calls*))

@@ -54,9 +54,3 @@ that."
         (count-anew (session-told session))
         (begin-flood-anew (session-flood session)))
       line)))
-
-(defun split-line (text)
-  "Return the first word of TEXT and what follows it."
-  (let* ((start (position-if-not #'blank-p text))
-         (end (token-end text start)))
-    (values (subseq text start end) (subseq text end))))

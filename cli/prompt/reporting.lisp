@@ -50,13 +50,6 @@ has asked for."
   "Report that a line makes no sense, as TEXT says. True if ACCOUNT is of what reports by objects."
   (when (reports-p account) (report-message account :error text)))
 
-(defun report-messages (account messages)
-  "Report MESSAGES. True if ACCOUNT is of what reports by objects."
-  (when (reports-p account)
-    (dolist (message messages t)
-      (report-message account (message-kind message) (message-text message)
-                      (line-of-message account message)))))
-
 (defun report-values (account texts)
   "Report TEXTS, of the values of a form of Lisp. True if ACCOUNT is of what reports by objects."
   (when (reports-p account)

@@ -2,28 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-;;; Names of plans, lines and functions.
-
-(defun plan-advice (name)
-  "Return in a sentence how the plan called NAME, a symbol or string, is run, or NIL if there is no
-such plan."
-  (let ((plan (find-procedure name nil)))
-    (and plan (format nil "~A is a plan: PLAN ~A." (procedure-name plan) (plan-usage plan)))))
-
-(defun line-called (name)
-  "Return the line command called NAME, a string, or NIL."
-  (find name (all-lines) :key #'line-name :test #'string-equal))
-
-(defun line-advice (name)
-  "Return in a sentence how the line command called NAME, a string, is typed; NIL if there is none."
-  (let ((line (line-called name)))
-    (and line (format nil "~A is a command of this prompt, typed without parentheses: ~A."
-                      (line-name line) (usage line)))))
-
-(defun lisp-advice (name)
-  "Return in a sentence how the function or macro of ours called NAME, a string, is typed; or NIL."
-  (and (ours-called name)
-       (format nil "~A is Lisp, in parentheses: (~(~:*~A~) ...)." name)))
+;;; Functions that nobody has defined.
 
 (defun shipped-advice (name)
   "Return in a sentence the function that the worlds have under NAME, a symbol's; NIL if none."

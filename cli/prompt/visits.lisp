@@ -47,7 +47,7 @@ to say of that."
     (unless (or (session-batch-p session) (unanswered-p console))
       (with-lock ((session-lock session)) (show-prompt console "Robot> ")))))
 
-(defun typed-p (session seconds)
+(defun await-typed-line (session seconds)
   "Wait until somebody has typed a line for SESSION, for SECONDS at most. True if he has."
   (show-prompt-once session)
   (loop with end = (+ (seconds-now) seconds)
@@ -73,7 +73,7 @@ to say of that."
      (let ((before (visit-state)))
        (call-guarded session (lambda ()
                                (when (watched-p session)
-                                 (loop until (typed-p session 1)))
+                                 (loop until (await-typed-line session 1)))
                                (let ((*while-typing* #'answer-others))
                                  (next-line-inside session))))
        (note-if-changed session visit before))
@@ -102,7 +102,7 @@ to say of that."
   "Wait until the next tick is due in VISIT. NIL if somebody has typed a line before."
   (let ((left (if (eq :free (visit-rate visit)) 0 (- (visit-due visit) (seconds-now)))))
     (if (watched-p session)
-        (unless (call-aside (lambda () (typed-p session left)))
+        (unless (call-aside (lambda () (await-typed-line session left)))
           (setf (visit-due visit) (next-due visit))
           t)
         (progn (when (plusp left) (await-time (visit-due visit) *simulation*))

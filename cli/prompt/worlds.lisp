@@ -69,17 +69,6 @@ BAD-LINE if there are none."
   "Return a list of all maps that have robots."
   (remove-if-not #'robots-of (all-maps)))
 
-(defun existing-file (name)
-  "Return the path of the Lisp file NAME, with or without its type, or NIL."
-  (let ((path (path-called name)))
-    (and (pathname-name path)
-         (or (existing-path path)
-             (existing-path (make-pathname :type "lisp" :defaults path))))))
-
-(defun file-called (name)
-  "Return the path of the Lisp file NAME, with or without its type. Signals BAD-LINE."
-  (or (existing-file name) (reject-line "There is no file ~A." name)))
-
 (defun world-robots-called (name)
   "Return the names of the robots in the world NAME: a map's name, or else a Lisp file that defines
 a world. Signals BAD-LINE."

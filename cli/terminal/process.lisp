@@ -21,12 +21,12 @@ can, or is.")
 
 (defun say-on-error-output (text)
   "Write TEXT to the error output, whatever state streams are in, as a line that says who says so."
-  (flet ((say (output)
+  (flet ((write-to (output)
            (write-string (concatenate 'string "ars-magna: " text '(#\Newline)) output)
            (finish-output output)))
     ;; A stream cannot be made where numbers cannot be printed.
-    (handler-case (say (text-output 2))
-      (error () (ignore-errors (say *error-output*))))))
+    (handler-case (write-to (text-output 2))
+      (error () (ignore-errors (write-to *error-output*))))))
 
 ;;; Control C. It reaches this process's first thread, between any two of its instructions. So that
 ;;; it ends what the user wants to end and nothing else, the prompt holds it: see RUN-SESSION.
