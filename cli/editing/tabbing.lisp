@@ -75,7 +75,7 @@ and AFTER if it is one; list them if that is no more than there is."
 (define-action (:tab) (stream)
   "Complete what was begun."
   (let ((line (line-of stream)))
-    (when *completer*
+    (when (and *completer* (not *program-reads*))
       (multiple-value-bind (start texts after)
           (funcall *completer* (drawn-line-text line) (drawn-line-point line))
         (when texts (complete stream start texts after)))))

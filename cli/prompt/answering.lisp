@@ -8,12 +8,11 @@
 ;;; is what it was before.
 
 (defvar *hooks-at-work* '() "The hooks of the prompts that are at work, the newest first.")
-(defvar *asking-hook* nil "The hook of prompts that can ask their users, once there is one.")
 (defvar *hook-before* nil "What hook all threads shared before the first of them.")
 
 (defun hook-to-share ()
   "Return the hook that all threads are to share."
-  (cond ((find *asking-hook* *hooks-at-work*))
+  (cond ((find-if-not #'disabled-hook-p *hooks-at-work*))
         (*hooks-at-work* (first *hooks-at-work*))
         (t *hook-before*)))
 

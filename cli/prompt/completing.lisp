@@ -235,5 +235,3 @@ could become, and what follows one that is the only one."
               (breakage (break-completions breakage text))
               (t (line-completions session text 0)))
       (ars-magna-error () nil))))
-
-(setf *completion* 'completions-in)

@@ -326,8 +326,6 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
   (unless (typep condition 'serious-condition) (continue condition))
   (give-up condition))
 
-(setf *asking-hook* 'enter-debugger)
-
 ;;; Somebody else's debugger, such as an editor's, may ask instead.
 
 (defun ask-instead (condition)

@@ -111,17 +111,15 @@ message. Prints as TEXT."
        (with-lock (*plan-errands-lock*)
          (find session *plan-errands* :key #'plan-errand-session))))
 
-(defun error-counts-p (message session)
-  "True if SESSION counts the error MESSAGE. Those of a trial are the trial's, and those of commands
-that a plan, GO-TO or a program gives that is told of them are its own."
+;; Those of a trial are the trial's, and those of commands that a plan, GO-TO or a program gives
+;; that is told of them are its own.
+(defmethod error-counts-p (message session)
   (and (null (session-visit session))
        (or (verdict-p (first (message-items message)))
            (not (or (left-to-program-p message)
                     (and (waiting-for-plan-p session) (not (of-line-p message)))
                     (and (others-p message)
                          (some #'errand-verdict-p (errands-under-way session))))))))
-
-(setf *error-counts-p* 'error-counts-p)
 
 (defun note-failure (errand failure)
   "Let PLANS tell of FAILURE, of the plan of ERRAND, wherever that is told."

@@ -120,6 +120,7 @@ that it waits, since time stands still."
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
          (*program-reads* (lambda () (report-asking (session-account session))))
+         (*completer* (lambda (text point) (completions-in session text point)))
          (*waits-while-paused-p* (terminal-p session))
          (*robot-meant* #'session-robot)
          (*robot-to-drive* #'robot-commanded)

@@ -2,10 +2,6 @@
 
 (in-package :ars-magna.cli)
 
-;; What knows what can be typed where sets it.
-(defvar *completion* (constantly nil)
-  "A function of a session, a text and a place in it: what *COMPLETER* returns of the text.")
-
 (defun without-program (session text)
   "Return TEXT, a line as typed, but an empty one if it says, as the first line of SESSION, what
 program runs a script."
@@ -23,8 +19,7 @@ program runs a script."
 (defun read-typed (session before)
   "Return the next line that is typed in SESSION, or NIL at the end. Whoever edits it can complete
 it, and have it again; if BEFORE is a text, together with that, which it goes on from."
-  (let* ((*completer* (lambda (text point) (funcall *completion* session text point)))
-         (line (progn
+  (let* ((line (progn
                  ;; What goes on over lines is kept whole.
                  (unless before (keep-lines (session-input session)))
                  (let ((*program-reads* nil)) (read-line (session-input session) nil))))

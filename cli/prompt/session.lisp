@@ -220,14 +220,13 @@ an error or warning in a script, with the place of its line."
         (write-after-prompt (fitted text console (console-prompt console)) console)
         (write-fresh (fitted text console) console))))
 
-;; Programs set it that know what an error belongs to, such as a plan under way.
-(defvar *error-counts-p* (constantly t)
-  "A function of an error message and a session: true if the session counts the error.")
+(defgeneric error-counts-p (message session)
+  (:documentation "True if SESSION counts the error MESSAGE, and not what has caused it."))
 
 (defun counts-p (message session)
   "True if MESSAGE is an error that SESSION counts."
   (and (eq :error (message-kind message))
-       (funcall *error-counts-p* message session)))
+       (error-counts-p message session)))
 
 (defun told-often-p (message session)
   "True if MESSAGE is an error that somebody who sits at SESSION has been told often."

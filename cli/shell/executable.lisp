@@ -6,9 +6,7 @@
 ;;; the same program, in which the user's file has been loaded: `./PROGRAM experiment NAME` runs
 ;;; what is in it, with the fingerprints that it would have here.
 
-;; What begins sets it.
-(defvar *beginning* (constantly nil)
-  "The function that a program which has been saved begins by calling.")
+(defvar *beginning* nil "The function that this program has begun by calling.")
 
 (defvar *saved-by-user-p* nil "True in a program that a user has saved.")
 

@@ -254,6 +254,5 @@ only asks whether the core starts."
   (refuse-exits (format nil "EXIT would end the whole program here. Signal an error instead, or ~
                              return; at the prompt, QUIT leaves."))
   ;; An interrupt that still waits when all is done is not to be taken then.
-  (call-holding-interrupts (lambda () (end-process (run-process)))))
-
-(setf *beginning* #'main)
+  (let ((*beginning* #'main))
+    (call-holding-interrupts (lambda () (end-process (run-process))))))
