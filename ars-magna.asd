@@ -22,7 +22,7 @@
                  (:file "printing") (:file "files") (:file "code")
                  (:file "processes") (:file "compiling") (:file "environments")
                  (:file "undefined") (:file "limits")
-                 (:file "stacks") (:file "debuggers") (:file "abridging") (:file "names")
+                 (:file "stacks") (:file "front-ends") (:file "debuggers") (:file "abridging") (:file "names")
                  (:file "conditions") (:file "file-text") (:file "kinds-of-files") (:file "exits")
                  (:file "lisp-errors") (:file "telling") (:file "breaking-lines") (:file "ordering")
                  (:file "threads") (:file "finishing") (:file "elsewhere") (:file "weak")

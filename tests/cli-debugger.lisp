@@ -387,7 +387,7 @@ asked goes."
 (test debuggers.of-an-editor-that-has-gone-ask-nobody
   "Its hooks stay: what breaks then is for the prompts that are at work, if there are any."
   (let ((base:*editor-gone-p* (constantly t))
-        (base:*hook-instead* (constantly 'cli::enter-debugger)))
+        (cli::*hooks-at-work* '(cli::enter-debugger)))
     (base:with-debugger-hook ((constantly nil))
       (is (eq 'cli::enter-debugger (base:debugger-hook))))
     (base:with-debugger-hook ('cli::debugger-disabled-hook)

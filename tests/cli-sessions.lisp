@@ -162,14 +162,22 @@
         (end-talk talk)
         (run:stop-clock simulation)))))
 
+(defclass waiting-front-end ()
+  ((function :initarg :function :reader waiting-function))
+  (:documentation "One that calls a function while a thread waits."))
+
+(defmethod base:serve-while-waiting ((front-end waiting-front-end))
+  (funcall (waiting-function front-end)))
+
 (test sessions.waiting-for-ticks-ends-when-the-clock-stops
   "As when a break is answered so while the line STEP waits."
   (in-studio (robot)
     (let* ((simulation (time:current-simulation)) (calls 0)
-           (base:*while-waiting* (lambda ()
-                                   (case (incf calls)
-                                     (1 (run:stop-clock simulation))
-                                     (9 (error "It waits for ever."))))))
+           (base:*front-end* (make-instance 'waiting-front-end
+                                            :function (lambda ()
+                                                        (case (incf calls)
+                                                          (1 (run:stop-clock simulation))
+                                                          (9 (error "It waits for ever.")))))))
       (run:start-clock simulation :paused-p t)
       (is (null (cli::await-live (constantly nil) simulation))))))
 

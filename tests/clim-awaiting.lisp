@@ -85,8 +85,10 @@
       (base:wait-on-semaphore held)
       (base:start-thread (lambda ()
                            (let ((time:*simulation* simulation)
-                                 (base:*while-waiting*
-                                   (lambda () (base:signal-semaphore answered))))
+                                 (base:*front-end*
+                                   (make-instance 'waiting-front-end
+                                                  :function (lambda ()
+                                                              (base:signal-semaphore answered)))))
                              (ars-magna.rpl-robot:call-with-plans
                               (lambda () (base:signal-semaphore done)) interface)))
                          "line")

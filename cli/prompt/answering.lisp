@@ -16,12 +16,14 @@
         (*hooks-at-work* (first *hooks-at-work*))
         (t *hook-before*)))
 
-(defun hook-of-prompts ()
-  "Return the hook that prompts at work have all threads share, or NIL if there are none."
-  (and *hooks-at-work* (hook-to-share)))
+(defclass prompts () ()
+  (:documentation "The prompts at work, as the front end that asks their users."))
+
+(setf *front-end* (make-instance 'prompts))
 
 ;; An editor that comes takes the place of the prompts, who ask again when it has gone.
-(setf *hook-instead* 'hook-of-prompts)
+(defmethod hook-of-front-end ((prompts prompts))
+  (and *hooks-at-work* (hook-to-share)))
 
 (defun begin-sharing (hook)
   (with-lock (*sessions-lock*)

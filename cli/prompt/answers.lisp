@@ -27,8 +27,5 @@ each line; where nobody sits, it is read from where else it would be."))
                   (read-line (typed-octets stream) nil))))
     (if line (format nil "~A~%" line) "")))
 
-(defun asking-instead (stream)
-  "Return the stream that programs in the thread of a run read instead of STREAM."
+(defmethod input-of-programs ((prompts prompts) stream)
   (make-instance 'asking-text :octets stream))
-
-(setf *program-input* 'asking-instead)

@@ -218,7 +218,7 @@ go on, if there are any."
   (invoke-restart 'end-line))
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
-(defun answer-breaks ()
+(defmethod serve-while-waiting ((prompts prompts))
   "If this thread has the prompt, and carries out a line, read lines for what has broken in other
 threads, until that goes on."
   (let ((session *session*))
@@ -227,8 +227,6 @@ threads, until that goes on."
             while breakage
             do (when (session-over-p session) (invoke-restart 'end-line))
                (call-complaining session (lambda () (read-debug-line session breakage)))))))
-
-(setf *while-waiting* 'answer-breaks)
 
 (defun give-up (condition)
   "Leave what CONDITION has come up in, by the innermost restart that does."
@@ -328,12 +326,8 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
 
 ;;; Somebody else's debugger, such as an editor's, may ask instead.
 
-(defun ask-instead (condition)
-  "Let the users of prompts say how to go on after CONDITION, if there are any, as who had been
-asked has gone."
+(defmethod ask-how-to-go-on ((prompts prompts) condition)
   (when (sessions-to-ask) (enter-debugger condition nil)))
-
-(setf *heir* 'ask-instead)
 
 (defun tell-of-inquiry (condition asker)
   "Say, where prompts listen to the simulation, that ASKER asks how to go on after CONDITION."

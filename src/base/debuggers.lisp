@@ -12,9 +12,6 @@ before; or NIL.")
   "A function: true if the hook that Common Lisp has for debuggers is that of an editor's server, to
 which no editor is connected.")
 
-(defvar *hook-instead* (constantly nil)
-  "A function that returns the debugger's hook, or NIL, for where an editor's has nobody to ask.")
-
 (defun stale-p (hook)
   "True if HOOK is somebody else's, an editor's that has gone."
   (and (functionp hook)
@@ -40,7 +37,7 @@ an editor, that has set HOOK or *DEBUGGER-HOOK*."
 whatever thread that has not bound one; or NIL. Can be set. By the name DEBUGGER-DISABLED-HOOK one
 says that there is nobody to talk to."
   (let ((hook sb-ext:*invoke-debugger-hook*))
-    (if (stale-p hook) (funcall *hook-instead*) hook)))
+    (if (stale-p hook) (hook-of-front-end *front-end*) hook)))
 
 (defun (setf debugger-hook) (function)
   (setf sb-ext:*invoke-debugger-hook* function))

@@ -19,10 +19,6 @@
   "Functions, or their names, of a condition and of who asks, in words. They are called in the
 thread that has broken, before it is asked there how that goes on.")
 
-(defvar *heir* (constantly nil)
-  "A function of a condition that asks how to go on after that, where who had been asked has gone;
-it returns if it cannot.")
-
 (defvar *debugger-refused-p* nil
   "True where the debugger's hook asks nobody, but signals an error.")
 
@@ -95,7 +91,7 @@ has gone without an answer, somebody else. Return if they do."
                                (funcall function condition (words-for-asker hook)))
                              (enter-outer condition hook)))
       (return-from inquire))
-    (funcall *heir* condition)
+    (ask-how-to-go-on *front-end* condition)
     (go-on-unasked condition)))
 
 (defun call-answering-debugger (function answer)

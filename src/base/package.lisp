@@ -87,7 +87,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; threads
   (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
            #:make-semaphore #:signal-semaphore #:wait-on-semaphore
-           #:*while-waiting* #:wait-a-while #:wait-patiently #:call-when-free
+           #:wait-a-while #:wait-patiently #:call-when-free
            #:*leaving-p* #:call-when-leaving
            #:start-thread #:own-thread-p #:join-thread #:interrupt-thread
            #:thread-alive-p
@@ -96,17 +96,19 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:in-any-case #:call-opening #:call-each)
   ;; elsewhere
   (:export #:call-telling-names #:bound-elsewhere-text #:run-elsewhere-text)
+  ;; front-ends
+  (:export #:*front-end* #:serve-while-waiting #:hook-of-front-end #:ask-how-to-go-on
+           #:input-of-programs)
   ;; limits, debuggers
   (:export #:time-limit #:let-callers-handle #:call-with-limit
            #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts #:protecting-strictly #:held-off-p
            #:regain-room #:debugger-p #:foreign-hook #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-hook-p
-           #:*editor-gone-p* #:*hook-instead*
+           #:*editor-gone-p*
            #:with-debugger-hook #:yield-foreground)
   ;; inquiries
-  (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*heir*
-           #:*debugger-refused-p*)
+  (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*debugger-refused-p*)
   ;; lisp-errors
   (:export #:note-error-code #:note-dispatch-character #:variable-slip #:value-behind
            #:*function-meant*

@@ -36,13 +36,10 @@ holds that."
         (bordeaux-threads:wait-on-semaphore semaphore :timeout (max seconds 1d-6))
         (bordeaux-threads:wait-on-semaphore semaphore))))
 
-(defvar *while-waiting* (constantly nil)
-  "A function called now and then by a thread that waits for what another is to do.")
-
 (defun wait-a-while (semaphore seconds)
   "Wait on SEMAPHORE for SECONDS at most, as one of many times; true if that succeeded."
   (yield-foreground)
-  (funcall *while-waiting*)
+  (serve-while-waiting *front-end*)
   (wait-on-semaphore semaphore seconds))
 
 (defun wait-patiently (semaphore seconds)
@@ -58,7 +55,7 @@ others need this thread for meanwhile is done, and what interrupts this thread i
   (loop
     (sb-thread:with-mutex (lock :timeout 0.2)
       (return-from call-when-free (funcall function)))
-    (allowing-interrupts (funcall *while-waiting*))))
+    (allowing-interrupts (serve-while-waiting *front-end*))))
 
 (defvar *own-thread-p* nil "True in threads that START-THREAD has started.")
 

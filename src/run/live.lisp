@@ -8,9 +8,6 @@
 (defvar *hook-options* '()
   "The keywords of SIMULATOR that its hooks take, as symbols without the colon.")
 
-(defvar *program-input* #'identity
-  "A function of a stream: return the one that users' code in a run's threads reads instead.")
-
 (defun call-with-robots (simulation function)
   "Call FUNCTION with the variables bound that name robots where SIMULATION was begun: those of
 WITH-SIMULATION, around SIMULATOR."
@@ -25,7 +22,7 @@ WITH-SIMULATION, around SIMULATOR."
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
         (*standard-output* (or (simulation-output simulation) *standard-output*))
-        (*standard-input* (funcall *program-input* *standard-input*)))
+        (*standard-input* (input-of-programs *front-end* *standard-input*)))
     (call-with-robots
      simulation
      (lambda ()

@@ -50,8 +50,7 @@ takes part in it. Manual 2.3 and appendix A.")
            #:*simulation-variables* #:variables-among)
   ;; live
   (:export #:simulator #:stop-simulator #:start-clock #:stop-clock #:await-idle #:doubt-wait
-           #:call-as-owner #:*program-input*
-           #:*simulator-hooks* #:*hook-options*)
+           #:call-as-owner #:*simulator-hooks* #:*hook-options*)
   ;; state, replay
   (:export #:state-digest #:replay #:with-replay #:call-with-replay #:replaying #:repeated-words
            #:journal-meant
