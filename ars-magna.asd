@@ -284,7 +284,8 @@
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "line-askers")
                    (:file "repetition")
-                   (:file "flooding") (:file "session") (:file "visit")
+                   (:file "flooding") (:file "listener") (:file "reader")
+                   (:file "break-state") (:file "session") (:file "visit")
                    (:file "listening") (:file "going-on")
                    (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")

@@ -10,7 +10,8 @@
                                                                 :by-hand-p t
                                                                 :octets (make-string-input-stream
                                                                          "")))))
-    (setf (cli::session-thread cli::*session*) (base:current-thread))
+    (setf (cli::break-state-thread (cli::session-break-state cli::*session*))
+          (base:current-thread))
     (flet ((answer (condition hook)
              (declare (ignore hook))
              (is (eq 'cli::answer

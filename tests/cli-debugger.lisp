@@ -85,7 +85,7 @@
 (test break.tells-after-an-interrupt-how-to-go-on
   (let ((session (cli:make-session)))
     (with-simple-restart (continue "Go on.")
-      (setf (cli::session-breaks session)
+      (setf (cli::break-state-others (cli::session-break-state session))
             (list (cli::make-breakage (make-condition 'simple-condition :format-control "oh")
                                       (list (find-restart 'continue))
                                       (base:current-thread) (list session))))
@@ -304,7 +304,8 @@
          (restart (restart-case (first (compute-restarts)) (go-on () nil)))
          (breakage (cli::make-breakage (make-condition 'simple-condition) (list restart)
                                        (base:current-thread) (copy-list sessions))))
-    (dolist (session sessions) (setf (cli::session-breaks session) (list breakage)))
+    (dolist (session sessions)
+      (setf (cli::break-state-others (cli::session-break-state session)) (list breakage)))
     (cli::release-all (first sessions))
     (is (null (cli::breakage-order breakage)) "the other one has not answered yet")
     (cli::release-all (second sessions))
@@ -386,8 +387,7 @@ asked goes."
 
 (test debuggers.of-an-editor-that-has-gone-ask-nobody
   "Its hooks stay: what breaks then is for the prompts that are at work, if there are any."
-  (let ((base:*editor-gone-p* (constantly t))
-        (cli::*hooks-at-work* '(cli::enter-debugger)))
+  (let ((base:*editor-gone-p* (constantly t)) (cli::*hooks-at-work* '(cli::enter-debugger)))
     (base:with-debugger-hook ((constantly nil))
       (is (eq 'cli::enter-debugger (base:debugger-hook))))
     (base:with-debugger-hook ('cli::debugger-disabled-hook)

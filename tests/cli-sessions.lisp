@@ -185,7 +185,7 @@
   "Wait until the user of TALK is asked how a line goes on: before that, to end the session ends the
 line."
   (let ((session (talk-session talk)))
-    (awaiting (and (cli::session-debugging session)
+    (awaiting (and (cli::break-state-own (cli::session-break-state session))
                    (cli::being-typed-p (cli::session-input session))))))
 
 (test sessions.break-of-one-that-is-lost-is-answered-in-another

@@ -11,6 +11,10 @@
     (setf (cli::breakage-told-p breakage) told-p)
     breakage))
 
+(defun leave-broken (session &rest breakages)
+  "Let BREAKAGES, of other threads, wait for SESSION."
+  (setf (cli::break-state-others (cli::session-break-state session)) breakages))
+
 (defun note-above (window)
   "Return what is said above the line that is typed in WINDOW, where one is."
   (first (window::row-above (window::window-conversation window) "")))
@@ -20,10 +24,11 @@
     (let ((session (window::window-session window)) (thread (base:current-thread)))
       (is (null (note-above window)))
       (is (not (mentions-p (window::time-text window) "the prompt asks")))
-      (setf (cli::session-breaks session) (list (broken "oh" thread)))
+      (leave-broken session (broken "oh" thread))
       (is (mentions-p (note-above window) "How does it go on? oh (in another thread, "))
       (is (mentions-p (window::time-text window) "the prompt asks how a program goes on"))
-      (setf (cli::session-debugging session) (broken "mine" (cli::session-thread session) t))
+      (setf (cli::break-state-own (cli::session-break-state session))
+            (broken "mine" (cli::session-thread session) t))
       (is (mentions-p (note-above window) "1 more waits. How does it go on? mine"))
       (is (mentions-p (window::time-text window) "the prompt asks how two programs go on")))))
 
@@ -32,10 +37,10 @@
   (in-window (window robot)
     (let ((session (window::window-session window)) (thread (base:current-thread)))
       (setf (window::watcher-progress (window:window-watcher window))
-            (window::make-progress :state :broken)
-            (cli::session-breaks session) (list (broken "oh" thread)))
+            (window::make-progress :state :broken))
+      (leave-broken session (broken "oh" thread))
       (is (= 1 (occurrences "asks how" (window::time-text window))))
-      (setf (cli::session-breaks session) (list (broken "oh" thread) (broken "ah" thread)))
+      (leave-broken session (broken "oh" thread) (broken "ah" thread))
       (is (mentions-p (window::time-text window) "the prompt asks how two programs go on")))))
 
 (test awaiting.what-breaks-while-another-is-answered-leaves-the-prompt-there
@@ -111,8 +116,7 @@
   "They would be taken for wrong answers; forms are evaluated where it has broken."
   (in-window (window robot)
     (let ((conversation (window::window-conversation window)))
-      (setf (cli::session-breaks (window::window-session window))
-            (list (broken "oh" (base:current-thread))))
+      (leave-broken (window::window-session window) (broken "oh" (base:current-thread)))
       (window::give-line conversation "rewind 10")
       (window::begin-line-with conversation "turn ")
       (is (has-words-p (said-in window)

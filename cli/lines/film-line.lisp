@@ -12,7 +12,7 @@ that has come."
                              (note-progress progress "Tick ~D of ~D. Control-C stops it." tick
                                             end))))
          (funcall function)))
-     (session-console session) (terminal-p session))))
+     (session-console session) (session-terminal-p session))))
 
 (define-line "FILM" (session (file :file "a name that ends in .html or .svg")
                              (what :rest "pixels to a cell, names of layers; BARE; ANYWAY"

@@ -10,7 +10,7 @@ lines; NIL if there is none."
   (flet ((size-said (variable)
            (ignore-errors (parse-integer (environment-value variable)))))
     (multiple-value-bind (columns lines)
-        (if (terminal-p session) (size-of-window session) (values 80 nil))
+        (if (session-terminal-p session) (size-of-window session) (values 80 nil))
       (values (or (size-said "COLUMNS") columns)
               (and lines (or (size-said "LINES") lines))))))
 

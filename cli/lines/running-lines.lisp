@@ -195,7 +195,7 @@ digest that it comes to."
                                    (note-progress progress "Tick ~D of ~D. Control-C stops it."
                                                   (simulation-tick simulation)
                                                   (journal-end journal)))))
-   (session-console session) (terminal-p session)))
+   (session-console session) (session-terminal-p session)))
 
 (define-line "REPLAY" (session (file :file "the name of a file that SAVE-JOURNAL wrote")
                                (anyway :token "the word ANYWAY" :optional))

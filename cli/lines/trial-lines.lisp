@@ -116,7 +116,7 @@
 pauses at the next one; if that does not come, and he does so again, it is left."
   (flet ((heed (condition)
            (let ((restart (find-restart 'go-on condition)))
-             (if (and restart (terminal-p session) (not (visit-interrupted-p visit)))
+             (if (and restart (session-terminal-p session) (not (visit-interrupted-p visit)))
                  (pause-soon session visit restart)
                  (setf (visit-left-p visit) t)))))
     (handler-bind ((user-interrupt #'heed))

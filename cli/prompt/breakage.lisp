@@ -1,55 +1,10 @@
-;;;; breakage.lisp -- a program that has broken, what it offers, and what is said of it.
+;;;; breakage.lisp -- what is said of a program that has broken.
 
 (in-package :ars-magna.cli)
-
-(defstruct (breakage (:constructor make-breakage (condition restarts thread sessions))
-                     (:copier nil))
-  "A program that has broken and waits in THREAD, until the user of one of SESSIONS says how to go
-on. ORDER is what it is to do next, a function."
-  (condition nil :type condition :read-only t)
-  (restarts '() :type list :read-only t)
-  (thread nil :read-only t)
-  (sessions '() :type list)
-  (order nil :type (or null function))
-  ;; How to go on has been shown.
-  (told-p nil :type boolean)
-  (ordered (make-semaphore "order") :read-only t)
-  (done (make-semaphore "order done") :read-only t))
 
 (defvar *session* nil "The session that the debugger asks, in whatever thread; the newest.")
 
 (defvar *asking-p* nil "True in a thread that has broken and asks how to go on.")
-
-(defun restarts-within (condition)
-  "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
-  (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
-         (last (position 'end-line all :key #'restart-name)))
-    (remove-duplicates (subseq all 0 (and last (1+ last))) :test #'string=
-                       :key #'restart-name :from-end t)))
-
-(defun rank (restart condition)
-  "Return a number for RESTART, a lower one the more likely it is what the user wants."
-  (let ((first-names (if (typep condition 'serious-condition)
-                         '("ABORT" "RETRY" "STOP-SIMULATOR")
-                         '("ANSWER" "CONTINUE"))))
-    (or (position (restart-name restart) first-names :test #'string=) (length first-names))))
-
-(defparameter *asking-restarts*
-  '("USE-VALUE" "STORE-VALUE" "RETURN-VALUE" "CALL-FORM" "REPLACE-FUNCTION" "SPECIFY-PACKAGE"
-    "USE-PACKAGE" "RENAME" "ANSWER")
-  "The names of restarts that ask for what they need.")
-
-(defun asks-p (restart)
-  (member (restart-name restart) *asking-restarts* :test #'string=))
-
-(defun restarts-to-offer (condition)
-  "Return the ways to go on after CONDITION that a user can choose, those first that he may be
-expected to."
-  (stable-sort (restarts-within condition)
-               #'< :key (lambda (restart) (rank restart condition))))
-
-(defun here-p (breakage)
-  (eq (breakage-thread breakage) (current-thread)))
 
 ;;; What the user sees.
 
@@ -67,12 +22,6 @@ expected to."
   "True if THREAD passes the ticks of the run that SESSION listens to."
   (let ((simulation (session-simulation session)))
     (and simulation (eq thread (simulation-thread simulation)))))
-
-(defun break-words (condition)
-  "Return what CONDITION says: on a line, unless it is that a plan has stopped, with its stack."
-  (if (plan-break-p condition)
-      (visible (condition-text condition))
-      (complaint-text (condition-text condition))))
 
 (defun break-text (session breakage)
   (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
@@ -105,13 +54,6 @@ expected to."
     (restore-prompt console)
     (finish-output console)))
 
-(defun breaks-awaiting (session)
-  "Return what waits for the user of SESSION to say how it goes on, what is asked about now first."
-  (let ((own (session-debugging session)) (others (session-breaks session)))
-    (cond ((null own) others)
-          ((breakage-told-p own) (cons own others))
-          (t (append others (list own))))))
-
 (defun break-line (session breakage)
   "Return on one line what has broken and where, if not in the thread of SESSION."
   (let ((words (break-words (breakage-condition breakage))))
@@ -121,12 +63,13 @@ expected to."
 (defun awaited-answers (session)
   "Return a list of what waits for the user of SESSION to say how it goes on, in words, what is
 asked about now first. Any thread may ask."
-  (mapcar (lambda (breakage) (break-line session breakage)) (breaks-awaiting session)))
+  (mapcar (lambda (breakage) (break-line session breakage))
+          (breaks-awaiting (session-break-state session))))
 
 (defun ways-awaited (session)
   "Return in words the ways to go on that the user of SESSION can choose from now, or NIL if he is
 not asked. Any thread may ask."
-  (let ((breakage (first (breaks-awaiting session))))
+  (let ((breakage (first (breaks-awaiting (session-break-state session)))))
     (and breakage
          (format nil "~{~A~^, ~}"
                  (loop for restart in (breakage-restarts breakage)
@@ -136,7 +79,7 @@ not asked. Any thread may ask."
 (defun simulator-broken-p (session)
   "True if the user of SESSION is asked how the simulator's thread goes on. Any thread may ask."
   (some (lambda (breakage) (simulator-p session (breakage-thread breakage)))
-        (breaks-awaiting session)))
+        (breaks-awaiting (session-break-state session))))
 
 (defun asker-of-break (simulation)
   "Return in words, to follow others, that another debugger than that of the prompts asks how the

@@ -19,7 +19,7 @@
 (defun text-width (session)
   "Return how many characters a line of running text may have for SESSION: as its window has room
 for, or 79."
-  (if (terminal-p session) (max 40 (min 79 (1- (size-of-window session)))) 79))
+  (if (session-terminal-p session) (max 40 (min 79 (1- (size-of-window session)))) 79))
 
 (defun run-line (session line text)
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
@@ -35,7 +35,7 @@ for, or 79."
 
 (defun evaluate-line (session text)
   "Evaluate TEXT as Lisp. The tables that it prints fit the window of SESSION, if it has one."
-  (if (terminal-p session)
+  (if (session-terminal-p session)
       (call-on-page (lambda () (evaluate-text session text)) (1- (size-of-window session)))
       (evaluate-text session text)))
 

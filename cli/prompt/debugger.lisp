@@ -116,10 +116,9 @@ or else what the user types next."
 (defun call-debugging (session breakage function)
   "Call FUNCTION, which reads lines for BREAKAGE, of this thread. What breaks elsewhere meanwhile
 comes after that."
-  (let ((before (session-debugging session)))
-    (setf (session-debugging session) breakage)
+  (let* ((state (session-break-state session)) (before (shiftf (break-state-own state) breakage)))
     (unwind-protect (funcall function)
-      (setf (session-debugging session) before)
+      (setf (break-state-own state) before)
       (when (and (session-breaks session) (not before) (not (session-over-p session)))
         (tell-break session (first (session-breaks session)))))))
 
@@ -139,20 +138,19 @@ comes after that."
 
 (defun announce-break (session breakage)
   "Tell of BREAKAGE, of another thread than the one of SESSION: all, if it can be answered now."
-  (if (or (session-debugging session)
+  (if (or (break-state-own (session-break-state session))
           (not (eq breakage (first (session-breaks session)))))
       (tell-waiting session breakage)
       (tell-break session breakage)))
 
 (defun forget-break (session breakage)
   "Let BREAKAGE, which goes on, wait for SESSION no longer, whose prompt that was perhaps not."
-  (let ((console (session-console session))
-        (next (second (member breakage (session-breaks session))))
-        (first-p (eq breakage (first (session-breaks session)))))
-    (removef (session-breaks session) breakage)
-    (unless (or (session-debugging session) (session-over-p session))
-      (cond ((and next first-p) (tell-break session next))
-            ((and (console-prompt console) (null (session-breaks session)))
+  (let* ((console (session-console session)) (state (session-break-state session))
+         (first-p (eq breakage (first (break-state-others state))))
+         (left (removef (break-state-others state) breakage)))
+    (unless (or (break-state-own state) (session-over-p session))
+      (cond ((and left first-p) (tell-break session (first left)))
+            ((and (console-prompt console) (null left))
              (show-prompt console "Robot> "))))
     (signal-semaphore (breakage-done breakage))))
 
@@ -171,8 +169,8 @@ windows, as somebody may wait in Lisp's own REPL meanwhile; or NIL."
 
 (defun debug-elsewhere (sessions breakage)
   "Do what the thread of one of SESSIONS orders for BREAKAGE, until that is to go on."
-  (dolist (session sessions)
-    (setf (session-breaks session) (append (session-breaks session) (list breakage))))
+  (dolist (state (mapcar #'session-break-state sessions))
+    (setf (break-state-others state) (append (break-state-others state) (list breakage))))
   (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
                          (tell-repl sessions breakage)
                          (loop
@@ -186,7 +184,7 @@ windows, as somebody may wait in Lisp's own REPL meanwhile; or NIL."
   "Return the sessions whose users can answer what that of SESSION, which is over, cannot any more:
 those that listen to its run, or else all; NIL if its user has left it."
   (flet ((can-answer-p (other)
-           (and (terminal-p other)
+           (and (session-terminal-p other)
                 (not (eq other session))
                 (not (session-over-p other))
                 (not (session-abandoned-p other)))))
@@ -251,8 +249,8 @@ it asks how it goes on: for those who show what stands still then.")
 of this thread, or all that listen to its simulation, or the newest."
   (let ((own *session*))
     (cond ((and own (eq (session-thread own) (current-thread))) (list own))
-          ((remove-if-not #'terminal-p (sessions-hearing *simulation*)))
-          ((and own (terminal-p own)) (list own)))))
+          ((remove-if-not #'session-terminal-p (sessions-hearing *simulation*)))
+          ((and own (session-terminal-p own)) (list own)))))
 
 (defun others-matter-p ()
   "True if what breaks in this thread is no matter of prompts: it is a user's own, in a Lisp that
@@ -332,7 +330,7 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
 (defun tell-of-inquiry (condition asker)
   "Say, where prompts listen to the simulation, that ASKER asks how to go on after CONDITION."
   (unless (eq 'enter-debugger (common-debugger-hook))
-    (dolist (session (remove-if-not #'terminal-p (sessions-hearing *simulation*)))
+    (dolist (session (remove-if-not #'session-terminal-p (sessions-hearing *simulation*)))
       (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
                               (break-words condition)
                               (words-for-thread session (current-thread))
@@ -363,8 +361,8 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
   "Call FUNCTION, while SESSION is what the debugger asks."
   (let ((outer *session*))
     (setf *session* session
-          (session-thread session) (current-thread))
-    (unwind-protect (call-sharing (if (terminal-p session)
+          (break-state-thread (session-break-state session)) (current-thread))
+    (unwind-protect (call-sharing (if (session-terminal-p session)
                                       'enter-debugger
                                       'debugger-disabled-hook)
                                   (lambda () (call-among-sessions session function)))

@@ -7,14 +7,14 @@
 
 (defun debug-if-wanted (session condition)
   (when (and *break-on-user-error*
-             (terminal-p session)
+             (session-terminal-p session)
              (not (typep condition '(or ars-magna-error storage-condition))))
     (invoke-debugger condition)))
 
 (defun complain-of-printing (session trouble)
   "Say in SESSION that what went wrong cannot be printed, because of TROUBLE. At a terminal no line
 could be typed either: so signal that."
-  (when (terminal-p session) (error trouble))
+  (when (session-terminal-p session) (error trouble))
   (incf (session-errors session))
   (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
                (session-console session)))

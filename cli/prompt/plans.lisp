@@ -113,7 +113,7 @@ message. Prints as TEXT."
 
 ;; Those of a trial are the trial's, and those of commands that a plan, GO-TO or a program gives
 ;; that is told of them are its own.
-(defmethod error-counts-p (message session)
+(defmethod error-counts-p (message (session session))
   (and (null (session-visit session))
        (or (verdict-p (first (message-items message)))
            (not (or (left-to-program-p message)

@@ -24,7 +24,7 @@ SESSION had ERRANDS, and the simulation INBOX."
 tell somebody who sits there."
   (let ((errands (session-errands session)) (inbox (requests-waiting)))
     (do-next session text)
-    (when (and (terminal-p session) (waits-for-time-p session errands inbox))
+    (when (and (session-terminal-p session) (waits-for-time-p session errands inbox))
       (write-fresh (fitted (format nil "Time stands still. RESUME lets it go on, STEP 10 for 10 ~
                                         ticks.~%")
                            (session-console session))
@@ -69,7 +69,8 @@ outline, and the condition that says so."
            (unless (session-breaks session) (find-place session))
            (do-telling-of-time session (begin-next session text trouble)))
           (t (setf (session-over-p session) t
-                   (session-ended-p session) (not (terminal-p session)))))))
+                   (reader-ended-p (session-reader session))
+                   (not (session-terminal-p session)))))))
 
 (defun next-line-inside (session)
   "Do what NEXT-LINE does, where the line under way is still another: nothing is asked for or told
@@ -78,7 +79,7 @@ of on its behalf."
 
 (defun stopped-p (session)
   "True if SESSION stops at an error, and there was one when all was done that it has asked for."
-  (when (session-stop-p session)
+  (when (reader-stop-p (session-reader session))
     (catch-up session)
     (show-messages session)
     (plusp (session-errors session))))
@@ -93,8 +94,8 @@ that it waits, since time stands still."
 
 (defun load-first (session)
   "Load the files that SESSION begins with."
-  (loop while (session-files session)
-        do (let ((file (pop (session-files session))))
+  (loop while (reader-files (session-reader session))
+        do (let ((file (pop (reader-files (session-reader session)))))
              (call-guarded session (lambda () (load-lisp (file-called file))))
              (setf (session-lisp-p session) t))))
 
@@ -105,7 +106,7 @@ that it waits, since time stands still."
         do (call-guarded session (lambda () (next-line session)))
            (call-guarded session (lambda () (show-messages session))))
   (when (session-account session) (call-guarded session (lambda () (account-for-last session))))
-  (unless (or (terminal-p session) (session-next-robot session))
+  (unless (or (session-terminal-p session) (session-next-robot session))
     (tell-of-unended session)))
 
 (defun tell-of-unended (session)
@@ -121,7 +122,7 @@ that it waits, since time stands still."
          (*standard-input* (session-input session))
          (*program-reads* (lambda () (report-asking (session-account session))))
          (*completer* (lambda (text point) (completions-in session text point)))
-         (*waits-while-paused-p* (terminal-p session))
+         (*waits-while-paused-p* (session-terminal-p session))
          (*robot-meant* #'session-robot)
          (*robot-to-drive* #'robot-commanded)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
@@ -131,7 +132,8 @@ that it waits, since time stands still."
   "Read lines and do what they say until QUIT or the end of input. Return SESSION."
   (flet ((run ()
            (unwind-protect (call-with-syntax 'double-float (lambda () (run-lines session))
-                                             (or (session-package session) (user-package)))
+                                             (or (reader-package (session-reader session))
+                                                 (user-package)))
              (stop-listening session))))
     (call-with-debugger session
                         (lambda ()

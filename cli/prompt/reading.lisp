@@ -5,14 +5,14 @@
 (defun without-program (session text)
   "Return TEXT, a line as typed, but an empty one if it says, as the first line of SESSION, what
 program runs a script."
-  (if (and (not (shiftf (session-typed-p session) t))
+  (if (and (not (shiftf (reader-typed-p (session-reader session)) t))
            (starts-with-subseq "#!" text))
       ""
       text))
 
 (defun answer-p (session line)
   "True if LINE, of SESSION, answers a program that has broken: it makes no sense later."
-  (and (or (session-breaks session) (session-debugging session))
+  (and (breaks-awaiting (session-break-state session))
        (not (comment-p line))
        (not (lisp-p line))))
 
@@ -37,12 +37,14 @@ that."
                 (and (unanswered-p console) (string= prompt (console-prompt console))))
       (with-lock ((session-lock session)) (show-prompt console prompt)))
     (catch-up session)
-    (let* ((given (pop (session-lines session)))
+    (let* ((given (pop (reader-lines (session-reader session))))
            (line (or given
                      (and (not (console-trouble console))
                           (read-typed session before)))))
       (with-lock ((session-lock session))
-        (cond ((and line (not (session-batch-p session)) (or given (session-echo-p session)))
+        (cond ((and line
+                    (not (session-batch-p session))
+                    (or given (reader-echo-p (session-reader session))))
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console)))

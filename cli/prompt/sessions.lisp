@@ -50,7 +50,7 @@ lost: others are asked what he cannot answer any more, and told what its run say
 
 (defun asked-of-others-p (session)
   "True if what has broken in the thread of SESSION, which is lost, others can answer."
-  (and (session-debugging session) (heirs-of session) t))
+  (and (break-state-own (session-break-state session)) (heirs-of session) t))
 
 (defun end-session (session)
   "Let SESSION be over, from another thread. A line that is under way is interrupted; one that is

@@ -53,7 +53,7 @@ to say of that."
   (loop with end = (+ (seconds-now) seconds)
         for left = (- end (seconds-now))
         do (answer-others)
-        thereis (or (session-lines session)
+        thereis (or (reader-lines (session-reader session))
                     (typed-within-p (session-input session) (max 0 (min 0.05 left))))
         while (plusp left)))
 
@@ -111,7 +111,7 @@ to say of that."
 
 (defun note-steps (session visit)
   "Say at the terminal of SESSION how many ticks are still to pass in VISIT."
-  (when (terminal-p session)
+  (when (session-terminal-p session)
     (unless (visit-progress visit)
       (setf (visit-progress visit) (make-progress-line (session-console session))))
     (note-progress (visit-progress visit) "Tick ~D, ~D to go. Control-C pauses."

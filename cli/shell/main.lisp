@@ -28,7 +28,7 @@
 begins with are loaded now, as they may define it. Signals USAGE-ERROR if they do not."
   (handler-case (first-robot options)
     (bad-line (condition)
-      (let ((files (shiftf (session-files session) '())))
+      (let ((files (shiftf (reader-files (session-reader session)) '())))
         (cond (files (load-before files)
                      (robot-asked-for session options))
               (t (reject-usage "~A --list lists the worlds and their robots."
@@ -68,10 +68,12 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
                                 :display (or (option-value :window options)
                                              (display-wanted-p session))
          (when (option-value :seed options) (list :seed (option-value :seed options))))
-  (when (terminal-p session) (greet session))
+  (when (session-terminal-p session) (greet session))
   (run-session session)
   ;; Where nobody sits at a terminal, the window is what there is to sit at.
-  (when (and (option-value :window options) (session-ended-p session) *displays-waiter*)
+  (when (and (option-value :window options)
+             (reader-ended-p (session-reader session))
+             *displays-waiter*)
     (funcall *displays-waiter*)))
 
 (defun plan-lines (options)

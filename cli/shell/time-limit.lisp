@@ -68,7 +68,7 @@ time limit of OPTIONS, if any, ends FUNCTION."
   (let* ((calls (make-user-calls)) (*user-calls* calls)
          (ended (make-semaphore "session ended"))
          (thread (current-thread)) (seconds (option-value :time-limit options)))
-    (unless (terminal-p session)
+    (unless (session-terminal-p session)
       (tell-at-once session calls)
       (start-thread (lambda () (watch-for-calls session calls ended)) "watcher of the batch"))
     (when seconds

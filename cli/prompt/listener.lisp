@@ -1,0 +1,155 @@
+;;;; listener.lisp -- who is shown messages, on which console, and what of them.
+
+(in-package :ars-magna.cli)
+
+;;; Messages come as they please (manual E). A plain message continues the line of the prompt; a
+;;; warning or an error starts a fresh one; then the prompt is shown again. What a tick has to say
+;;; is shown together, when the tick is over.
+
+(defstruct (listener (:copier nil))
+  "Who is shown, on a console, what the lines of a session and a simulation have to say."
+  (console (make-console *standard-output*) :type console :read-only t)
+  ;; Somebody sits there.
+  (terminal-p nil :type boolean :read-only t)
+  ;; What comes of the commands that plans and programs give is not shown.
+  (quiet-p nil :type boolean)
+  ;; The tallies of errors, by their text, as in repetition.lisp: any thread tells, so the lock
+  ;; guards them.
+  (told (make-hash-table :test 'equal) :type hash-table :read-only t)
+  (flood (make-flood) :type flood :read-only t)
+  (lock (make-lock "session") :read-only t)
+  ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
+  (simulation nil)
+  (observer nil)
+  ;; The name of the robot that is commanded there.
+  (robot-name nil :type symbol)
+  ;; True if there are messages that somebody will show soon.
+  (news-p nil)
+  (errors 0 :type fixnum)
+  ;; Where it is in what it reads, if somebody wants to know; see reporting.lisp.
+  (account nil :type (or null account) :read-only t)
+  ;; Its user is lost, and has not left it: what he was to answer, others are asked.
+  (abandoned-p nil :type boolean))
+
+;;; Complaints and messages.
+
+(defun complain (listener text)
+  "Show LISTENER TEXT as an error."
+  (incf (listener-errors listener))
+  (let ((account (listener-account listener)) (console (listener-console listener)))
+    (unless (report-trouble account text)
+      (write-fresh (fitted (painted (format nil "*ERROR* -> ~A~%"
+                                            (complaint-text
+                                             (placed-text account text (line-of-trouble account))))
+                                    (ink-of :error) console)
+                           console)
+                   console))))
+
+(defun take-all-messages ()
+  (append (take-messages)
+          (when (and *simulation* (not (eq *message-queue* (simulation-messages *simulation*))))
+            (take-messages (simulation-messages *simulation*)))))
+
+;;; What others than the prompt ask of the robot, such as plans, ends with messages like its own.
+
+(defun left-to-program-p (message)
+  "True if MESSAGE tells how a command ended that a program has given, with a continuation: that is
+told, and may recover from an error."
+  (and (message-robot message)
+       (message-told-p message)
+       (not (line-asker-p (message-asker message)))))
+
+(defun others-p (message)
+  "True if MESSAGE tells how a command ended that a plan or program has given."
+  (let ((asker (message-asker message)))
+    (not (or (null asker) (equal asker +asker+)))))
+
+(defun ink-of (kind)
+  "Return the ink of what is of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, of others' commands."
+  (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
+
+(defun message-ink (message)
+  (ink-of (if (others-p message) :others (message-kind message))))
+
+(defun other-robot (message listener)
+  "Return the name of the robot that MESSAGE tells of, unless LISTENER has to do with that."
+  (let ((own (listener-robot-name listener)) (name (message-robot message)))
+    (and own name (not (eq own name)) name)))
+
+(defun message-words (message listener)
+  "Return what LISTENER is shown of MESSAGE: whose command it tells of, if another robot's; and
+if it is an error or warning in a script, with the place of its line."
+  (let ((text (format nil "~@[~(~A~): ~]~A" (other-robot message listener) (message-text message)))
+        (account (listener-account listener)))
+    (if (member (message-kind message) '(:error :warning))
+        (placed-text account text (line-of-message account message))
+        text)))
+
+(defun write-painted (message listener out)
+  "Write MESSAGE to OUT as the console of LISTENER is to show it."
+  (write-string (painted (visible (with-output-to-string (text)
+                                    (write-message message text (message-words message listener))))
+                         (message-ink message) (listener-console listener))
+                out))
+
+;; As reading 197 says.
+(defun write-messages (messages listener)
+  (let ((console (listener-console listener))
+        (text (with-output-to-string (out)
+                (dolist (message messages) (write-painted message listener out)))))
+    (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
+        (write-after-prompt (fitted text console (console-prompt console)) console)
+        (write-fresh (fitted text console) console))))
+
+(defgeneric error-counts-p (message listener)
+  (:documentation "True if LISTENER counts the error MESSAGE, and not what has caused it."))
+
+(defun counts-p (message listener)
+  "True if MESSAGE is an error that LISTENER counts."
+  (and (eq :error (message-kind message))
+       (error-counts-p message listener)))
+
+(defun told-often-p (message listener)
+  "True if MESSAGE is an error that somebody who sits at LISTENER has been told often."
+  (and (eq :error (message-kind message))
+       (listener-terminal-p listener)
+       (repeated-often-p message (listener-told listener))))
+
+(defun count-error (listener message)
+  "Count the error MESSAGE in LISTENER: if it is of an earlier line, not for the line under way."
+  (let ((account (listener-account listener)))
+    (incf (listener-errors listener))
+    (when (others-error-p account message)
+      (incf (account-errors account))
+      (note-error-of-line account (line-of-message account message)))))
+
+(defun messages-for (listener messages)
+  "Count the errors among MESSAGES, and return those that LISTENER is to show."
+  (dolist (message messages)
+    (when (counts-p message listener) (count-error listener message)))
+  (remove-if (lambda (message) (told-often-p message listener))
+             (if (listener-quiet-p listener) (remove-if #'others-p messages) messages)))
+
+(defun texts-about (listener messages)
+  "Return what is to be said in LISTENER of MESSAGES, which have been shown there: that some come
+again and again, or are very many."
+  (remove nil (append (loop for message in messages
+                            collect (repetition-text message (listener-told listener)))
+                      (and (listener-terminal-p listener)
+                           (list (flood-text (listener-flood listener)
+                                             (count-if #'others-p messages)))))))
+
+(defun tell-messages (listener messages)
+  "Show MESSAGES in LISTENER, and the prompt again."
+  (with-lock ((listener-lock listener))
+    (setf (listener-news-p listener) nil)
+    (let ((console (listener-console listener))
+          (messages (messages-for listener messages)))
+      (when (and messages (not flush-all-errors*))
+        (printing-words ()
+          (or (report-messages (listener-account listener) messages)
+              (write-messages messages listener)))
+        (dolist (text (texts-about listener messages))
+          (write-fresh (fitted text console) console)))
+      (restore-prompt console)
+      (finish-output console))))
