@@ -274,7 +274,7 @@
       :components ((:file "keyboard") (:file "process") (:file "telling") (:file "input")
                    (:file "handed-octets")
                    (:file "escapes") (:file "columns") (:file "drawn-line") (:file "console")
-                   (:file "asking") (:file "progress") (:file "json") (:file "layout")))
+                   (:file "screen") (:file "asking") (:file "progress") (:file "json") (:file "layout")))
      (:module "editing" :serial t
       :components ((:file "keys") (:file "changes") (:file "growing") (:file "history")
                    (:file "kinds-of-lines") (:file "pasting")

@@ -104,10 +104,8 @@
   "Let VISIT pause at its next tick, and what has been interrupted go on by RESTART."
   (pause-visit visit)
   (setf (visit-interrupted-p visit) t)
-  (write-fresh (fitted (format nil "Interrupted: the trial pauses at its next tick. Control-C ~
-                                    leaves it.~%")
-                       (session-console session))
-               (session-console session))
+  (write-fitted (session-console session)
+                "Interrupted: the trial pauses at its next tick. Control-C leaves it.~%")
   (finish-output (session-console session))
   (invoke-restart restart))
 

@@ -37,7 +37,7 @@
   "Show what has happened, and let the prompt that stands be the debugger's."
   (let ((console (session-console session)))
     (setf (breakage-told-p breakage) t)
-    (write-fresh (fitted (break-text session breakage) console) console)
+    (write-fitted console "~A" (break-text session breakage))
     (if (console-prompt console)
         (show-prompt console "Break> ")
         (finish-output console))))
@@ -45,14 +45,11 @@
 (defun tell-waiting (session breakage)
   "Show that BREAKAGE has come while another is being answered."
   (let ((console (session-console session)))
-    (write-fresh (fitted (format nil "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the one before is ~
-                                      answered.~%"
-                                 (break-words (breakage-condition breakage))
-                                 (whereabouts session breakage))
-                         console)
-                 console)
-    (restore-prompt console)
-    (finish-output console)))
+    (write-fitted console
+                  "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the one before is answered.~%"
+                  (break-words (breakage-condition breakage))
+                  (whereabouts session breakage))
+    (restore-prompt console)))
 
 (defun break-line (session breakage)
   "Return on one line what has broken and where, if not in the thread of SESSION."

@@ -70,9 +70,8 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
   "Show TEXT, a line, in SESSION, and the prompt again. Any thread may ask."
   (with-lock ((session-lock session))
     (let ((console (session-console session)))
-      (write-fresh (fitted text console) console)
-      (restore-prompt console)
-      (finish-output console))))
+      (write-fitted console "~A" text)
+      (restore-prompt console))))
 
 (defun tell-others (session simulation text)
   "Show TEXT, a line about what SESSION has done to SIMULATION, in the other sessions there."

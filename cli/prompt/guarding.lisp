@@ -93,10 +93,7 @@ Users' code that keeps the simulator waiting is aborted, too."
   (when *simulation* (abort-hog *simulation*))
   (let ((console (session-console session)) (dropped (drop-waiting (session-input session))))
     (answered console)
-    (write-fresh (fitted (format nil "Interrupted.~A~A~%" (dropped-text dropped)
-                                 (what-goes-on session))
-                         console)
-                 console)))
+    (write-fitted console "Interrupted.~A~A~%" (dropped-text dropped) (what-goes-on session))))
 
 (defun call-guarded (session function)
   "Call FUNCTION, which may be interrupted; complain of what goes wrong in it."

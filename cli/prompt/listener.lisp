@@ -38,12 +38,11 @@
   (incf (listener-errors listener))
   (let ((account (listener-account listener)) (console (listener-console listener)))
     (unless (report-trouble account text)
-      (write-fresh (fitted (painted (format nil "*ERROR* -> ~A~%"
-                                            (complaint-text
-                                             (placed-text account text (line-of-trouble account))))
-                                    (ink-of :error) console)
-                           console)
-                   console))))
+      (write-fitted console "~A"
+                    (painted (format nil "*ERROR* -> ~A~%"
+                                     (complaint-text
+                                      (placed-text account text (line-of-trouble account))))
+                             (ink-of :error) console)))))
 
 (defun take-all-messages ()
   (append (take-messages)
@@ -99,7 +98,7 @@ if it is an error or warning in a script, with the place of its line."
                 (dolist (message messages) (write-painted message listener out)))))
     (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
         (write-after-prompt (fitted text console (console-prompt console)) console)
-        (write-fresh (fitted text console) console))))
+        (write-fitted console "~A" text))))
 
 (defgeneric error-counts-p (message listener)
   (:documentation "True if LISTENER counts the error MESSAGE, and not what has caused it."))
@@ -150,6 +149,5 @@ again and again, or are very many."
           (or (report-messages (listener-account listener) messages)
               (write-messages messages listener)))
         (dolist (text (texts-about listener messages))
-          (write-fresh (fitted text console) console)))
-      (restore-prompt console)
-      (finish-output console))))
+          (write-fitted console "~A" text)))
+      (restore-prompt console))))

@@ -25,10 +25,8 @@ tell somebody who sits there."
   (let ((errands (session-errands session)) (inbox (requests-waiting)))
     (do-next session text)
     (when (and (session-terminal-p session) (waits-for-time-p session errands inbox))
-      (write-fresh (fitted (format nil "Time stands still. RESUME lets it go on, STEP 10 for 10 ~
-                                        ticks.~%")
-                           (session-console session))
-                   (session-console session)))))
+      (write-fitted (session-console session)
+                    "Time stands still. RESUME lets it go on, STEP 10 for 10 ticks.~%"))))
 
 (defun begin-line-of (session text)
   "Note that TEXT, which SESSION has read last, is about to be done."

@@ -1,4 +1,4 @@
-;;;; session.lisp -- one run of the prompt: where it reads and writes, and what it shows when.
+;;;; session.lisp -- one run of the prompt: what it reads, shows and asks, and what it is at.
 
 (in-package :ars-magna.cli)
 

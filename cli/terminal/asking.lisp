@@ -8,10 +8,7 @@
   (:documentation "Let the user of CONSOLE know that a program reads what he types next.")
   (:method ((console console))
     (unless (shiftf (console-asking-told-p console) t)
-      (write-fresh (fitted (format nil "A program waits for your answer; control-C ends the ~
-                                        program.~%")
-                           console)
-                   console))
+      (write-fitted console "A program waits for your answer; control-C ends the program.~%"))
     (finish-output console)))
 
 (defun call-asking (console function)

@@ -275,6 +275,10 @@ broken between words.")
         (broken-text text (1- (funcall (console-window console))) (text-columns label))
         text)))
 
+(defun write-fitted (console control &rest arguments)
+  "Write what is formatted from CONTROL and ARGUMENTS as WRITE-FRESH does, FITTED to CONSOLE."
+  (write-fresh (fitted (apply #'format nil control arguments) console) console))
+
 (defmethod stream-write-char ((console console) char)
   (stream-write-string console (string char))
   char)
@@ -322,9 +326,10 @@ broken between words.")
   (and (console-prompt console) (console-overwritten-p console)))
 
 (defun restore-prompt (console)
-  "Show the prompt that stands again if something was written after it."
+  "Show the prompt that stands again if something was written after it, and all that was written."
   (when (spoilt-p console)
-    (show-prompt console (console-prompt console))))
+    (show-prompt console (console-prompt console)))
+  (finish-output console))
 
 (defun answered (console)
   "Note that the user has ended the line of the prompt."
@@ -338,39 +343,3 @@ broken between words.")
       (change-line console (lambda (line) (setf (drawn-line-text line) text)))
       (format console "~A~%" text))
   (answered console))
-
-;;; A screen of its own.
-
-(defun write-at-once (text console)
-  "Write TEXT to what is below CONSOLE, whether or not that holds back what is written to it."
-  (with-console (stream console)
-    (write-string text stream)
-    (finish-output stream)))
-
-(defun last-held-back (console)
-  "Return the last line that CONSOLE holds back, without colours, or an empty string."
-  (let* ((text (find-if (lambda (string) (find #\Newline string :test #'char/=))
-                        (console-held-back console)))
-         (text (string-right-trim '(#\Newline) (unpainted-text (or text "")))))
-    (subseq text (1+ (or (position #\Newline text :from-end t) -1)))))
-
-(defun begin-screen (console)
-  (setf (console-held-back-p console) t)
-  (write-at-once (screen-begun) console))
-
-(defun end-screen (console)
-  (write-at-once (screen-ended) console)
-  (with-console (stream console)
-    (setf (console-held-back-p console) nil)
-    (dolist (string (reverse (shiftf (console-held-back console) '())))
-      (put-string string console stream))
-    (finish-output stream)))
-
-(defun call-with-screen (function console)
-  "Call FUNCTION while CONSOLE, on a terminal that hands over keys, shows a screen that is written
-over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwards."
-  (call-holding-interrupts
-   (lambda ()
-     (begin-screen console)
-     (unwind-protect (call-open-to-interrupts function)
-       (end-screen console)))))
