@@ -310,8 +310,7 @@
                    (:file "help") (:file "subjects") (:file "topics") (:file "help-lines")
                    (:file "rewind-line") (:file "picture-lines") (:file "film-line")
                    (:file "window-lines") (:file "trial-lines")
-                   (:file "fork-line") (:file "import-line")
-                   (:file "export-line")))
+                   (:file "fork-line") (:file "map-file-lines")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "texts") (:file "report") (:file "experiments")
                    (:file "executable") (:file "spreading") (:file "experiment-command")

@@ -266,6 +266,13 @@ describes a slot."
                             (search "(code-char 27)" text :test #'char-equal))
                      collect (enough-namestring path (project-file ""))))))
 
+(test prompt.sets-nothing-at-load-but-the-front-end
+  "What asks people has methods for the prompts, which are the front end."
+  (dolist (path (lisp-files "cli/"))
+    (dolist (line (uiop:split-string (code-in path) :separator '(#\Newline)))
+      (is (or (not (begins-with-p "(setf *" line)) (begins-with-p "(setf *front-end*" line))
+          "~A: ~A" path line))))
+
 (test cli.alone-ends-the-process
   ;; One refuses to.
   (is (equal '("src/base/exits.lisp")

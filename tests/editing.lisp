@@ -210,6 +210,15 @@ name in *KEY-CODES*."
     (is (= 1 (listings "cam" :tab :tab :tab :enter)))
     (is (= 2 (listings "cam" :tab "x" :rubout :tab :enter)))))
 
+(test tab.completes-nothing-that-a-program-reads
+  (let ((cli::*completer* (lambda (text point)
+                            (declare (ignore text point))
+                            (values 0 '("camera") " ")))
+        (cli::*program-reads* (constantly nil)))
+    (is (equal "cam" (read-line (typed-text-for (keyboard-for '("cam" :tab :enter))
+                                                (terminal-console))
+                                nil)))))
+
 ;;; Control C and D.
 
 (defun interrupted-p (keys &rest options)

@@ -66,9 +66,7 @@ few."
                            (end-errand errand code)))))
     (push errand (session-errands session))))
 
-(defmethod choices ((type (eql :manipulation)) session typed)
-  (declare (ignore session typed))
-  (mapcar #'manipulation-name (all-manipulations)))
+(define-choices :manipulation (mapcar #'manipulation-name (all-manipulations)))
 
 (define-line "MANIPULATE" (session (name :manipulation "a manipulation" :optional)
                                    (args :rest "numbers of designators, then of the hand or so"

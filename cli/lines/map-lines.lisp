@@ -81,9 +81,7 @@ LINES-BELOW lines."
                                     :paint (and (console-colored-p console) #'paint)
                                     options)))))))
 
-(defmethod choices ((type (eql :map-words)) session typed)
-  (declare (ignore session typed))
-  (mapcar #'string-downcase *map-words*))
+(define-choices :map-words (mapcar #'string-downcase *map-words*))
 
 (define-line "MAP" (session (what :map-words
                                   "a radius or LEFT TOP RIGHT BOTTOM; CONES WAY PLAN BELIEF LEGEND"

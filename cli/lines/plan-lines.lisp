@@ -31,9 +31,7 @@ package; NIL if there is none."
                         candidates))
           (t (plan-called (string (first candidates)))))))
 
-(defmethod choices ((type (eql :plan)) session typed)
-  (declare (ignore session typed))
-  (plan-names))
+(define-choices :plan (plan-names))
 
 ;;; What plans take.
 

@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(defmethod choices ((type (eql :task-number)) session typed)
-  (declare (ignore session typed))
+(define-choices :task-number
   (call-with-plans-in-use
    (lambda (runner) (and runner (mapcar #'task-serial (all-tasks runner))))))
 

@@ -12,48 +12,25 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
       (loop for index below (length (parts-of-kind (session-robot) type))
             collect index))))
 
+(defmacro define-choices (type form)
+  "Let the value of FORM be what can be typed for an argument of TYPE, whatever is typed already."
+  `(defmethod choices ((type (eql ,type)) session typed)
+     (declare (ignore session typed))
+     ,form))
+
 (defun designator-numbers ()
   (mapcar #'designator-number (live-designators (session-robot))))
 
-(defmethod choices ((type (eql :designator)) session typed)
-  (declare (ignore session typed))
-  (designator-numbers))
-
-(defmethod choices ((type (eql :destination)) session typed)
-  (declare (ignore session typed))
-  (designator-numbers))
-
-(defmethod choices ((type (eql :designator-type)) session typed)
-  (declare (ignore session typed))
-  '(local non-local))
-
-(defmethod choices ((type (eql :odometer-part)) session typed)
-  (declare (ignore session typed))
-  '(:pos :ang))
-
-(defmethod choices ((type (eql :place-type)) session typed)
-  (declare (ignore session typed))
-  (mapcar #'place-type-name (all-place-types)))
-
-(defmethod choices ((type (eql :rate)) session typed)
-  (declare (ignore session typed))
-  '(free))
-
-(defmethod choices ((type (eql :parameter)) session typed)
-  (declare (ignore session typed))
-  (mapcar #'parameter-name (all-parameters)))
-
-(defmethod choices ((type (eql :switch)) session typed)
-  (declare (ignore session typed))
-  '(on off))
-
-(defmethod choices ((type (eql :off)) session typed)
-  (declare (ignore session typed))
-  '(off))
-
-(defmethod choices ((type (eql :experiment)) session typed)
-  (declare (ignore session typed))
-  (append (mapcar #'experiment-name (all-experiments)) '(off)))
+(define-choices :designator (designator-numbers))
+(define-choices :destination (designator-numbers))
+(define-choices :designator-type '(local non-local))
+(define-choices :odometer-part '(:pos :ang))
+(define-choices :place-type (mapcar #'place-type-name (all-place-types)))
+(define-choices :rate '(free))
+(define-choices :parameter (mapcar #'parameter-name (all-parameters)))
+(define-choices :switch '(on off))
+(define-choices :off '(off))
+(define-choices :experiment (append (mapcar #'experiment-name (all-experiments)) '(off)))
 
 ;;; Worlds and robots.
 
@@ -62,13 +39,8 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
           (remove-if-not (lambda (file) (or (ends-like-p file "/") (ends-like-p file ".lisp")))
                          (choices :file session typed))))
 
-(defmethod choices ((type (eql :robot-name)) session typed)
-  (declare (ignore session typed))
-  (robot-names))
-
-(defmethod choices ((type (eql :robot-here)) session typed)
-  (declare (ignore session typed))
-  (robots-here))
+(define-choices :robot-name (robot-names))
+(define-choices :robot-here (robots-here))
 
 ;;; Files.
 

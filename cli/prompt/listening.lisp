@@ -68,12 +68,9 @@ and those that listen to its run; or if there is none, SESSION."
 (defun session-of-thread ()
   (find (current-thread) (with-lock (*sessions-lock*) *sessions*) :key #'session-thread))
 
-(defun consoles-beside (console)
-  "Return the other consoles that show what this thread writes to CONSOLE."
+(defmethod mirrors-of ((console console))
   (when (and *simulation* (rest *sessions*) (not (session-of-thread)))
     (remove console (mapcar #'session-console (sessions-hearing *simulation*)))))
-
-(setf *mirrors* 'consoles-beside)
 
 (defvar *showing-p* nil
   "True while this thread shows messages; what the showing itself reports is left for later.")

@@ -239,15 +239,15 @@ below.")
   (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
   (put-string text console stream))
 
-;; What knows of several consoles at once sets it.
-(defvar *mirrors* (constantly '())
-  "A function of a console that returns others which show what this thread writes to it.")
+(defgeneric mirrors-of (console)
+  (:documentation "Return the other consoles that show what this thread writes to CONSOLE."))
+
+(defvar *in-mirrors-p* nil "True while what was written to a console is written to its mirrors.")
 
 (defun call-with-mirrors (function console)
   "Call FUNCTION with each of the consoles that show what this thread writes to CONSOLE."
-  (let ((mirrors (funcall *mirrors* console)))
-    (when mirrors
-      (let ((*mirrors* (constantly '()))) (mapc function mirrors)))))
+  (unless *in-mirrors-p*
+    (let ((*in-mirrors-p* t)) (mapc function (mirrors-of console)))))
 
 (defmethod stream-write-string ((console console) string &optional (start 0) end)
   (with-console (stream console)

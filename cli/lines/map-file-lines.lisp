@@ -1,4 +1,4 @@
-;;;; import-line.lisp -- IMPORT: a map from elsewhere, as robots make them that drive about.
+;;;; map-file-lines.lisp -- IMPORT and EXPORT: maps as robots make and read them that drive about.
 
 (in-package :ars-magna.cli)
 
@@ -23,3 +23,12 @@
 like FILE. In the simulator a cell is a metre wide, whatever it was on the floor: GO 5 m drives
 through five."
   (multiple-value-call #'tell-imported (import-map file)))
+
+(define-line "EXPORT" (session (file :file "a name that ends in .yaml"))
+    (:seeing)
+  "Write the walls of the map that the robot is in into FILE, an occupancy grid as ROS's map_server
+keeps them, and beside it an image in PGM. A pair that is there is replaced, other files are not.
+IMPORT reads them."
+  (multiple-value-bind (description image)
+      (export-map (world-map (robot-world (session-robot))) file)
+    (format t "~A~%~A~%" (native-name description) (native-name image))))
