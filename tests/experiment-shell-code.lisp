@@ -62,6 +62,26 @@
       (is-true (has-words-p (said-by (lambda () (go-on "7")))
                             "Trial 1 " "its ticks is 3, and 4 in the table")))))
 
+;;; Directories whose text was edited.
+
+(defun errors-at-a-shell (&rest arguments)
+  "Return what ./cli/ars-magna called with ARGUMENTS writes to the error output."
+  (nth-value 1 (uiop:run-program (cons (base:native-name (project-file "cli/ars-magna")) arguments)
+                                 :error-output :string)))
+
+(test directories.with-an-edited-text-are-told-of-at-a-shell
+  (in-place
+    (errors-at-a-shell "experiment" (placed "a stroll.lisp") "--trials" "2" "--out" (placed "out"))
+    (flet ((told-p (&rest arguments)
+             (write-file "out/experiment.txt" "The experiment stroll.~%Check sum: 00000000~%")
+             (has-words-p (apply #'errors-at-a-shell arguments)
+                          "experiment.txt is damaged or has been changed")))
+      (is-true (told-p "merge" (placed "out") "--out" (placed "all")))
+      (is-true (told-p "compare" "1" "2" (placed "out")))
+      (is-true (told-p "compare" "--by" "motion-noise*" (placed "out")))
+      (is-true (told-p "experiment" (placed "a stroll.lisp") "--trials" "2" "--quiet"
+                       "--out" (placed "out"))))))
+
 ;;; Shards without trials, and directories of other code.
 
 (test shards.without-trials-say-so

@@ -25,4 +25,6 @@ returns the status to exit with. What it does is said in usage-NAME.txt.")
 (defun run-command-called (name arguments)
   "Do the command NAME with ARGUMENTS. Return the status to exit with."
   (let ((command (find-command-called name)) (*error-output* (text-output 2)))
-    (funcall (second command) arguments)))
+    (unwind-protect (funcall (second command) arguments)
+      ;; What Lisp itself writes there, such as warnings, stays in the stream until then.
+      (ignore-errors (finish-output *error-output*)))))
