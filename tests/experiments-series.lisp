@@ -160,6 +160,14 @@
                                          (c (robot:robot-x ars-worlds:dot))))))
         (is-false (probe-file (series-path plain)))))))
 
+(test each-tick.rolls-other-dice-than-run
+  (let ((series (recorded-in '(:run (setf (get '*walk-phase* 'rolled)
+                                     (loop repeat 3 collect (random 1000)))
+                               (run:run-ticks 2) t)
+                             '(:each-tick (r (random 1000)) (s (random 1000)) (u (random 1000))))))
+    (is (= 3 (length series)))
+    (is (not (member (get '*walk-phase* 'rolled) series :key #'rest :test #'equal)))))
+
 (test each-tick.rolls-otherwise-at-each-tick
   (dolist (form '((random 1000000) (base:roll-between 0 1 (world:world-dice world:*world* :user))))
     (is (= 21 (length (remove-duplicates

@@ -37,7 +37,8 @@ then as before."
 
 (defun call-rolling-apart (function sampler tick world)
   "Call FUNCTION, which is to roll neither the dice of WORLD nor those of the trial's programs."
-  (reseed-lisps-dice (+ (result-seed (sampler-result sampler)) (ash tick 32))
+  ;; The seed alone is that of the trial's programs.
+  (reseed-lisps-dice (+ (result-seed (sampler-result sampler)) (ash (1+ tick) 32))
                      (sampler-dice sampler))
   (rolling ((sampler-dice sampler))
     (call-with-other-dice function tick world)))
