@@ -198,15 +198,63 @@
   (with-question-data ((question-table :first 'question-plan))
     (is-true (changes (rpl:def-interp-proc question-plan () (rpl:wait-time 2))))))
 
+(defun refusal-of-trials (data form)
+  "Return what is said when trials have evaluated FORM, a list, with DATA in *QUESTION-DATA*; NIL if
+nothing is."
+  (with-question-data (data)
+    (eval `(experiment:defexperiment question (:robots ars-worlds:dot) (:run ,form)))
+    (handler-case (progn (experiment:run-experiment 'question :trials 3 :workers 1 :stream nil)
+                         nil)
+      (base:misuse (condition) (princ-to-string condition)))))
+
 (test tables.that-trials-fill-are-noticed
   "What one trial leaves in a global table another finds: the rows are not those of seeds."
-  (with-question-data ((make-hash-table))
-    (define-reaching (setf (gethash (hash-table-count *question-data*) *question-data*) t))
-    (handler-case (progn (experiment:run-experiment 'question :trials 3 :workers 1 :stream nil)
-                         (fail "it was not"))
-      (base:misuse (condition)
-        (is (search "*question-data*" (princ-to-string condition)))
-        (is (search "give each its own" (princ-to-string condition)))))))
+  (is-true (has-words-p (refusal-of-trials (make-hash-table)
+                                           '(setf (gethash (hash-table-count *question-data*)
+                                                           *question-data*) t))
+                        "*question-data*" "give each its own")))
+
+;;; What is held weakly may go at any time: that is no change, but what trials add there is one.
+
+(test weak-tables.that-trials-fill-are-noticed
+  (dolist (weakness '(:key :value :key-and-value :key-or-value))
+    (dolist (data (list (make-hash-table :weakness weakness)
+                        (list (make-hash-table :weakness weakness))))
+      (is-true (has-words-p (refusal-of-trials
+                             ;; Nothing lets go of the value.
+                             data '(setf (gethash 'x (first (base:ensure-list *question-data*)))
+                                    'some-value))
+                            "*question-data*" "give each its own")))))
+
+(test weak-tables.may-lose-what-they-have
+  (dolist (weakness '(:key :value :key-and-value))
+    (let ((table (make-hash-table :weakness weakness)))
+      (setf (gethash 'y table) 1)
+      (is (null (refusal-of-trials table '(or (remhash 'y *question-data*) t)))))))
+
+(test weak-tables.may-have-keys-that-trials-have-made
+  (is (null (refusal-of-trials (make-hash-table :weakness :key :test 'equal)
+                               '(let ((key (make-question-record)))
+                                 (setf (gethash key *question-data*) key
+                                  (gethash (make-symbol "KEY") *question-data*) 1))))))
+
+(test weak-pointers.do-not-hide-what-trials-change
+  (let ((data (list 1)))
+    (is-true (has-words-p (refusal-of-trials
+                           (base:make-weak data)
+                           '(incf (first (sb-ext:weak-pointer-value *question-data*))))
+                          "*question-data*"))
+    (is (equal '(4) data))))
+
+(define-condition question-condition (error)
+  ((count :initform 0 :accessor question-condition-count)
+   (unbound :reader question-condition-unbound)))
+
+(test conditions.that-trials-change-are-noticed
+  (is-true (has-words-p (refusal-of-trials (make-condition 'question-condition)
+                                           '(incf (question-condition-count *question-data*)))
+                        "*question-data*"))
+  (is (null (refusal-of-trials (make-condition 'question-condition) '(list *question-data*)))))
 
 (test rows.that-were-refused-stay-so
   (with-directories (directory other)

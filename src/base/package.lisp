@@ -85,7 +85,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   ;; exits
   (:export #:call-refusing-exits #:refuse-exits #:call-allowing-exits)
   ;; threads
-  (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
+  (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value #:weak-pointer-p
            #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:wait-a-while #:wait-patiently #:call-when-free
            #:*leaving-p* #:call-when-leaving

@@ -9,3 +9,7 @@
 (defun weak-value (weak)
   "Return the object that WEAK, which MAKE-WEAK has returned, leads to, or NIL if it is gone."
   (values (sb-ext:weak-pointer-value weak)))
+
+(defun weak-pointer-p (object)
+  "True if OBJECT is what MAKE-WEAK returns, whoever has made it."
+  (sb-ext:weak-pointer-p object))

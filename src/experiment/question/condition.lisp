@@ -32,7 +32,9 @@
   ;; What decides its trials, as far as that has been looked up.
   (fingerprint nil :type (or null string))
   ;; Lists (symbol value): users' special variables that its trials can reach, and their values.
-  (variables '() :type list))
+  (variables '() :type list)
+  ;; Parts, as of a fingerprint, for what these hold weakly: the keys of a table.
+  (weak-parts (make-hash-table :test 'equal) :type hash-table))
 
 (document-functions
   condition-name "Return what the condition is called, a string."

@@ -77,9 +77,14 @@ least one is tried, and others as long as less than SECONDS have passed."
   "Signal MISUSE if the fingerprints of EXPERIMENT, of PARTS, are no longer what they were."
   (loop for condition in (experiment-conditions experiment)
         for before in parts
+        for weak = (condition-weak-parts condition)
         for now = (prepare-condition experiment condition)
-        unless (equal before now)
-          do (call-noting-refusal (lambda () (reject-changed before now directory)) directory)))
+        for added = (loop for part being the hash-keys of (condition-weak-parts condition)
+                          unless (gethash part weak) collect part)
+        unless (and (equal before now) (null added))
+          do (call-noting-refusal (lambda ()
+                                    (reject-changed before (append added now) directory))
+                                  directory)))
 
 (defun reject-changed (before now directory)
   "Signal MISUSE: the parts BEFORE of what decides the rows in DIRECTORY are NOW others."

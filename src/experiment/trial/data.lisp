@@ -12,17 +12,17 @@
 (defconstant +most-elements+ 20000000 "How many elements of arrays data have.")
 
 (defun plain-structure-p (value)
-  "True if VALUE is of a user's DEFSTRUCT; not a fluent, thing or the like."
-  (and (typep value 'structure-object)
+  "True if VALUE is of a user's DEFSTRUCT or DEFINE-CONDITION; not a fluent, thing or the like."
+  (and (typep value '(or structure-object condition))
        (null (kind-of value))
        (users-symbol-p (type-of value))))
 
 (defun structure-values (structure)
-  "Return what the slots of STRUCTURE hold, a list."
+  "Return what the slots of STRUCTURE hold, a list; of a condition, those that are bound."
   (loop for slot in (class-slot-names (class-of structure))
-        collect (slot-value structure slot)))
+        when (slot-boundp structure slot) collect (slot-value structure slot)))
 
-;; What is in a weak table depends on when memory is tidied.
+;; What is in a weak table depends on when garbage is collected. See WEAK-NUMBERS.
 (defun lasting-table-p (value)
   (and (hash-table-p value) (not (weak-table-p value))))
 
@@ -84,7 +84,8 @@ PATH are the compound parts that it is in, by how deep they are."
              (etypecase value
                (array (walk-array value depth walk))
                (hash-table (walk-table value depth walk))
-               (structure-object (mark-text (prin1-to-string (type-of value)) walk)
+               ((or structure-object condition)
+                (mark-text (prin1-to-string (type-of value)) walk)
                 (dolist (part (structure-values value)) (walk-value part (1+ depth) walk))))
              (remhash value (walk-path walk))))))
 
@@ -112,15 +113,18 @@ PATH are the compound parts that it is in, by how deep they are."
 (defun walk-table (table depth walk)
   "Enter the hash TABLE into WALK, the same whatever was entered into it first."
   (mark-text (prin1-to-string (hash-table-test table)) walk)
+  (dolist (number (sort (entry-numbers table depth walk) #'<)) (mark-word number walk)))
+
+(defun entry-numbers (table depth walk &optional (test (constantly t)))
+  "Return a list of a number for each entry of the hash TABLE whose key TEST is true of."
   (let* ((digest (walk-digest walk)) (before (digest-value digest)))
-    (mapc (lambda (number) (mark-word number walk))
-          (prog1 (sort (loop for key being the hash-keys of table using (hash-value value)
-                             do (setf (digest-value digest) 0)
-                                (walk-value key (1+ depth) walk)
-                                (walk-value value (1+ depth) walk)
-                             collect (digest-value digest))
-                       #'<)
-            (setf (digest-value digest) before)))))
+    (prog1 (loop for key being the hash-keys of table using (hash-value value)
+                 when (funcall test key)
+                   do (setf (digest-value digest) 0)
+                      (walk-value key (1+ depth) walk)
+                      (walk-value value (1+ depth) walk)
+                   and collect (digest-value digest))
+      (setf (digest-value digest) before))))
 
 ;;; What is known of a value.
 
@@ -135,6 +139,34 @@ it is too large."
 (defun data-number (value)
   "Return a number for VALUE as it is, with the packages of names; NIL if it is too large."
   (call-walking value #'identity))
+
+;;; What is held weakly may be gone at any time, so it is no data. But what a trial adds there,
+;;; another trial may find. Under a key that was made in the trial, no other finds anything.
+
+(defun weak-p (object)
+  "True if OBJECT is a weak hash table or a weak pointer."
+  (or (weak-pointer-p object)
+      (and (hash-table-p object) (weak-table-p object))))
+
+(defun lasting-key-p (key table)
+  "True if an object made elsewhere may be the same key of the hash TABLE as KEY."
+  (typecase key
+    (symbol (symbol-package key))
+    ((or string cons) (and (not (member (hash-table-test table) '(eq eql))) (value-p key)))
+    (t (value-p key))))
+
+(defun weak-numbers (object atom)
+  "Return a list of numbers for what OBJECT, which is weak, holds now. ATOM is called as by
+CALL-WALKING."
+  (if (weak-pointer-p object)
+      (let ((target (weak-value object)))
+        (and target (list (call-walking target atom))))
+      (let ((walk (make-walk (make-digest) atom)))
+        (catch 'too-large
+          (call-in-peace (lambda ()
+                           (entry-numbers object 0 walk
+                                          (lambda (key) (lasting-key-p key object))))
+                         (find-package :keyword))))))
 
 (defun no-data-p (value)
   "True if VALUE is NIL or an empty hash table, as often stands where data are to be kept later; or

@@ -116,7 +116,8 @@ reach."
   "Give CONDITION what its trials need of REACH, what they can reach."
   (setf (condition-variables condition)
         (loop for symbol in (reach-variables reach)
-              collect (list symbol (global-value symbol)))))
+              collect (list symbol (global-value symbol)))
+        (condition-weak-parts condition) (reach-weak-parts reach)))
 
 (defun look-up-fingerprint (experiment condition)
   "Give CONDITION of EXPERIMENT its fingerprint, and what else its trials need. Return the parts of

@@ -10,11 +10,12 @@
 
 (defstruct (reach (:constructor make-reach ()) (:copier nil))
   "What has been reached: definitions, lists (kind name number); the files that it is from; special
-variables."
+variables; such lists for what variables hold weakly."
   (seen (make-hash-table :test 'eq) :read-only t)
   (parts '() :type list)
   (files '() :type list)
-  (variables '() :type list))
+  (variables '() :type list)
+  (weak-parts (make-hash-table :test 'equal) :read-only t))
 
 (defun note-part (kind name number reach)
   (pushnew (list kind name number) (reach-parts reach) :test #'equal))
@@ -55,17 +56,26 @@ variables."
 (defun has-global-value-p (symbol)
   (ignore-errors (global-value symbol) t))
 
+(defun note-weak (object symbol reach)
+  "Note what OBJECT, which is in the value of the variable SYMBOL, holds if it is weak."
+  (when (and (weak-p object) (not (gethash object (reach-seen reach))))
+    (setf (gethash object (reach-seen reach)) t)
+    (dolist (number (weak-numbers object (lambda (atom) (note-weak atom symbol reach))))
+      (setf (gethash (list :variable (qualified symbol) number) (reach-weak-parts reach)) t))))
+
 (defun visit-variable (symbol reach)
   "Visit the variable SYMBOL and what is in its value, which is a part if it is data. NIL and an
 empty table count as no data, since they often stand where a table or structure is filled later."
   (unless (eq :global (variable-kind symbol)) (push symbol (reach-variables reach)))
   (let ((value (global-value symbol)))
-    (if (no-data-p value)
-        (when (functionp value) (visit-function value symbol reach))
-        (let ((number (call-walking value (lambda (atom)
-                                            (when (typep atom '(or symbol function))
-                                              (visit atom reach))))))
-          (when number (note-part :variable (qualified symbol) number reach))))))
+    (flet ((visit-atom (atom)
+             (if (typep atom '(or symbol function))
+                 (visit atom reach)
+                 (note-weak atom symbol reach))))
+      (cond ((functionp value) (visit-function value symbol reach))
+            ((no-data-p value) (note-weak value symbol reach))
+            (t (let ((number (call-walking value #'visit-atom)))
+                 (when number (note-part :variable (qualified symbol) number reach))))))))
 
 (defun used-as-variable-p (symbol)
   "True if SYMBOL is a variable, perhaps one that was set and never declared."
