@@ -70,7 +70,8 @@
                                       (1/8 t "12.5 %") (1 t "100 %") (nil nil "-")
                                       (99999 nil "100000") (1.5d9 nil "1.5e9")
                                       (9999999 nil "1e7") (-2d-7 nil "-2e-7") (1d308 nil "1e308")
-                                      (2d-308 nil "2e-308") (-1/100000000 t "-1e-6 %"))
+                                      (2d-308 nil "2e-308") (5d-324 nil "4.941e-324")
+                                      (-1d-323 nil "-9.881e-324") (-1/100000000 t "-1e-6 %"))
         do (is (string= text (plots:figure-text value :percent percent)) "~S" value)))
 
 (defun axis-marks-of (&rest points)

@@ -10,7 +10,11 @@
 WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
                   "a number that is not infinite, or NIL if there is none")
-  (and value (rationalize value)))
+  (and value (if (denormalized-p value) (rational value) (rationalize value))))
+
+;; Of these SBCL's RATIONALIZE returns numbers that are other floats.
+(defun denormalized-p (value)
+  (and (floatp value) (< (float-precision value) (float-digits value))))
 
 (defun power-of-ten (value)
   "Return the greatest integer N for which 10^N is at most the size of VALUE, not 0."
