@@ -124,7 +124,7 @@
 (test compare.says-what-is-equal-seed-by-seed
   (with-made-up (results (append (rows-of-outcomes "a" "0" "+++-" :way #'identity)
                                  (rows-of-outcomes "b" "0" "++-+" :way #'identity)))
-    (is (string= (format nil "noise=0: way of a and b is equal, seed by seed: 9.500 against 9.500 ~
+    (is (string= (format nil "noise=0: way of a and b are equal, seed by seed: 9.500 against 9.500 ~
                               on average over 4 common seeds.")
                  (third (experiment:comparison-verdicts
                          (experiment:compare-conditions results 1 2 :stream nil)))))))
@@ -278,10 +278,10 @@
                                 (100000000000000000002 100000000000000000001))
         do (is (mentions-p (verdict-on-all first second) "x is more with a than with b: p < .001")))
   (is (mentions-p (verdict-on '(1d9 2d9) '(1000000000.5d0 2000000000.25d0)) "No difference in x"))
-  (is (mentions-p (verdict-on '(1 0.1d0) '(1.0d0 0.1d0)) "x of a and b is equal, seed by seed")))
+  (is (mentions-p (verdict-on '(1 0.1d0) '(1.0d0 0.1d0)) "x of a and b are equal, seed by seed")))
 
 (test compare.tells-rounding-as-what-it-is
-  (is (string= (format nil "x of a and b differs by no more than rounding, seed by seed at most ~
+  (is (string= (format nil "x of a and b differ by no more than rounding, seed by seed at most ~
                             1.1e-16: 0.6000000000000001 against 0.6 on average over 30 common ~
                             seeds.")
                (verdict-on-all (+ .1d0 .2d0 .3d0) (+ .3d0 .2d0 .1d0))))

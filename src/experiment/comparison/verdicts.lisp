@@ -123,14 +123,14 @@
                    (format nil "~A of ~A and ~A cannot be compared: ~A, and at least 2 are needed"
                            (paired-measure difference) first second (trials-words difference)))
                   ((plusp (or (paired-rounding difference) 0))
-                   (format nil "~A of ~A and ~A differs by no more than rounding, seed by seed at ~
+                   (format nil "~A of ~A and ~A differ by no more than rounding, seed by seed at ~
                                 most ~A: ~A ~A"
                            (paired-measure difference) first second
                            (figure-text (paired-rounding difference) :digits 2)
                            (both-words difference) (trials-words difference)))
                   ((and (eql 0 (paired-rounding difference))
                         (= 0 (paired-low difference) (paired-high difference)))
-                   (format nil "~A of ~A and ~A is equal, seed by seed: ~A ~A"
+                   (format nil "~A of ~A and ~A are equal, seed by seed: ~A ~A"
                            (paired-measure difference) first second (both-words difference)
                            (trials-words difference)))
                   ((told-difference-p difference)
