@@ -24,6 +24,23 @@
       (base:csv-line (list text)))
     (is (= before (count-symbols)))))
 
+;;; Names that no table can have, or that would mean two things there.
+
+(defun said-of-clauses (&rest clauses)
+  "Return what is said when an experiment is defined by CLAUSES."
+  (said-by (lambda () (eval `(define-for-test (:robots ars-worlds:dot) ,@clauses)))))
+
+(test names.that-no-table-can-have-are-refused
+  (dolist (name (list (intern "" :ars-magna.tests)
+                      (intern (format nil "a~%b") :ars-magna.tests)))
+    (flet ((refused-p (said) (has-words-p said "another name" "cannot be seen")))
+      (dolist (clause `((:measure (,name 1)) (:each-tick (,name 1)) (:vary (,name 1 2))
+                        (:conditions (,name (base:max-speed* 1)))))
+        (is-true (refused-p (said-of-clauses '(:run t) clause)) "~S" clause))
+      (is-true (refused-p (said-by (lambda ()
+                                     (eval `(experiment:defexperiment ,name
+                                              (:robots ars-worlds:dot) (:run t))))))))))
+
 ;;; What is no file of bytes: reading a pipe would wait for ever, /dev/zero fill the memory.
 
 (defun make-odd-file (kind file)

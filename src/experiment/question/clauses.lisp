@@ -68,6 +68,13 @@ true of; or about CLAUSE if there is none at all."
 
 ;;; Names. What varies is a parameter, :ROBOTS, :THINKING, or a variable.
 
+(defun check-legible (definition clause name)
+  "Signal MALFORMED-DEFINITION about CLAUSE unless a table can have the symbol NAME."
+  (unless (and (string/= "" name) (every #'writable-char-p (symbol-name name)))
+    (reject-clause definition clause
+                   (format nil "another name: a table has it, so it cannot be empty, nor have ~
+                                characters that cannot be seen, such as line feeds"))))
+
 (defun surrounding-p (name)
   "True if NAME is a keyword for what varies around trials besides parameters."
   (member name '(:robots :thinking)))
@@ -128,6 +135,7 @@ true of; or about CLAUSE if there is none at all."
                (every (lambda (part) (and (proper-list-p part) (= 2 (length part))))
                       (rest case)))
     (reject-clause definition case "a condition (name (what form)...)"))
+  (check-legible definition case (first case))
   (check-names definition case (mapcar #'first (rest case)))
   (mapc (lambda (part) (check-factor-name definition part)) (rest case)))
 
@@ -211,6 +219,7 @@ true of; or about CLAUSE if there is none at all."
   "Signal MALFORMED-DEFINITION if two columns of a table would be called the same: those TAKEN, what
 CLAUSES vary, and what the clause KEY names."
   (flet ((check (name clause)
+           (check-legible definition clause name)
            (when (member (column-name name) taken :test #'string=)
              (reject-clause definition clause
                             (format nil "another name; the table has a column ~A already"

@@ -132,6 +132,7 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
        (lambda ()
          (unless (and name (symbolp name) (not (keywordp name)))
            (reject-clause definition name "a symbol as the name"))
+         (check-legible definition name name)
          (check-whole definition name clauses)
          (list (definition-form name documentation clauses form)))))))
 
