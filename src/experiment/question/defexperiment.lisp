@@ -221,6 +221,19 @@ in CHOICES."
         do (check-value definition part value)
         collect (list (first part) value)))
 
+(defun check-conditions-differ (definition clause conditions)
+  "Signal MALFORMED-DEFINITION about CLAUSE if two of CONDITIONS would be called the same."
+  (let ((known (make-hash-table :test 'equal)))
+    (dolist (condition conditions)
+      (let* ((name (condition-name condition)) (other (gethash name known)))
+        (when other
+          (reject-clause definition clause
+                         (format nil "other names or values: two conditions would be called ~A, ~
+                                      ~{~S~^ ~} and ~{~S~^ ~}"
+                                 (cut name 60) (condition-texts other)
+                                 (condition-texts condition))))
+        (setf (gethash name known) condition)))))
+
 (defun experiment-from (name definition
                         &key documentation robots parameters clean (thinking :free) factors cases
                           (trials 100) (seed 0) (limit 100000) time-limit variables
@@ -252,6 +265,11 @@ in CHOICES."
           (experiment-conditions experiment)
           (let ((settings (settings-from definition parameters)))
             (call-plainly (lambda () (all-conditions experiment clean settings)))))
+    (check-conditions-differ definition
+                             (if factors
+                                 (list* :vary (mapcar #'first factors))
+                                 (list* :conditions (mapcar #'first cases)))
+                             (experiment-conditions experiment))
     experiment))
 
 (defun define-experiment (name &rest options)
