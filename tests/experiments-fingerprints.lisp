@@ -203,8 +203,7 @@
 nothing is."
   (with-question-data (data)
     (eval `(experiment:defexperiment question (:robots ars-worlds:dot) (:run ,form)))
-    (handler-case (progn (experiment:run-experiment 'question :trials 3 :workers 1 :stream nil)
-                         nil)
+    (handler-case (not (experiment:run-experiment 'question :trials 3 :workers 1 :stream nil))
       (base:misuse (condition) (princ-to-string condition)))))
 
 (test tables.that-trials-fill-are-noticed
@@ -212,7 +211,13 @@ nothing is."
   (is-true (has-words-p (refusal-of-trials (make-hash-table)
                                            '(setf (gethash (hash-table-count *question-data*)
                                                            *question-data*) t))
-                        "*question-data*" "give each its own")))
+                        "give each its own: (:run (let ((*question-data* ...)) ...))")))
+
+(test refusals.say-what-helps
+  (eval '(sb-ext:defglobal **question-global** (list 0)))
+  (let ((said (refusal-of-trials 1 '(incf (first **question-global**)))))
+    (is-true (has-words-p said "define it with DEFVAR" "Run the experiment again."))
+    (is-false (has-words-p said "directory") "none was given")))
 
 ;;; What is held weakly may go at any time: that is no change, but what trials add there is one.
 

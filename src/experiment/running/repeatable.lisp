@@ -5,6 +5,12 @@
 ;;; A fingerprint is a guess at what decides a trial. What it misses, such as what trials leave to
 ;;; each other, is found by running one of them again, before an experiment goes on and at its end.
 
+(defvar *directory-given-p* t "True if the rows are kept in a directory that the user has given.")
+
+(defun way-to-begin-again ()
+  "Return what to do once the cause of a refusal is mended."
+  (if *directory-given-p* "begin in another directory" "run the experiment again"))
+
 (defun differing-column (columns texts others)
   "Return the name of the first of COLUMNS in which the rows TEXTS and OTHERS differ, and both texts
 there."
@@ -41,9 +47,9 @@ TEXTS-WITH-MARK."
                    ~{its ~A is ~A, and ~A in the table~}. Either the row has been changed, or ~
                    something that is not in the fingerprint decides the trial, such as an object ~
                    or closure that trials change, the clock, a file, or a function of SBCL's that ~
-                   another version of it has otherwise. Mend that, and begin in another ~
-                   directory."
-                  trial (condition-name condition) (differing-column columns texts again)))))
+                   another version of it has otherwise. Mend that, and ~A."
+                  trial (condition-name condition) (differing-column columns texts again)
+                  (way-to-begin-again)))))
 
 (defparameter *seconds-for-checks* 10
   "For how long trials that have rows are run again before an experiment goes on.")
@@ -66,12 +72,24 @@ least one is tried, and others as long as less than SECONDS have passed."
 (defun changed-names (before now)
   (remove-duplicates (mapcar #'part-name (parts-changed before now)) :test #'string=))
 
-(defun shared-variable-advice (before now)
-  "Return what to do if trials changed in place what a variable holds, or NIL."
-  (let ((changed (find :variable (parts-changed before now) :key #'first)))
-    (and changed
-         (format nil "If trials change what ~A holds, give each its own: ~
-                      (:run (let ((~:*~A ...)) ...))." (second changed)))))
+(defun bound-in-trials-p (name condition)
+  "True if each trial of CONDITION binds the variable whose qualified name is NAME."
+  (find name (condition-variables condition)
+        :key (lambda (variable) (qualified (first variable))) :test #'string=))
+
+(defun without-package (name)
+  "Return NAME, a qualified one, as it is written in its package."
+  (subseq name (1+ (or (position #\: name) -1))))
+
+(defun shared-variable-advice (before now condition)
+  "Return what to do if trials of CONDITION changed what a variable holds, or NIL."
+  (let ((name (second (find :variable (parts-changed before now) :key #'first))))
+    (and name
+         (format nil "~:[No trial can bind the global variable ~A: define it with DEFVAR instead. ~
+                      ~;~*~]If trials change what ~A holds, give each its own: ~
+                      (:run (let ((~:*~A ...)) ...))."
+                 (bound-in-trials-p name condition) (without-package name)
+                 (without-package name)))))
 
 (defun check-unchanged (experiment parts directory)
   "Signal MISUSE if the fingerprints of EXPERIMENT, of PARTS, are no longer what they were."
@@ -83,15 +101,18 @@ least one is tried, and others as long as less than SECONDS have passed."
                           unless (gethash part weak) collect part)
         unless (and (equal before now) (null added))
           do (call-noting-refusal (lambda ()
-                                    (reject-changed before (append added now) directory))
+                                    (reject-changed before (append added now) condition
+                                                    directory))
                                   directory)))
 
-(defun reject-changed (before now directory)
-  "Signal MISUSE: the parts BEFORE of what decides the rows in DIRECTORY are NOW others."
-  (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows in ~A ~
-               may be of either. ~@[~A ~]Begin in another directory."
-              (changed-names before now) (native-name directory)
-              (shared-variable-advice before now)))
+(defun reject-changed (before now condition directory)
+  "Signal MISUSE: the parts BEFORE of what decides the rows of CONDITION in DIRECTORY are NOW
+others."
+  (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
+               ~A~] may be of either. ~@[~A ~]~@(~A~)."
+              (changed-names before now) (and *directory-given-p* (native-name directory))
+              (shared-variable-advice before now condition)
+              (way-to-begin-again)))
 
 (defun call-noting-refusal (function directory)
   "Call FUNCTION. If it signals MISUSE, the text in DIRECTORY says from then on that the rows beside

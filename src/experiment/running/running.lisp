@@ -190,7 +190,8 @@ An error in a trial is a row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE and D
          (time-limit (if time-limit-p time-limit (experiment-time-limit experiment))))
     (check-run trials workers directory until shard time-limit)
     (flet ((run (path)
-             (run-and-read experiment path trials until shard workers time-limit stream)))
+             (let ((*directory-given-p* (and directory t)))
+               (run-and-read experiment path trials until shard workers time-limit stream))))
       (setf (experiment-results experiment)
             (if directory
                 (let* ((path (ensure-store-directory directory)) (results (run path)))
