@@ -266,7 +266,7 @@
 
 (test picture.help-lists-all-layers
   (let ((help (joined (type-batch "help picture"))))
-    (dolist (layer ars-magna.display:+picture-layers+)
+    (dolist (layer (ars-magna.display:picture-layers))
       (is (search (symbol-name layer) help)))
     (is-true (has-words-p help "from 1 to 256" "from 4 to 40"))
     (is (< (search "replacing it." help) (search "file:" help)

@@ -217,7 +217,7 @@
   "The panel has a row for each layer that there is."
   (in-window (window robot)
     (let ((layers (window:window-layers window)))
-      (loop for layer in (remove :legend (remove :title display:+picture-layers+))
+      (loop for layer in (remove :legend (remove :title (display:picture-layers)))
             for row in (window::layer-rows window)
             do (let ((ticked-p (window::row-ticked-p row)))
                  (is (eq ticked-p (and (member layer (window:window-layers window)) t)))

@@ -62,7 +62,7 @@
 (test snapshot.changes-nothing-in-the-run
   (in-studio (robot)
     (let ((digest (run:state-digest)))
-      (display:svg-picture robot :display :all :layers display:+picture-layers+)
+      (display:svg-picture robot :display :all :layers (display:picture-layers))
       (is (= digest (run:state-digest))))))
 
 ;;; Files.

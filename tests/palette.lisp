@@ -206,8 +206,7 @@ VISIONS."
 
 (defun layer-inks ()
   "Return the colours of the lines of layers, of robots and of their cameras."
-  (append (remove-if-not #'integerp display::+layer-inks+)
-          display::+turn-inks+))
+  (append (mapcar #'display::layer-ink (display:picture-layers)) display::+turn-inks+))
 
 (test contrast.lines-of-layers-and-robots-are-seen-on-everything
   "They have a halo; without it they are seen on the floor and on all marks."

@@ -60,13 +60,92 @@
 
 ;;; Layers.
 
+(defun legend-of (robot layer &rest options)
+  "Return a picture of the world of ROBOT with only LAYER and a legend, as text."
+  (apply #'display:svg-picture robot :layers (list layer :legend) options))
+
+(test legend.tells-what-moves-where-no-robot-is-shown
+  (in-studio (robot)
+    (world:put-kicker stir (pen (world:find-thing 'pen)) (:prob 0.1) pen)
+    (multiple-value-bind (x y) (world:thing-position (world:find-thing 'pen))
+      (let ((part (list (floor x) (floor y) (1+ (floor x)) (1+ (floor y)))))
+        (is-true (mentions-p (legend-of robot :reach :part part) ">may move<"))))))
+
+(test legend.has-no-field-of-view-of-a-camera-that-is-in-something
+  (in-studio (robot)
+    (flet ((entries (location)
+             (mapcar #'display::entry-text
+                     (display::line-entries
+                      (display::make-snapshot
+                       :robots (list (display::make-robot-image
+                                      :cameras (list (display::make-camera-image
+                                                      :location location)))))
+                      '(:wedges)))))
+      (is (equal '("in view") (entries nil)))
+      (is (null (entries "in a box"))))))
+
+(test legend.planned-ways-of-one-point-are-not-drawn-and-have-no-entry
+  (flet ((entries (way)
+           (display::line-entries
+            (display::make-snapshot
+             :robots (list (display::make-robot-image :planned-way way)))
+            '(:planned-way))))
+    (is (null (entries '((1 1)))))
+    (is (= 1 (length (entries '((1 1) (2 1))))))))
+
+(defun draw-range (canvas metres robot snapshot)
+  "Draw METRES that a sensor of ROBOT reads, as a line to the right."
+  (declare (ignore snapshot))
+  (let ((x (display:robot-image-x robot)) (y (display:robot-image-y robot)))
+    (display:inked ((display::layer-ink :ranges) :dashes (display::layer-dashes :ranges))
+      (canvas:draw-segments canvas canvas:draw-gcontext*
+                            (display:pixels-of (list x y (+ x metres) y))))))
+
+(defun range-marks (view robot)
+  (display::mark-at view (+ 1 (display:robot-image-x robot)) (display:robot-image-y robot)
+                    (display::make-glyph :layer #\~ "range")))
+
+(defmacro with-range-layer (() &body body)
+  "Run BODY while there is a layer :RANGES, of a sensor that reads 2 metres."
+  `(let ((display::*layers* display::*layers*)
+         (display:*picture-layers* display:*picture-layers*))
+     (unwind-protect
+          (progn
+            (display:define-layer :ranges "Ranges" "What the rangefinder reads."
+              :default-p t :note (constantly 2) :draw 'draw-range
+              :ink #x0A4468 :dashes '(8 2) :legend "range"
+              :text-name :range :text 'range-marks)
+            ,@body)
+       (display::document-layers))))
+
+(test layers.one-form-brings-a-new-one-into-pictures-legends-text-maps-and-help
+  (with-range-layer ()
+    (in-studio (robot)
+      (is-true (has-words-p (display:svg-picture robot) (web-dashes '(8 2)) ">range<"))
+      (is (not (mentions-p (display:svg-picture robot :layers '(:legend)) ">range<")))
+      (is-true (has-words-p (display:text-map robot :layers '(:range)) "~ range"))
+      (is-true (has-words-p (documentation 'display:*picture-layers* 'variable) ":RANGES *"))
+      (is (equal '(:ranges :range "RANGES or RANGE")
+                 (list (display:layer-named :range) (display:text-layer-named :ranges)
+                       (display:layer-words :ranges)))))))
+
+(test layers.what-they-note-changes-what-displays-show
+  "A window draws anew where a note is another one."
+  (let ((images (loop for note in '(2 2 3)
+                      collect (display::make-robot-image :notes (list :ranges note)))))
+    (destructuring-bind (two other-two three)
+        (loop for image in images
+              collect (display:snapshot-content (display::make-snapshot :robots (list image))))
+      (is (equal two other-two))
+      (is (not (equal two three))))))
+
 (test layers.each-has-a-title-and-a-sentence
-  (dolist (layer display:+picture-layers+)
+  (dolist (layer (display:picture-layers))
     (is (plusp (length (display:layer-title layer))))
     (is (char= #\. (char (reverse (display:layer-documentation layer)) 0)))
     (is (mentions-p (documentation 'display:*picture-layers* 'variable)
                     (display:layer-title layer))))
-  (is (subsetp display:*picture-layers* display:+picture-layers+))
+  (is (subsetp display:*picture-layers* (display:picture-layers)))
   (signals base:wrong-argument (display:layer-title :aura)))
 
 (defun wedge-points (picture)
@@ -125,7 +204,9 @@
                    collect dashes)))
     (is (= 3 (length (remove-duplicates own :test #'string=)))))
   (is (null (display::layer-dashes :wedges)))
-  (let ((all (loop for (nil dashes) on display::+layer-dashes+ by #'cddr collect dashes)))
+  (let ((all (loop for layer in display::*layers*
+                   when (display::%layer-legend layer)
+                     collect (display::%layer-dashes layer))))
     (is (= (length all) (length (remove-duplicates all :test #'equal))))))
 
 (defun web-dashes (dashes)
@@ -208,10 +289,11 @@
                    :x 5 :y 5 :planned-way '((5 5) (8 3))
                    :cameras (list (display::make-camera-image
                                    :track (display::make-designator-image :distance 2)))))
+           (snapshot (display::make-snapshot :robots (list image)))
            (canvas:graphics-scale* 10))
       (flet ((spared-p (layer x y)
                (some (lambda (box) (display::overlap-p box (display::box-around x y 1)))
-                     (display::marked-spots image (list layer)))))
+                     (display::marked-spots snapshot (list layer)))))
         (is-true (spared-p :planned-way 80 30))
         (is-true (spared-p :tracks 70 50))
         (is (null (spared-p :tracks 80 30)))))))

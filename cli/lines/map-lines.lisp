@@ -16,20 +16,19 @@ lines; NIL if there is none."
 
 ;;; What of it.
 
-(defparameter *map-words*
-  (append '("CONES" "WAY" "PLAN" "BELIEF" "LEGEND")
-          (mapcar #'symbol-name (mapcar #'first +other-names+)))
-  "The words that MAP understands: its own, and what PICTURE calls the same.")
+(defun words-of-map ()
+  "Return the words that MAP understands: its own, and what PICTURE calls the same."
+  (mapcar #'symbol-name (append (text-layers) '(:legend) (mapcar #'layer-named (text-layers)))))
 
 (defun map-word (text)
-  "Return the keyword of one of *MAP-WORDS*, the one that begins with TEXT, as TEXT-MAP calls it.
+  "Return the keyword of one of WORDS-OF-MAP, the one that begins with TEXT, as TEXT-MAP calls it.
 Signals BAD-LINE if there is none."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word))
-                       *map-words*)))
+                       (words-of-map))))
     (unless word
       (reject-line "MAP does not know ~A.~@[ Did you mean ~A?~] It takes a radius, or LEFT TOP ~
                     RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}."
-                   text (nearest-name text *map-words*) *map-words*))
+                   text (nearest-name text (words-of-map)) (words-of-map)))
     (text-layer-named (make-keyword word))))
 
 (defun words-in (text)
@@ -81,12 +80,15 @@ LINES-BELOW lines."
                                     :paint (and (console-colored-p console) #'paint)
                                     options)))))))
 
-(define-choices :map-words (mapcar #'string-downcase *map-words*))
+(define-choices :map-words (mapcar #'string-downcase (words-of-map)))
 
 (define-line "MAP" (session (what :map-words
-                                  "a radius or LEFT TOP RIGHT BOTTOM; CONES WAY PLAN BELIEF LEGEND"
+                                  "a radius or LEFT TOP RIGHT BOTTOM; names of layers; LEGEND"
                                   :optional))
-    (:seeing)
+    (:seeing
+     (format nil "Shown if named: ~:{~A (~(~A~))~:^, ~}."
+             (loop for name in (text-layers)
+                   collect (list name (layer-title (layer-named name))))))
     "Show the world as characters: all of it, what is within a radius of the robot, or a region.
 CONES shows what the robot's cameras have in view, WAY where it went, PLAN which way it is about to
 go, BELIEF where it believes itself and what its designators denote to be, LEGEND only what the

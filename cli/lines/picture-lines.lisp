@@ -7,8 +7,7 @@
 (defun picture-words ()
   "Return the words that PICTURE understands: names of layers, and BARE for none of those shown by
 default; and what MAP calls the same."
-  (append (mapcar #'symbol-name +picture-layers+) (list "BARE")
-          (mapcar #'symbol-name (mapcar #'second +other-names+))))
+  (mapcar #'symbol-name (append (picture-layers) '(:bare) (text-layers))))
 
 (defun picture-word (text line)
   "Return the keyword of PICTURE-WORDS that begins with TEXT, which was typed after LINE, a command.
@@ -54,7 +53,7 @@ shows two layers more; PICTURE world.svg BARE NAMES shows that one alone."
      (format nil "Shown by default, but for BARE: ~A." (layers-text *picture-layers*))
      (format nil "Shown if named: ~A."
              (layers-text (remove-if (lambda (layer) (member layer *picture-layers*))
-                                     +picture-layers+))))
+                                     (picture-layers)))))
     "Save a picture of the world as it is now in FILE, replacing it."
   (let ((path (apply #'save-picture (session-robot) (path-called file) (picture-options what))))
     (format t "~A~%" (native-name path))))

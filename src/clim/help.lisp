@@ -27,8 +27,9 @@
 
 ;;; Layers.
 
-(defparameter *layers-shown* (set-difference +picture-layers+ '(:legend :title))
-  "The layers that a window can show. It has a title, and the mouse is told what things are.")
+(defun layers-for-windows ()
+  "Return the layers that a window can show. It has a title, and the mouse is told what things are."
+  (remove :legend (remove :title (picture-layers))))
 
 (defun switch-layer (window layer)
   "Show LAYER in WINDOW, or no longer."
@@ -50,8 +51,7 @@
 
 (defun layer-rows (window)
   "Return the rows of the panel of layers."
-  (append (loop for layer in +picture-layers+
-                when (member layer *layers-shown*) collect (layer-row window layer))
+  (append (loop for layer in (layers-for-windows) collect (layer-row window layer))
           (list (make-row "In colour" :tick-p t :stays-p t
                                       :tick (lambda () (window-color-p window))
                                       :action (lambda () (switch-color window))))))

@@ -145,7 +145,7 @@ these, the images of robots, and the entries of lines, of both the latest first.
                (setf (gethash (thing-image-thing image) things) image)))
     (dolist (image (snapshot-robots snapshot))
       (pushnew image (cast-robots cast) :key #'robot-image-position))
-    (dolist (entry (append (line-entries snapshot layers) (ray-entries snapshot layers)))
+    (dolist (entry (line-entries snapshot layers))
       (pushnew entry (cast-lines cast) :key #'entry-text :test #'string=))))
 
 (defun cast-entries (cast layers)

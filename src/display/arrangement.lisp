@@ -25,7 +25,7 @@ says; TITLE and SUBTITLE, lists of lines; and how wide and high the whole is."
   "Return how much room there is left of, above, right of and below the map for LAYERS without
 legend."
   (flet ((shown-p (layer) (member layer layers)))
-    (if (intersection layers (layers-of-kind :margin))
+    (if (layers-at :margin layers)
         (list (if (shown-p :coordinates) 36 8)
               (+ (if (shown-p :title) 22 8) (if (shown-p :coordinates) 18 0))
               14

@@ -10,8 +10,9 @@
 
 (defun track-radius () (max 4 (* 1/2 graphics-scale*)))
 
-(defun draw-track (canvas robot designator)
-  "Draw a line to where ROBOT believes what a camera tracks to be."
+(defun draw-track (canvas designator robot snapshot)
+  "Draw a line to where ROBOT believes DESIGNATOR, which a camera tracks, to be."
+  (declare (ignore snapshot))
   (let ((target (believed-place robot designator)))
     (inked ((layer-ink :tracks) :dashes (layer-dashes :tracks))
       (draw-segments canvas draw-gcontext*
@@ -20,10 +21,14 @@
     (inked ((layer-ink :tracks))
       (draw-circle canvas (first target) (second target) (track-radius) nil))))
 
-(defun track-box (robot designator)
-  "Return the box of the ring around where ROBOT believes what a camera tracks to be, in pixels."
+(defun track-boxes (designator robot snapshot)
+  "Return the box of the ring around where ROBOT believes DESIGNATOR to be, in pixels, as a list."
+  (declare (ignore snapshot))
   (destructuring-bind (x y) (believed-place robot designator)
-    (box-around x y (+ 2 (track-radius)))))
+    (list (box-around x y (+ 2 (track-radius))))))
+
+(defun robots-that-designate (snapshot)
+  (remove-if-not #'robot-image-designators (snapshot-robots snapshot)))
 
 (defun designator-box (robot designator)
   "Return the box (left top right bottom) of the cross and the number of DESIGNATOR, in pixels."
@@ -47,6 +52,17 @@ to what it denotes."
           (draw-text-on-plate canvas (+ x 7) (- y 3)
                               (princ-to-string (designator-image-number designator))))))))
 
+(defun designator-boxes (robots)
+  "Return the boxes of the crosses and numbers of all designators of ROBOTS."
+  (loop for robot in robots
+        append (loop for designator in (robot-image-designators robot)
+                     collect (designator-box robot designator))))
+
+(defun draw-designators-on-map (canvas robots)
+  (dolist (robot robots)
+    (dolist (designator (robot-image-designators robot))
+      (draw-designator-on-map canvas robot designator))))
+
 (defun odometer-box (odometer)
   "Return the corners of the box that contains the position of ODOMETER, x y ..., in metres."
   (let ((cos (cosine (odometer-image-axis odometer))) (sin (sine (odometer-image-axis odometer))))
@@ -56,9 +72,10 @@ to what it denotes."
           collect (+ (odometer-image-x odometer) (- (* cos dx) (* sin dy)))
           collect (+ (odometer-image-y odometer) (* sin dx) (* cos dy)))))
 
-(defun draw-odometer (canvas odometer)
+(defun draw-odometer (canvas odometer robot snapshot)
   "Draw where ODOMETER puts its robot: the box that contains its position, and from the middle of
 that the bounds of its heading."
+  (declare (ignore robot snapshot))
   (let* ((x (odometer-image-x odometer)) (y (odometer-image-y odometer))
          (heading (odometer-image-heading odometer))
          (half (* 1/2 (odometer-image-spread odometer))))

@@ -33,7 +33,7 @@
     (list (robot-image-x image) (robot-image-y image) (robot-image-angle image)
           (content (robot-image-cameras image)) (content (robot-image-odometer image))
           (content (robot-image-designators image)) (robot-image-trail image)
-          (robot-image-planned-way image))))
+          (robot-image-planned-way image) (content (robot-image-notes image)))))
 
 (defun snapshot-content (snapshot)
   "Return an object that is EQUAL to that of another snapshot if their worlds look the same."

@@ -91,26 +91,6 @@ wide, with DASHES."
     (draw-rectangle canvas draw-gcontext* (- x 1) (- y 10) (+ 2 (words-width text)) 13 t))
   (draw-text canvas x y text))
 
-;;; The inks of layers: so dark that what is too light for the halo is light enough for them.
-
-(define-constant +layer-inks+
-    '(:wedges #x7A1030 :tracks #x8A1010 :designators #x0C3C78 :odometer #x4A1A80 :reach #x5A3A00)
-  :test #'cl:equal
-  :documentation "The colours of what layers draw, by name.")
-
-(defun layer-ink (name) (getf +layer-inks+ name))
-
-;;; No two layers' lines look alike without colours, either. Patterns are so short that samples in
-;;; legends, 15 pixels long, show them.
-
-(define-constant +layer-dashes+
-    '(:wedges nil :tracks (5 2 1 2) :designators (4) :odometer (7 2) :trail (2 2)
-      :planned-way (6 4) :reach (3 3) :rays (1 3))
-  :test #'cl:equal
-  :documentation "The dashes and gaps of what layers draw, in pixels; NIL is a solid line.")
-
-(defun layer-dashes (name) (getf +layer-dashes+ name))
-
 (define-constant +ray-inks+ '(#x10308C #x4A2480 #x801850 #x8A3010 #x604800)
   :test #'cl:equal
   :documentation "The colours of rays, from the least parameter of walls to the greatest.")

@@ -1,101 +1,78 @@
-;;;; layers.lisp -- what a picture of the world can show besides walls, things and robots.
+;;;; layers.lisp -- the layers: all that is known of each, in the order of menus.
 
 (in-package :ars-magna.display)
 
-;;; This table is all there is to know of layers: menus, the prompt and the documentation list it. A
-;;; layer of the kind :TERRAIN never moves, one of :MOVERS does, one of :MARGIN stands beside the
-;;; map.
+;;; Inks are so dark that what is too light for the halo is light enough for them. No two layers'
+;;; lines look alike without colours, either: patterns are so short that samples in legends, 15
+;;; pixels long, show them.
 
-(define-constant +layers+
-    '((:places :terrain t "Places"
-      "Marks of places, such as corners and doorways.")
-     (:grid :terrain nil "Grid"
-      "Borders of cells; where these are small, of every fifth or tenth.")
-     (:wedges :movers nil "Fields of view"
-      "What each camera has in its field of view, as far as walls and things let it see.")
-     (:rays :movers nil "Rays of the last view"
-      "What the last view of each camera came from, in a colour for what was read.")
-     (:tracks :movers t "Tracks"
-      "Where the robot believes that to be which its cameras track.")
-     (:designators :movers nil "Designators"
-      "Where the robot believes that to be which it designates, joined to where it really is.")
-     (:odometer :movers nil "Odometer"
-      "Where the main odometer puts the robot, and between which headings.")
-     (:trail :movers nil "Trail"
-      "Where each robot has been.")
-     (:planned-way :movers t "Planned way"
-      "Which way each robot is about to go, as far as its program has told: see PUBLISH-WAY.")
-     (:reach :movers nil "What moves by itself"
-      "A dashed ring around each thing that has kickers. How far these take it nobody knows.")
-     (:names :movers t "Names"
-      "What things and robots are called, where there is room.")
-     (:coordinates :margin t "Coordinates"
-      "Numbers of metres at the edges.")
-     (:legend :margin t "Legend"
-      "What substances, places, things and lines look like that are to be seen.")
-     (:scale-bar :margin t "Scale bar"
-      "How long some metres are.")
-     (:title :margin t "Title"
-      "Which robot in which map, and the tick."))
-  :test #'cl:equal
-  :documentation "Lists (name kind default-p title sentence), in the order of menus.")
+(define-layer :places "Places"
+  "Marks of places, such as corners and doorways."
+  :default-p t :depth :on-walls :draw 'draw-places :entries 'place-entries)
 
-(define-constant +picture-layers+ (mapcar #'first +layers+)
-  :test #'cl:equal
-  :documentation "The names of the layers, in the order of menus.")
+(define-layer :grid "Grid"
+  "Borders of cells; where these are small, of every fifth or tenth."
+  :depth :under-walls :draw 'draw-grid)
 
-(defun layer-entry (name)
-  (or (assoc name +layers+)
-      (reject-argument 'layer-title "layer" name
-                       (format nil "one of ~{~(~S~)~^, ~}" +picture-layers+))))
+(define-layer :wedges "Fields of view"
+  "What each camera has in its field of view, as far as walls and things let it see."
+  :depth :cameras :shown 'looking-out :draw 'draw-wedge
+  :ink #x7A1030 :legend "in view"
+  :text-name :cones :text 'cone-marks :text-depth :floor)
 
-(define-constant +other-names+
-    '((:wedges :cones) (:trail :way) (:planned-way :plan) (:designators :belief))
-  :test #'cl:equal
-  :documentation "Lists (layer name): what the text map calls that which pictures call LAYER. Lines
-of the prompt take both.")
+(define-layer :rays "Rays of the last view"
+  "What the last view of each camera came from, in a colour for what was read."
+  :depth :looks :shown 'camera-image-look :draw 'draw-rays
+  :ink (first +ray-inks+) :dashes '(1 3) :legend "rays" :last-p t :entries 'reading-entries)
 
-(defun layer-named (name)
-  "Return the layer of pictures that NAME, a keyword, means: its own name or the other."
-  (or (first (rassoc (list name) +other-names+ :test #'cl:equal)) name))
+(define-layer :tracks "Tracks"
+  "Where the robot believes that to be which its cameras track."
+  :default-p t :depth :cameras :shown 'camera-image-track :draw 'draw-track :boxes 'track-boxes
+  :ink #x8A1010 :dashes '(5 2 1 2) :legend "tracked")
 
-(defun text-layer-named (name)
-  "Return the layer of the text map that NAME, a keyword, means, either of its names."
-  (or (second (assoc name +other-names+)) name))
+(define-layer :designators "Designators"
+  "Where the robot believes that to be which it designates, joined to where it really is."
+  :depth :labels :shown 'robots-that-designate :draw 'draw-designators-on-map
+  :boxes 'designator-boxes
+  :ink #x0C3C78 :dashes '(4) :legend "believed, true"
+  :text-name :belief :text 'belief-marks :text-depth :above)
 
-(defun layer-words (layer)
-  "Return what lines of the prompt call LAYER, one of those of pictures: one name or two."
-  (format nil "~A~@[ or ~A~]" layer (second (assoc layer +other-names+))))
+(define-layer :odometer "Odometer"
+  "Where the main odometer puts the robot, and between which headings."
+  :shown 'robot-image-odometer :draw 'draw-odometer
+  :ink #x4A1A80 :dashes '(7 2) :legend "odometer")
 
-(defun layer-title (name)
-  "Return what menus call the layer NAME, a keyword."
-  (fourth (layer-entry name)))
+(define-layer :trail "Trail"
+  "Where each robot has been."
+  :depth :ways :shown 'robots-with-trails :draw 'draw-trails
+  :dashes '(2 2) :legend "trail" :entries 'trail-jump-entries
+  :text-name :way :text 'trail-marks)
 
-(defun layer-documentation (name)
-  "Return a sentence that says what the layer NAME, a keyword, shows."
-  (fifth (layer-entry name)))
+(define-layer :planned-way "Planned way"
+  "Which way each robot is about to go, as far as its program has told: see PUBLISH-WAY."
+  :default-p t :depth :ways :shown 'robots-with-plans :draw 'draw-planned-ways
+  :boxes 'ends-of-planned-ways
+  :dashes '(6 4) :width 2 :legend "planned way"
+  :text-name :plan :text 'planned-marks)
 
-(defun layers-of-kind (kind)
-  "Return the names of the layers of KIND: :TERRAIN, :MOVERS or :MARGIN."
-  (loop for (name its-kind) in +layers+ when (eq kind its-kind) collect name))
+(define-layer :reach "What moves by itself"
+  "A dashed ring around each thing that has kickers. How far these take it nobody knows."
+  :depth :things :shown 'moving-things :draw 'draw-reach
+  :ink #x5A3A00 :dashes '(3 3) :legend "may move")
 
-(defun default-layers ()
-  "Return the names of the layers that pictures show by default."
-  (loop for (name nil default-p) in +layers+ when default-p collect name))
+(define-layer :names "Names"
+  "What things and robots are called, where there is room."
+  :default-p t :depth :names)
 
-(addition *picture-layers*)
-(defvar *picture-layers* (default-layers))
+(define-layer :coordinates "Coordinates" "Numbers of metres at the edges."
+  :default-p t :depth :margin)
 
-(setf (documentation '*picture-layers* 'variable)
-      (format nil "A list of what pictures of the world show besides walls, things and robots, ~
-                   unless their :LAYERS say otherwise: some of the following. By default those ~
-                   with a star.~2%~:{  ~S~:[~; *~] -- ~A: ~A~%~}~%Rays and trails are known from ~
-                   KEEP-HISTORY on."
-              (loop for (name nil default-p title sentence) in +layers+
-                    collect (list name default-p title sentence))))
+(define-layer :legend "Legend"
+  "What substances, places, things and lines look like that are to be seen."
+  :default-p t :depth :margin)
 
-(defun check-layers (operator layers)
-  "Signal WRONG-ARGUMENT unless LAYERS, an argument of OPERATOR, is a list of layers."
-  (unless (and (proper-list-p layers) (subsetp layers +picture-layers+))
-    (reject-argument operator "layers" layers
-                     (format nil "a list of some of ~{~(~S~)~^, ~}" +picture-layers+))))
+(define-layer :scale-bar "Scale bar" "How long some metres are."
+  :default-p t :depth :margin)
+
+(define-layer :title "Title" "Which robot in which map, and the tick."
+  :default-p t :depth :margin)

@@ -153,65 +153,29 @@ than the line."
 
 ;;; Lines.
 
-(define-constant +line-words+
-    '((:wedges . "in view") (:tracks . "tracked") (:designators . "believed, true")
-      (:odometer . "odometer") (:trail . "trail") (:planned-way . "planned way")
-      (:reach . "may move") (:rays . "rays"))
-  :test #'cl:equal
-  :documentation "What lines of layers are called in legends.")
+(defun line-entry (layer)
+  "Return the entry for the lines of LAYER."
+  (let ((name (%layer-name layer)))
+    (sample-of (canvas x y) (%layer-legend layer)
+      (inked ((layer-ink name) :dashes (%layer-dashes layer) :width (%layer-width layer))
+        (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y))))))
 
-(defun look-shown-p (robot)
-  (some #'camera-image-look (robot-image-cameras robot)))
+(defun further-entries (layers snapshot)
+  "Return the entries of LAYERS for SNAPSHOT that are not of their lines."
+  (loop for layer in layers
+        when (%layer-entries layer) append (funcall (%layer-entries layer) snapshot)))
 
-(defun line-shown-p (snapshot layer)
-  "True if there is something of LAYER in SNAPSHOT."
-  (loop for robot in (snapshot-robots snapshot)
-          thereis (ecase layer
-                    (:wedges (robot-image-cameras robot))
-                    (:tracks (some #'camera-image-track (robot-image-cameras robot)))
-                    (:designators (robot-image-designators robot))
-                    (:odometer (robot-image-odometer robot))
-                    (:trail (cddddr (robot-image-trail robot)))
-                    (:planned-way (robot-image-planned-way robot))
-                    (:rays (look-shown-p robot))
-                    (:reach (find-if #'thing-image-moving-p (snapshot-things snapshot))))))
-
-(defun line-ink (layer)
-  "Return the colour of lines of LAYER in legends."
-  (case layer
-    ((:trail :planned-way) (turn-ink 0))
-    (:rays (first +ray-inks+))
-    (t (layer-ink layer))))
-
-(defun jump-entry (color)
-  "Return the entry for that something was put elsewhere, in COLOR."
-  (sample-of (canvas x y) "put elsewhere"
-    (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))
-
-(defun jump-entries (snapshot layers)
-  (and (member :trail layers)
-       (trail-jumps-seen-p snapshot)
-       (list (jump-entry (line-ink :trail)))))
+(defun layers-drawn (snapshot layers)
+  "Return those of LAYERS for which something of SNAPSHOT is drawn, in the order of legends."
+  (let* ((shown (mapcar #'first (shown-lines snapshot layers)))
+         (drawn (remove-if-not (lambda (layer) (member layer shown)) *layers*)))
+    (append (remove-if #'%layer-last-p drawn) (remove-if-not #'%layer-last-p drawn))))
 
 (defun line-entries (snapshot layers)
-  (append (layer-entries snapshot layers) (jump-entries snapshot layers)))
-
-(defun layer-entries (snapshot layers)
-  (loop for (layer . words) in +line-words+
-        when (and (member layer layers) (line-shown-p snapshot layer))
-          collect (let ((layer layer))
-                    (sample-of (canvas x y) words
-                      (inked ((line-ink layer) :dashes (layer-dashes layer)
-                              :width (if (eq :planned-way layer) 2 1))
-                        (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y)))))))
-
-(defun ray-entries (snapshot layers)
-  (when (and in-color* (member :rays layers)
-             (some #'look-shown-p (snapshot-robots snapshot)))
-    (list (sample-of (canvas x y) "read: low to high"
-            (loop for ink in +ray-inks+ for at from -8 by 3
-                  do (with-color ink
-                       (draw-rectangle canvas draw-gcontext* (+ x at) (- y 4) 3 8 t)))))))
+  "Return the entries for what is drawn of SNAPSHOT for LAYERS."
+  (let ((layers (layers-drawn snapshot layers)))
+    (append (mapcar #'line-entry (remove nil layers :key #'%layer-legend))
+            (further-entries layers snapshot))))
 
 ;;; The whole.
 
@@ -227,11 +191,12 @@ than the line."
                               :whole (entry-whole entry) :width (entry-width entry)))))
 
 (defun terrain-entries (snapshot layers)
-  (append (wall-entries snapshot) (and (member :places layers) (place-entries snapshot))))
+  (append (wall-entries snapshot)
+          (further-entries (append (layers-at :under-walls layers) (layers-at :on-walls layers))
+                           snapshot)))
 
 (defun legend-entries (snapshot layers
-                       &key (lines (append (line-entries snapshot layers)
-                                           (ray-entries snapshot layers)))
+                       &key (lines (line-entries snapshot layers))
                             (robots (robot-entries snapshot))
                             (opacity 1))
   "Return the entries of the legend of a picture of SNAPSHOT with LAYERS, the map in which has

@@ -70,7 +70,7 @@
   (multiple-value-bind (metres-wide metres-high) (shown-size snapshot)
     (let ((width (to-pixels metres-wide)) (height (to-pixels metres-high)))
       (flet ((shown-p (layer) (member layer layers)))
-        (when (intersection layers (layers-of-kind :margin))
+        (when (layers-at :margin layers)
           (with-color +frame-ink+
             (draw-rectangle canvas draw-gcontext* -1 -1 (1+ width) (1+ height))))
         (when (shown-p :title) (draw-title canvas arrangement))

@@ -69,19 +69,10 @@ first, that no other hides."
   (destructuring-bind (left top right bottom) box
     (list (- left by) top (+ right by) bottom)))
 
-(defun marked-spots (robot layers)
-  "Return the boxes of the numbers and rings that LAYERS show of ROBOT."
-  (append (and (member :designators layers)
-               (loop for designator in (robot-image-designators robot)
-                     collect (designator-box robot designator)))
-          (and (member :tracks layers)
-               (loop for camera in (robot-image-cameras robot)
-                     when (camera-image-track camera)
-                       collect (track-box robot (camera-image-track camera))))
-          (let ((end (first (last (robot-image-planned-way robot)))))
-            (and end (member :planned-way layers)
-                 (list (box-around (to-pixels (first end)) (to-pixels (second end))
-                                   (+ 2 +mark-radius+)))))))
+(defun marked-spots (snapshot layers)
+  "Return the boxes of the numbers and rings that LAYERS show of SNAPSHOT."
+  (loop for (layer . arguments) in (shown-lines snapshot layers)
+        when (%layer-boxes layer) append (apply (%layer-boxes layer) arguments)))
 
 (defun boxes-of-robots (robots)
   "Return boxes around the lines of the cameras of ROBOTS."
@@ -137,7 +128,7 @@ line has to lead there. ROBOTS are those of SPOTS that are of robots, a list."
 of robots, and of things right beside one or on another, where there is none at the end of a line."
   (let* ((spots (named-spots snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
-         (marks (append boxes (loop for robot in robots append (marked-spots robot layers))))
+         (marks (append boxes (marked-spots snapshot layers)))
          (taken (index-boxes (append marks (boxes-of-robots robots)
                                      (loop for spot in spots
                                            collect (widened (spot-box spot) 1)))))

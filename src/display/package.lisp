@@ -9,7 +9,7 @@
   (:import-from :ars-magna.command #:under-way-text #:interruption-text #:last-failure
                 #:trouble-p)
   ;; text-map
-  (:export #:text-map #:+text-layers+)
+  (:export #:text-map #:text-layers)
   ;; history
   (:export #:history #:history-of #:keep-history)
   ;; snapshot
@@ -26,9 +26,8 @@
   ;; subjects, contents
   (:export #:describe-subject #:snapshot-content #:display-content)
   ;; layers
-  (:export #:*picture-layers* #:+picture-layers+ #:layer-title #:layer-documentation
-           #:+other-names+ #:layer-named #:text-layer-named #:layer-words
-           #:layers-of-kind)
+  (:export #:*picture-layers* #:picture-layers #:layer-title #:layer-documentation
+           #:define-layer #:layer-named #:text-layer-named #:layer-words)
   ;; inks, user-drawing, terrain, names, world-display, legend, scales, margins, way-picture
   ;; and displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-map-options

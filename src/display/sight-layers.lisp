@@ -25,7 +25,11 @@ WIDTH."
           append (multiple-value-list
                   (ray-end map opaque-p x y (+ first (* ray (/ width count))))))))
 
-(defun draw-wedge (canvas snapshot robot camera)
+(defun looking-out (camera)
+  "Return CAMERA if it can see the map: if it is in nothing."
+  (and (null (camera-image-location camera)) camera))
+
+(defun draw-wedge (canvas camera robot snapshot)
   "Draw the field of view of CAMERA, as far as it can see."
   (let* ((map (snapshot-map snapshot)) (x (robot-image-x robot)) (y (robot-image-y robot))
          (width (camera-image-field-of-view camera))
@@ -52,8 +56,9 @@ WIDTH."
     (loop for ray below count
           collect (if (zerop (length view)) 0 (aref view (floor (* ray (length view)) count))))))
 
-(defun draw-rays (canvas map look)
-  (let* ((ends (look-ends look))
+(defun draw-rays (canvas look robot snapshot)
+  (declare (ignore robot))
+  (let* ((ends (look-ends look)) (map (snapshot-map snapshot))
          (classes (mapcar (lambda (reading) (ray-class map reading))
                           (readings-of look (/ (length ends) 2)))))
     (loop for ink in +ray-inks+ for number from 0
@@ -65,3 +70,11 @@ WIDTH."
             do (with-color ink
                  (with-dashes ((layer-dashes :rays))
                    (draw-segments canvas draw-gcontext* rays))))))
+
+(defun reading-entries (snapshot)
+  (declare (ignore snapshot))
+  (when in-color*
+    (list (sample-of (canvas x y) "read: low to high"
+            (loop for ink in +ray-inks+ for at from -8 by 3
+                  do (with-color ink
+                       (draw-rectangle canvas draw-gcontext* (+ x at) (- y 4) 3 8 t)))))))

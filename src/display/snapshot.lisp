@@ -22,11 +22,11 @@ LOCATION says in words what it is in, or is NIL. It is MOVING-P if it has kicker
   (obsmove-p nil) (obsview-p nil) (container-p nil) (moving-p nil) (draw-function nil))
 
 (define-image robot-image "What a snapshot knows of a robot, which is at POSITION among those of its
-world: that decides what it looks like."
+world: that decides what it looks like. NOTES has by the names of layers what their :note returned."
   (name nil) (position 0) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil)
   (under-way nil) (interruption nil)
   (cameras '()) (hands '()) (bins '())
-  (designators '()) (odometer nil) (trail '()) (planned-way '()))
+  (designators '()) (odometer nil) (trail '()) (planned-way '()) (notes '()))
 
 (define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. Its
 last VIEW was taken VIEW-AGE ticks ago."
@@ -47,57 +47,37 @@ thing, the name of a place type, or NIL if the designator is false; X and Y are 
 puts the robot, and how uncertain it is."
   (name nil) (x 0d0) (y 0d0) (heading 0d0) (width 0d0) (height 0d0) (axis 0d0) (spread 0d0))
 
-(setf (documentation 'snapshot-tick 'function) "Return the tick at which the snapshot was taken."
-      (documentation 'snapshot-map 'function) "Return the map of the world in the snapshot."
-      (documentation 'snapshot-part 'function)
-      "Return what is to be shown of the map, (left top right bottom) in cells, or NIL for all."
-      (documentation 'snapshot-things 'function)
-      "Return a vector of the images of the things on the floor, by serial number."
-      (documentation 'snapshot-robots 'function) "Return a list of the images of the robots."
-      (documentation 'robot-image-name 'function) "Return the symbol that the robot is called."
-      (documentation 'robot-image-x 'function) "Return the robot's x coordinate, in metres."
-      (documentation 'robot-image-y 'function) "Return the robot's y coordinate, in metres."
-      (documentation 'robot-image-designators 'function)
-      "Return a list of the images of the robot's designators, by number.")
-
-(setf (documentation 'thing-image-thing 'function)
-      "Return the thing itself."
-      (documentation 'thing-image-x 'function)
-      "Return the thing's x coordinate, in metres."
-      (documentation 'thing-image-y 'function)
-      "Return the thing's y coordinate, in metres."
-      (documentation 'thing-image-location 'function)
-      "Return in words what the thing is in, as `in hand 0 of ROBBIE', or NIL."
-      (documentation 'thing-image-attributes 'function)
-      "Return a list (name value) for each attribute of the thing."
-      (documentation 'robot-image-angle 'function)
-      "Return the robot's heading, in radians."
-      (documentation 'robot-image-cameras 'function)
-      "Return a list of the images of the robot's cameras."
-      (documentation 'robot-image-hands 'function)
-      "Return a list of the images of the robot's hands."
-      (documentation 'robot-image-bins 'function)
-      "Return a list of the images of the robot's storage bins."
-      (documentation 'camera-image-index 'function)
-      "Return the number of the camera."
-      (documentation 'camera-image-track 'function)
-      "Return the image of the designator that the camera tracks, or NIL."
-      (documentation 'hand-image-index 'function)
-      "Return the number of the hand."
-      (documentation 'hand-image-contents 'function)
-      "Return the image of the thing that the hand holds, or NIL."
-      (documentation 'hand-image-location 'function)
-      "Return what the hand is inside of: the image of a thing, a string, or NIL."
-      (documentation 'bin-image-contents 'function)
-      "Return a list of the images of the things in the storage bin."
-      (documentation 'bin-image-index 'function)
-      "Return the number of the storage bin."
-      (documentation 'bin-image-closed-p 'function)
-      "True if the storage bin is closed."
-      (documentation 'designator-image-number 'function)
-      "Return the number of the designator."
-      (documentation 'designator-image-denotation 'function)
-      "Return the image of the thing that it denotes, or the name of a place type, or NIL.")
+(document-functions
+  snapshot-tick "Return the tick at which the snapshot was taken."
+  snapshot-map "Return the map of the world in the snapshot."
+  snapshot-part
+  "Return what is to be shown of the map, (left top right bottom) in cells, or NIL for all."
+  snapshot-things "Return a vector of the images of the things on the floor, by serial number."
+  snapshot-robots "Return a list of the images of the robots."
+  robot-image-name "Return the symbol that the robot is called."
+  robot-image-x "Return the robot's x coordinate, in metres."
+  robot-image-y "Return the robot's y coordinate, in metres."
+  robot-image-designators "Return a list of the images of the robot's designators, by number."
+  thing-image-thing "Return the thing itself."
+  thing-image-x "Return the thing's x coordinate, in metres."
+  thing-image-y "Return the thing's y coordinate, in metres."
+  thing-image-location "Return in words what the thing is in, as `in hand 0 of ROBBIE', or NIL."
+  thing-image-attributes "Return a list (name value) for each attribute of the thing."
+  robot-image-angle "Return the robot's heading, in radians."
+  robot-image-cameras "Return a list of the images of the robot's cameras."
+  robot-image-hands "Return a list of the images of the robot's hands."
+  robot-image-bins "Return a list of the images of the robot's storage bins."
+  camera-image-index "Return the number of the camera."
+  camera-image-track "Return the image of the designator that the camera tracks, or NIL."
+  hand-image-index "Return the number of the hand."
+  hand-image-contents "Return the image of the thing that the hand holds, or NIL."
+  hand-image-location "Return what the hand is inside of: the image of a thing, a string, or NIL."
+  bin-image-contents "Return a list of the images of the things in the storage bin."
+  bin-image-index "Return the number of the storage bin."
+  bin-image-closed-p "True if the storage bin is closed."
+  designator-image-number "Return the number of the designator."
+  designator-image-denotation
+  "Return the image of the thing that it denotes, or the name of a place type, or NIL.")
 
 ;;; Things.
 
@@ -206,6 +186,12 @@ what it holds of each."
          :axis (odometer-origin-angle odometer)
          :spread (width angle))))))
 
+(defun notes-of (robot)
+  "Return a property list of what layers with a :note want to know of ROBOT."
+  (loop for layer in *layers*
+        when (%layer-note layer)
+          append (list (%layer-name layer) (funcall (%layer-note layer) robot))))
+
 (defun image-of-robot (robot position history)
   (flet ((images (function parts) (cl:map 'list function parts)))
     (make-robot-image
@@ -220,7 +206,7 @@ what it holds of each."
      :designators (images #'image-of-designator (live-designators robot))
      :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
      :trail (points-of-trail robot)
-     :planned-way (robot-way-left robot))))
+     :planned-way (robot-way-left robot) :notes (notes-of robot))))
 
 ;;; The whole.
 

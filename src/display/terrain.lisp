@@ -151,7 +151,8 @@ its parameter; plain black on a display without colours."
              (when (<= pixels (* factor unit graphics-scale*))
                (return-from steps-apart (* factor unit))))))
 
-(defun draw-grid (canvas window)
+(defun draw-grid (canvas map window)
+  (declare (ignore map))
   (let ((step (steps-apart 16)))
     (flet ((lines (from to function)
              (loop for at from (* step (ceiling from step)) to to by step
@@ -170,11 +171,14 @@ its parameter; plain black on a display without colours."
 
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
   "Draw the walls of MAP in black, or in greys by their substance parameters with a tint and a
-texture by their substance, and, as far as LAYERS lists :PLACES and :GRID, the marks of its places
-and the borders of its cells, on CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B). LEFT, TOP,
+texture by their substance, and what LAYERS lists below and on them, such as :GRID and :PLACES, on
+CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B). LEFT, TOP,
 RIGHT and BOTTOM, columns and rows of cells, say which part of MAP is wanted; by default all of
 it is."
   (let ((window (clip-window map left top right bottom)))
-    (when (member :grid layers) (draw-grid canvas window))
-    (draw-walls canvas map window)
-    (when (member :places layers) (draw-places canvas map window))))
+    (flet ((draw-at (depth)
+             (dolist (layer (layers-at depth layers))
+               (funcall (%layer-draw layer) canvas map window))))
+      (draw-at :under-walls)
+      (draw-walls canvas map window)
+      (draw-at :on-walls))))

@@ -57,16 +57,16 @@ large things are their initials, as far as can be. There may be more kinds than 
 (defun letter-of (name letters)
   (gethash name letters +other+))
 
-(defun thing-glyph (thing letters)
-  "Return the glyph of THING, in its own colour."
-  (let ((name (symbol-name (thing-name thing)))
-        (color (get-attribute thing :color)))
+(defun thing-glyph (image letters)
+  "Return the glyph of the thing, in its own colour."
+  (let ((name (symbol-name (thing-name (thing-image-thing image))))
+        (color (second (assoc :color (thing-image-attributes image)))))
     (make-glyph :thing (letter-of name letters) name
                 (and (typep color '(or symbol string)) color))))
 
-(defun things-glyphs (things letters)
-  "Return the glyphs of the kinds of THINGS: in front the one for all, if they are several."
-  (let ((glyphs (remove-duplicates (mapcar (lambda (thing) (thing-glyph thing letters)) things)
+(defun things-glyphs (images letters)
+  "Return the glyphs of the kinds of the things: in front the one for all, if they are several."
+  (let ((glyphs (remove-duplicates (mapcar (lambda (image) (thing-glyph image letters)) images)
                                    :key #'glyph-text :test #'string= :from-end t)))
     (if (rest glyphs)
         (cons (make-glyph :several +several+ "several things" :bold) glyphs)
@@ -107,14 +107,16 @@ large things are their initials, as far as can be. There may be more kinds than 
   "Return the arrow that points most nearly in the direction ANGLE, in radians."
   (char ">v<^" (mod (round (/ angle (/ pi 2))) 4)))
 
-(defun names-text (things)
-  "Return what THINGS are called, each name once."
-  (format nil "~{~A~^, ~}" (remove-duplicates (mapcar #'thing-name things) :from-end t)))
+(defun names-text (images)
+  "Return what the things are called, each name once."
+  (format nil "~{~A~^, ~}"
+          (remove-duplicates (mapcar (lambda (image) (thing-name (thing-image-thing image))) images)
+                             :from-end t)))
 
 (defun robot-glyph (robot things)
-  "Return the glyph of ROBOT, which stands on THINGS."
-  (multiple-value-bind (x y) (robot-position robot)
-    (make-glyph :robot (arrow-glyph (robot-angle robot))
-                (format nil "~A (~,2F,~,2F)~:[ with ~A~;~]" robot x y (null things)
-                        (names-text things))
-                :reverse)))
+  "Return the glyph of ROBOT, which stands on THINGS: all are images."
+  (make-glyph :robot (arrow-glyph (robot-image-angle robot))
+              (format nil "~A (~,2F,~,2F)~:[ with ~A~;~]" (robot-image-name robot)
+                      (hundredths (robot-image-x robot)) (hundredths (robot-image-y robot))
+                      (null things) (names-text things))
+              :reverse))

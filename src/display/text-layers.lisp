@@ -2,16 +2,10 @@
 
 (in-package :ars-magna.display)
 
-;;; A layer is a list of pairs of the number of a block and of the glyph that is to be seen there.
+;;; These are called by layers.lisp. Each returns a list of pairs of the number of a block and of
+;;; the glyph that is to be seen there.
 
-(define-constant +text-layers+ '(:cones :way :plan :belief)
-  :test #'cl:equal
-  :documentation "What a text map shows on demand: CONES, what is in the fields of view of the
-robot's cameras; WAY, where the robot went, as far as a history was kept; PLAN, which way it is
-about to go, as far as its program has told; BELIEF, where it believes itself and what its
-designators denote to be.")
-
-(defun glyph-at (view x y glyph)
+(defun mark-at (view x y glyph)
   "Return a list of the pair of the block of VIEW at X, Y and of GLYPH, or NIL if it is outside."
   (let ((number (block-at view x y)))
     (and number (list (cons number glyph)))))
@@ -21,42 +15,41 @@ designators denote to be.")
 (define-constant +ray-spacing+ 0.01d0
   :documentation "How far apart the lines are that find what is in a field of view, in radians.")
 
-(defun cells-seen (world x y angle)
-  "Return the indices of the cells of WORLD that a camera at X, Y sees in direction ANGLE."
-  (let ((map (world-map world)) (flags (world-flags world)) (indices '()))
+(defun cells-seen (map opaque-p x y angle)
+  "Return the indices of the cells of MAP that a camera at X, Y sees in direction ANGLE."
+  (let ((indices '()))
     (walk-grid (lambda (index at column)
                  (declare (ignore at column))
                  (push index indices)
-                 (logtest +opaque+ (aref flags index)))
+                 (funcall opaque-p index))
                (map-width map) (map-height map) x y (cosine angle) (sine angle) +no-limit+)
     indices))
 
-(defun cone (view camera)
+(defun cone (view robot camera)
   "Return the numbers of the blocks of VIEW that have something in the field of view of CAMERA."
-  (let* ((robot (camera-robot camera))
-         (x (robot-x robot)) (y (robot-y robot))
-         (width (camera-field-of-view camera))
+  (let* ((width (camera-image-field-of-view camera))
          (count (max 1 (ceiling width +ray-spacing+)))
-         (first (- (+ (robot-angle robot) (camera-angle camera)) (/ width 2))))
+         (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
+         (opaque-p (opaque-cells (view-snapshot view))))
     (remove-duplicates
      (loop for ray to count
-           append (loop for index in (cells-seen (robot-world robot) x y
+           append (loop for index in (cells-seen (view-map view) opaque-p
+                                                 (robot-image-x robot) (robot-image-y robot)
                                                  (+ first (* ray (/ width count))))
                         when (block-of-index view index) collect it)))))
 
-(defun cones-layer (view robot)
-  (let ((glyph (make-glyph :layer #\` (format nil "in view of ~A" robot) :yellow)))
-    (when (robot-cell-index robot)
-      (loop for camera across (robot-cameras robot)
-            unless (camera-location camera)
-              append (loop for number in (cone view camera) collect (cons number glyph))))))
+(defun cone-marks (view robot)
+  (let ((glyph (make-glyph :layer #\` (format nil "in view of ~A" (robot-image-name robot))
+                           :yellow)))
+    (loop for camera in (remove-if-not #'looking-out (robot-image-cameras robot))
+          append (loop for number in (cone view robot camera) collect (cons number glyph)))))
 
 ;;; Ways.
 
-(defun way-layer (view robot)
-  (let ((glyph (make-glyph :layer #\+ (format nil "way of ~A" robot) :green)))
-    (do-trail ((points-of-trail robot) x y)
-          append (glyph-at view x y glyph))))
+(defun trail-marks (view robot)
+  (let ((glyph (make-glyph :layer #\+ (format nil "way of ~A" (robot-image-name robot)) :green)))
+    (do-trail ((robot-image-trail robot) x y)
+          append (mark-at view x y glyph))))
 
 (defconstant +way-spacing+ 0.2d0
   "How far apart the points of a planned way are that are shown, in metres.")
@@ -68,43 +61,35 @@ designators denote to be.")
       (loop for i to count
             collect (list (+ x (* dx (/ i count))) (+ y (* dy (/ i count))))))))
 
-(defun plan-layer (view robot)
-  (let ((glyph (make-glyph :layer #\: (format nil "planned way of ~A" robot) :cyan)))
-    (loop for (from to) on (robot-way-left robot)
+(defun planned-marks (view robot)
+  (let ((glyph (make-glyph :layer #\: (format nil "planned way of ~A" (robot-image-name robot))
+                           :cyan)))
+    (loop for (from to) on (robot-image-planned-way robot)
           while to
           append (loop for (x y) in (points-between from to)
-                       append (glyph-at view x y glyph)))))
+                       append (mark-at view x y glyph)))))
 
 ;;; Beliefs.
 
-(defun own-position-layer (view robot)
-  "Return where the main odometer of ROBOT puts it."
-  (let* ((odometer (image-of-odometer robot))
-         (x (odometer-image-x odometer)) (y (odometer-image-y odometer)))
-    (glyph-at view x y
-              (make-glyph :robot #\@
-                          (format nil "believed (~,2F,~,2F)" (hundredths x) (hundredths y))
-                          :bold))))
+(defun own-position-marks (view odometer)
+  "Return where ODOMETER puts its robot."
+  (let ((x (odometer-image-x odometer)) (y (odometer-image-y odometer)))
+    (mark-at view x y (make-glyph :robot #\@
+                                  (format nil "believed (~,2F,~,2F)" (hundredths x) (hundredths y))
+                                  :bold))))
 
-(defun designator-layer (view robot designator)
+(defun designator-marks (view robot designator)
   "Return where ROBOT believes what DESIGNATOR denotes to be: it knows that from where it is."
-  (let ((angle (+ (robot-angle robot) (designator-angle designator)))
-        (distance (designator-distance designator)))
-    (glyph-at view
-              (+ (robot-x robot) (* distance (cosine angle)))
-              (+ (robot-y robot) (* distance (sine angle)))
-              (make-glyph :layer (digit-char (mod (designator-number designator) 10))
-                          (format nil "~A" designator) :bold))))
+  (destructuring-bind (x y)
+      (around (robot-image-x robot) (robot-image-y robot)
+              (+ (robot-image-angle robot) (designator-image-angle designator))
+              (designator-image-distance designator))
+    (mark-at view x y
+             (make-glyph :layer (digit-char (mod (designator-image-number designator) 10))
+                         (subject-title designator) :bold))))
 
-(defun belief-layer (view robot)
-  (append (and (robot-main-odometer robot) (own-position-layer view robot))
-          (loop for designator in (live-designators robot)
-                append (designator-layer view robot designator))))
-
-(defun layer-of (view robot layer)
-  "Return the pairs that LAYER, one of +TEXT-LAYERS+, has for ROBOT in VIEW."
-  (ecase layer
-    (:cones (cones-layer view robot))
-    (:way (way-layer view robot))
-    (:plan (plan-layer view robot))
-    (:belief (belief-layer view robot))))
+(defun belief-marks (view robot)
+  (append (and (robot-image-odometer robot)
+               (own-position-marks view (robot-image-odometer robot)))
+          (loop for designator in (robot-image-designators robot)
+                append (designator-marks view robot designator))))

@@ -65,14 +65,13 @@ NIL, as far as there is room."
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
   "Return a sheet of REGION for ROBOT that, with the head of its legend, fits into ROWS lines of
-COLUMNS characters, if that can be."
-  (flet ((sheet-above (lines)
-           (sheet-of robot
-                     (view-of (robot-world robot) region (- columns +margin-columns+)
-                              (and rows (max 1 (- rows 1 lines))))
-                     layers colored-p)))
+COLUMNS characters, if that can be. Kinds of things have letters also while none lies about."
+  (let* ((world (robot-world robot)) (snapshot (take-snapshot world)) (letters (letters-of world))
+         (image (snapshot-robot snapshot (robot-name robot))))
     (loop for lines from 1
-          for sheet = (sheet-above lines)
+          for view = (view-of snapshot region (- columns +margin-columns+)
+                              (and rows (max 1 (- rows 1 lines))))
+          for sheet = (sheet-of image view layers letters colored-p)
           for head = (filled (head-entries sheet #'unpainted) columns)
           when (or (null rows) (<= (length head) lines) (<= rows (+ 2 lines)))
             return sheet)))
@@ -114,8 +113,8 @@ out. Call it where the world stands still. Signals WRONG-ARGUMENT."
   (check-argument text-map radius (or (null radius) (whole-p radius))
                   "a whole number of cells, from 0 to 1e9, or NIL")
   (check-region region (world-map (robot-world robot)))
-  (check-argument text-map layers (and (proper-list-p layers) (subsetp layers +text-layers+))
-                  (format nil "a list of some of ~{~(~S~)~^, ~}" +text-layers+))
+  (check-argument text-map layers (and (proper-list-p layers) (subsetp layers (text-layers)))
+                  (format nil "a list of some of ~{~(~S~)~^, ~}" (text-layers)))
   (let ((sheet (fitting-sheet robot (if radius (region-near robot radius) region)
                               columns rows layers (and paint t)))
         (paint (or paint #'unpainted)))

@@ -12,7 +12,8 @@ a list of all glyphs that mean something there."
   (letters nil :type hash-table :read-only t)
   ;; Walls are told apart by colour.
   (colored-p nil :read-only t)
-  ;; By layer, a table from the numbers of blocks to lists of glyphs.
+  (things nil :type hash-table :read-only t)
+  ;; For each layer, the last first, its depth with a table from blocks to lists of glyphs.
   (marks '() :type list)
   (glyphs #() :type simple-vector)
   (legend '() :type list))
@@ -28,40 +29,55 @@ a list of all glyphs that mean something there."
 (defun mark-layer (sheet robot layer)
   "Mark the blocks of SHEET that LAYER has for ROBOT."
   (let ((table (make-hash-table)))
-    (loop for (number . glyph) in (layer-of (sheet-view sheet) robot layer)
+    (loop for (number . glyph) in (funcall (%layer-text layer) (sheet-view sheet) robot)
           do (push glyph (gethash number table)))
-    (setf (getf (sheet-marks sheet) layer) table)))
+    (push (cons (%layer-text-depth layer) table) (sheet-marks sheet))))
 
-(defun marked (sheet layer number)
-  "Return a list of the glyph that LAYER has in the block NUMBER of SHEET, or NIL."
-  (let* ((table (getf (sheet-marks sheet) layer))
-         (glyphs (and table (gethash number table))))
-    (and glyphs (list (first glyphs)))))
+(defun marked (sheet depth number)
+  "Return a list of the glyph of the last layer at DEPTH that has one in the block NUMBER of SHEET."
+  (loop for (its-depth . table) in (sheet-marks sheet)
+        for glyphs = (and (eq depth its-depth) (gethash number table))
+        when glyphs return (list (first glyphs))))
+
+(defun cell-of (view x y)
+  "Return the index of the cell of the map of VIEW at X, Y."
+  (map-index (view-map view) x y))
 
 (defun robots-in (view indices)
-  (remove-if-not (lambda (robot) (member (robot-cell-index robot) indices))
-                 (world-robots (view-world view))))
+  (remove-if-not (lambda (robot)
+                   (member (cell-of view (robot-image-x robot) (robot-image-y robot)) indices))
+                 (snapshot-robots (view-snapshot view))))
+
+(defun things-by-cell (view)
+  "Return a hash table from indices of cells to lists of images of things in VIEW, by number."
+  (let ((table (make-hash-table)))
+    (loop for image across (reverse (snapshot-things (view-snapshot view)))
+          do (push image (gethash (cell-of view (thing-image-x image) (thing-image-y image))
+                                  table)))
+    table))
 
 (defun glyphs-of-block (sheet number indices)
   "Return the glyphs of what matters most in the block NUMBER of SHEET, which has the cells INDICES:
 first the one that shows."
   (let* ((view (sheet-view sheet))
          (map (view-map view))
-         (things (loop for index in indices append (cell-things index (view-world view)))))
+         (things (loop for index in indices append (gethash index (sheet-things sheet)))))
     (or (mapcar (lambda (robot) (robot-glyph robot things)) (robots-in view indices))
-        (marked sheet :belief number)
+        (marked sheet :above number)
         (things-glyphs things (sheet-letters sheet))
-        (marked sheet :plan number)
-        (marked sheet :way number)
+        (marked sheet :below number)
         (wall-glyphs map indices (sheet-colored-p sheet))
         (place-glyphs map indices)
-        (marked sheet :cones number))))
+        (marked sheet :floor number))))
 
-(defun sheet-of (robot view layers colored-p)
-  "Return a sheet of VIEW with LAYERS, some of +TEXT-LAYERS+, for ROBOT."
-  (let ((sheet (make-sheet :view view :colored-p colored-p
-                           :letters (letters-of (view-world view)))))
-    (dolist (layer layers) (mark-layer sheet robot layer))
+(defun sheet-of (robot view layers letters colored-p)
+  "Return a sheet of VIEW with LAYERS, some of (TEXT-LAYERS), for ROBOT, an image. LETTERS are those
+of things."
+  (let ((sheet (make-sheet :view view :colored-p colored-p :things (things-by-cell view)
+                           :letters letters)))
+    (dolist (layer *layers*)
+      (when (and (%layer-text layer) (member (%layer-text-name layer) layers))
+        (mark-layer sheet robot layer)))
     (setf (sheet-glyphs sheet)
           (coerce (loop for row below (view-rows view)
                         append (loop for column below (view-columns view)

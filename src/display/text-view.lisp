@@ -6,8 +6,9 @@
 ;;; so where a map has to be scaled down to a number of lines, blocks may be twice as high, too.
 
 (defstruct (view (:copier nil))
-  "Which cells a text map shows: COLUMNS x ROWS blocks of WIDE x HIGH cells from LEFT and TOP."
-  (world nil :type world :read-only t)
+  "Which cells of SNAPSHOT a text map shows: COLUMNS x ROWS blocks of WIDE x HIGH cells from LEFT
+and TOP."
+  (snapshot nil :type snapshot :read-only t)
   (left 0 :type fixnum :read-only t)
   (top 0 :type fixnum :read-only t)
   (columns 1 :type (integer 1) :read-only t)
@@ -15,7 +16,7 @@
   (wide 1 :type (integer 1) :read-only t)
   (high 1 :type (integer 1) :read-only t))
 
-(defun view-map (view) (world-map (view-world view)))
+(defun view-map (view) (snapshot-map (view-snapshot view)))
 
 ;;; Regions.
 
@@ -39,16 +40,16 @@ COLUMNS x ROWS; ROWS may be NIL, if lines do not count."
           do (cond ((fits-p wide wide) (return (values wide wide)))
                    ((fits-p wide (* 2 wide)) (return (values wide (* 2 wide))))))))
 
-(defun view-of (world region columns rows)
-  "Return a view of REGION, a list (left top right bottom) in metres, or NIL for all of WORLD, in
+(defun view-of (snapshot region columns rows)
+  "Return a view of REGION, a list (left top right bottom) in metres, or NIL for all of SNAPSHOT, in
 COLUMNS characters of a line and ROWS lines at most; ROWS may be NIL."
-  (let ((map (world-map world)))
+  (let ((map (snapshot-map snapshot)))
     (destructuring-bind (x1 y1 x2 y2) (or region (list 0 0 (map-width map) (map-height map)))
       (multiple-value-bind (left right) (clipped 0 x1 x2 (map-width map))
         (multiple-value-bind (top bottom) (clipped 0 y1 y2 (map-height map))
           (multiple-value-bind (wide high)
               (least-block (- right left) (- bottom top) columns rows)
-            (make-view :world world :left left :top top :wide wide :high high
+            (make-view :snapshot snapshot :left left :top top :wide wide :high high
                        :columns (ceiling (- right left) wide)
                        :rows (ceiling (- bottom top) high))))))))
 

@@ -96,11 +96,13 @@ or :DIAMOND."
   (dolist (image (stable-sort (coerce images 'list) #'> :key #'thing-image-size))
     (draw-thing-on-map canvas image)))
 
+(defun moving-things (snapshot)
+  (coerce (remove-if-not #'thing-image-moving-p (snapshot-things snapshot)) 'list))
+
 (defun draw-reach (canvas images)
-  "Draw a ring around each thing that moves by itself."
-  (loop for image across images
-        when (thing-image-moving-p image)
-          do (inked ((layer-ink :reach) :dashes (layer-dashes :reach))
-               (draw-circle canvas (to-pixels (thing-image-x image))
-                            (to-pixels (thing-image-y image))
-                            (+ (half-width image) (/ graphics-scale* 2) 2) nil))))
+  "Draw a ring around each of IMAGES, of things."
+  (loop for image in images
+        do (inked ((layer-ink :reach) :dashes (layer-dashes :reach))
+             (draw-circle canvas (to-pixels (thing-image-x image))
+                          (to-pixels (thing-image-y image))
+                          (+ (half-width image) (/ graphics-scale* 2) 2) nil))))

@@ -5,29 +5,39 @@
 ;;; Terrain never changes and may be kept by a canvas; movers are drawn over it. Angles grow
 ;;; clockwise from the right on the map and on the canvas alike.
 
-(defun draw-camera-layers (canvas snapshot robot camera layers)
-  (flet ((shown-p (layer) (member layer layers)))
-    (when (and (shown-p :rays) (camera-image-look camera))
-      (draw-rays canvas (snapshot-map snapshot) (camera-image-look camera)))
-    (when (and (shown-p :wedges) (null (camera-image-location camera)))
-      (draw-wedge canvas snapshot robot camera))
-    (when (and (shown-p :tracks) (camera-image-track camera))
-      (draw-track canvas robot (camera-image-track camera)))))
+(defun shown-by (layer image)
+  "Return what LAYER shows of IMAGE, a snapshot or the image of a robot or camera; NIL if nothing."
+  (if (%layer-shown layer)
+      (funcall (%layer-shown layer) image)
+      (getf (robot-image-notes image) (%layer-name layer))))
 
-(defun draw-layers (canvas snapshot robot layers)
-  "Draw what LAYERS lists of what ROBOT sees and believes, and lies below things."
-  (dolist (camera (robot-image-cameras robot))
-    (draw-camera-layers canvas snapshot robot camera layers))
-  (when (and (member :odometer layers) (robot-image-odometer robot))
-    (draw-odometer canvas (robot-image-odometer robot))))
+(defun shown-at (depth layers image &rest more)
+  "Return lists (layer shown . MORE) of those of LAYERS at DEPTH that show something of IMAGE."
+  (loop for layer in (layers-at depth layers)
+        for shown = (shown-by layer image)
+        when shown collect (list* layer shown more)))
 
-(defun draw-labels (canvas snapshot layers)
-  "Draw what LAYERS lists that lies above things."
-  (when (member :designators layers)
-    (dolist (robot (snapshot-robots snapshot))
-      (dolist (designator (robot-image-designators robot))
-        (draw-designator-on-map canvas robot designator))))
-  (when (member :names layers) (draw-names canvas snapshot layers)))
+(defun shown-below-things (snapshot layers)
+  "Return what LAYERS list of SNAPSHOT that things lie on, as SHOWN-AT does, from the lowest up."
+  (append (shown-at :ways layers snapshot)
+          (loop for robot in (snapshot-robots snapshot)
+                append (loop for camera in (robot-image-cameras robot)
+                             append (shown-at :looks layers camera robot snapshot)
+                             append (shown-at :cameras layers camera robot snapshot))
+                append (shown-at :robots layers robot robot snapshot))
+          (shown-at :things layers snapshot)))
+
+(defun shown-above-things (snapshot layers)
+  (shown-at :labels layers snapshot))
+
+(defun shown-lines (snapshot layers)
+  "Return all that LAYERS list of SNAPSHOT that is drawn for them alone, as SHOWN-AT does."
+  (append (shown-below-things snapshot layers) (shown-above-things snapshot layers)))
+
+(defun draw-shown (canvas shown)
+  "Draw what is SHOWN, as SHOWN-AT returns it."
+  (loop for (layer . arguments) in shown
+        do (apply (%layer-draw layer) canvas arguments)))
 
 (define-constant +beyond+ 8
   :documentation "How far robots at the edges of the map are seen beyond these, in pixels: no more
@@ -44,21 +54,15 @@ than all margins have.")
   "Run BODY; what it draws on CANVAS more than BEYOND pixels outside of MAP stays invisible."
   `(call-on-map (lambda () ,@body) ,canvas ,map ,beyond))
 
-(defun draw-below-robots (canvas snapshot layers)
-  "Draw what LAYERS lists of SNAPSHOT that robots and things lie on."
-  (draw-ways-of-robots canvas (snapshot-robots snapshot) layers)
-  (dolist (robot (snapshot-robots snapshot))
-    (draw-layers canvas snapshot robot layers))
-  (when (member :reach layers) (draw-reach canvas (snapshot-things snapshot))))
-
 (defun draw-movers (canvas snapshot layers)
   "Draw what is not terrain of SNAPSHOT on CANVAS: things, robots, and what LAYERS lists of them."
   (let ((map (snapshot-map snapshot)))
-    (on-map (canvas map) (draw-below-robots canvas snapshot layers))
+    (on-map (canvas map) (draw-shown canvas (shown-below-things snapshot layers)))
     (on-map (canvas map +beyond+) (draw-robots canvas (snapshot-robots snapshot)))
     (on-map (canvas map)
       (draw-things canvas (snapshot-things snapshot))
-      (draw-labels canvas snapshot layers))))
+      (draw-shown canvas (shown-above-things snapshot layers))
+      (when (member :names layers) (draw-names canvas snapshot layers)))))
 
 (defun draw-world (canvas snapshot &key (layers *picture-layers*))
   "Draw the map of SNAPSHOT on CANVAS, GRAPHICS-SCALE* pixels to a metre, with what LAYERS lists
