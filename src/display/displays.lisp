@@ -2,8 +2,15 @@
 
 (in-package :ars-magna.display)
 
+(define-constant +details+
+    '((:state "Robot state" draw-state) (:designators "Robot designators" draw-designators)
+      (:cameras "Cameras" draw-cameras) (:hands "Hands" draw-hands)
+      (:bins "Storage bins" draw-bins))
+  :test #'cl:equal
+  :documentation "Lists (name title function): the displays but that of the world.")
+
 ;; As reading 27 says.
-(define-constant +displays+ '(:world :state :designators :cameras :hands :bins)
+(define-constant +displays+ (cons :world (mapcar #'first +details+))
   :test #'cl:equal
   :documentation "The displays: bird's eye view, robot state, robot designators, cameras, hands and
 storage bins.")
@@ -13,24 +20,12 @@ storage bins.")
 
 (defun display-title (display)
   "Return what the window of DISPLAY, one of +DISPLAYS+, is called (manual B)."
-  (ecase display
-    (:world "World")
-    (:state "Robot state")
-    (:designators "Robot designators")
-    (:cameras "Cameras")
-    (:hands "Hands")
-    (:bins "Storage bins")))
+  (if (eq :world display) "World" (second (assoc display +details+))))
 
 (defun draw-detail (canvas display robot width)
   "Draw one of the displays of ROBOT, WIDTH pixels wide; return its height."
   (let ((*size-unit* (size-unit robot)))
-    (funcall (ecase display
-               (:state #'draw-state)
-               (:designators #'draw-designators)
-               (:cameras #'draw-cameras)
-               (:hands #'draw-hands)
-               (:bins #'draw-bins))
-             canvas robot width)))
+    (funcall (third (assoc display +details+)) canvas robot width)))
 
 (defun draw-titled (canvas display robot x y)
   "Draw a display of ROBOT with its title and a frame, its upper left corner at X, Y; return its

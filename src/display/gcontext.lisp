@@ -18,19 +18,15 @@
   (line-style :solid :type line-style)
   (dashes 4 :type dashes))
 
-(setf (documentation 'create-gcontext 'function)
-      "Return a new graphics context: by default solid black lines, one pixel wide."
-      (documentation 'gcontext-p 'function) "True of a graphics context."
-      (documentation 'gcontext-foreground 'function)
-      "Return the colour that the graphics context draws with. Can be set."
-      (documentation 'gcontext-background 'function)
-      "Return the colour that CLEAR-AREA and image glyphs fill with. Can be set."
-      (documentation 'gcontext-line-width 'function)
-      "Return how wide lines are, in pixels; 0 means the thinnest. Can be set."
-      (documentation 'gcontext-line-style 'function)
-      "Return how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set."
-      (documentation 'gcontext-dashes 'function)
-      "Return how long dashes and the gaps between them are, in pixels: one integer for all, by
+(document-functions
+  create-gcontext "Return a new graphics context: by default solid black lines, one pixel wide."
+  gcontext-p "True of a graphics context."
+  gcontext-foreground "Return the colour that the graphics context draws with. Can be set."
+  gcontext-background "Return the colour that CLEAR-AREA and image glyphs fill with. Can be set."
+  gcontext-line-width "Return how wide lines are, in pixels; 0 means the thinnest. Can be set."
+  gcontext-line-style "Return how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set."
+  gcontext-dashes
+  "Return how long dashes and the gaps between them are, in pixels: one integer for all, by
 default 4, or a list (dash gap ...). Can be set. A canvas may have dashes of its own instead.")
 
 (public draw-gcontext*)

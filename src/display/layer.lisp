@@ -7,10 +7,11 @@
 ;;; layers.lisp. A layer is drawn at a depth:
 ;;;
 ;;;   :UNDER-WALLS, :ON-WALLS     on the map, which never changes: (draw canvas map window)
-;;;   :WAYS, :THINGS, :LABELS     of the whole snapshot, below robots, below things, above things:
+;;;   :WAYS, :THINGS              of the whole snapshot, below robots, below things:
 ;;;                               (draw canvas shown)
-;;;   :ROBOTS                     of each robot, below things: (draw canvas shown robot snapshot)
-;;;   :LOOKS, :CAMERAS            of each camera, below these; looks lie lower: the same
+;;;   :ROBOTS, :LABELS            of each robot, below and above things:
+;;;                               (draw canvas shown robot snapshot)
+;;;   :LOOKS, :CAMERAS            of each camera, below :ROBOTS; looks lie lower: the same
 ;;;   :NAMES, :MARGIN             names.lisp and margins.lisp draw these
 ;;;
 ;;; The function :SHOWN of a snapshot, or of the image of a robot or camera, returns what there is
@@ -18,24 +19,10 @@
 
 (defstruct (layer (:copier nil) (:conc-name %layer-))
   "What pictures can show, and how: see DEFINE-LAYER."
-  (name nil :type keyword :read-only t)
-  (title "" :type string :read-only t)
-  (sentence "" :type string :read-only t)
-  (default-p nil :read-only t)
-  (depth :robots :read-only t)
-  (ink nil :read-only t)
-  (dashes '() :type list :read-only t)
-  (width 1 :read-only t)
-  (legend nil :type (or null string) :read-only t)
-  (last-p nil :read-only t)
-  (entries nil :read-only t)
-  (note nil :read-only t)
-  (shown nil :read-only t)
-  (draw nil :read-only t)
-  (boxes nil :read-only t)
-  (text-name nil :read-only t)
-  (text-depth :below :read-only t)
-  (text nil :read-only t))
+  (name nil :type keyword) (title "" :type string) (sentence "" :type string)
+  (default-p nil) (depth :robots :type keyword) (shown nil) (draw nil) (note nil) (boxes nil)
+  (ink nil) (dashes '() :type list) (width 1) (legend nil) (entries nil) (last-p nil)
+  (text-name nil) (text-depth :below :type keyword) (text nil))
 
 (defvar *layers* '() "The layers, in the order of menus.")
 

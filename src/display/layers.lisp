@@ -32,7 +32,7 @@
 
 (define-layer :designators "Designators"
   "Where the robot believes that to be which it designates, joined to where it really is."
-  :depth :labels :shown 'robots-that-designate :draw 'draw-designators-on-map
+  :depth :labels :shown 'robot-image-designators :draw 'draw-designators-on-map
   :boxes 'designator-boxes
   :ink #x0C3C78 :dashes '(4) :legend "believed, true"
   :text-name :belief :text 'belief-marks :text-depth :above)

@@ -98,9 +98,6 @@ WIDTH."
   (destructuring-bind (x y) (believed-place robot designator)
     (list (box-around x y (+ 2 (track-radius))))))
 
-(defun robots-that-designate (snapshot)
-  (remove-if-not #'robot-image-designators (snapshot-robots snapshot)))
-
 (defun designator-box (robot designator)
   "Return the box (left top right bottom) of the cross and the number of DESIGNATOR, in pixels."
   (destructuring-bind (x y) (believed-place robot designator)
@@ -123,16 +120,14 @@ to what it denotes."
           (draw-text-on-plate canvas (+ x 7) (- y 3)
                               (princ-to-string (designator-image-number designator))))))))
 
-(defun designator-boxes (robots)
-  "Return the boxes of the crosses and numbers of all designators of ROBOTS."
-  (loop for robot in robots
-        append (loop for designator in (robot-image-designators robot)
-                     collect (designator-box robot designator))))
+(defun designator-boxes (designators robot snapshot)
+  "Return the boxes of the crosses and numbers of DESIGNATORS."
+  (declare (ignore snapshot))
+  (mapcar (lambda (designator) (designator-box robot designator)) designators))
 
-(defun draw-designators-on-map (canvas robots)
-  (dolist (robot robots)
-    (dolist (designator (robot-image-designators robot))
-      (draw-designator-on-map canvas robot designator))))
+(defun draw-designators-on-map (canvas designators robot snapshot)
+  (declare (ignore snapshot))
+  (dolist (designator designators) (draw-designator-on-map canvas robot designator)))
 
 (defun odometer-box (odometer)
   "Return the corners of the box that contains the position of ODOMETER, x y ..., in metres."

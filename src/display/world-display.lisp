@@ -28,7 +28,9 @@
           (shown-at :things layers snapshot)))
 
 (defun shown-above-things (snapshot layers)
-  (shown-at :labels layers snapshot))
+  "Return what LAYERS list of SNAPSHOT that lies above things, as SHOWN-AT does."
+  (loop for robot in (snapshot-robots snapshot)
+        append (shown-at :labels layers robot robot snapshot)))
 
 (defun shown-lines (snapshot layers)
   "Return all that LAYERS list of SNAPSHOT that is drawn for them alone, as SHOWN-AT does."
