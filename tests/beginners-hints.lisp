@@ -136,6 +136,42 @@
     (is (not (search "under way"
                      (told '(rpl:wait-for (svref driver:camera-input* 0))))))))
 
+;;; Functions called in the place of a continuation.
+
+(defun arrived-here (&rest told) told)
+(defun rider-of (&rest told) (lambda (&rest more) (append told more)))
+(defun next-one () nil)
+
+(test continuations.that-are-called-at-once-are-warned-of
+  (flet ((told (continuation)
+           (warning-about `(lambda () (command:robot-turn rover 1 ,continuation)))))
+    (is-true (has-words-p (told '(arrived-here)) "(arrived-here) is done at once"
+                          "(continuation (err &rest results) (arrived-here))"))
+    (dolist (form '(#'arrived-here (rider-of) (next-one) (arrived-here 1) nil))
+      (is (string= "" (told form))))))
+
+(test manipulations.say-that-no-method-is-for-the-things
+  (with-own-definitions
+    (eval '(command:defmanipulation paint-over (pot - ((:kind :pot)) :by hand) () t))
+    (is-true (has-words-p
+              (rover-writes (:clean t)
+                (let ((crate (world:find-thing 'crate)))
+                  (robot:place-robot rover (world:thing-x crate) (- (world:thing-y crate) .3) 0)
+                  (command:camera-get-object-designator
+                   (robot:robot-camera rover 0) :local '((:size 6))
+                   (lambda (err camera designator)
+                     (declare (ignore err camera))
+                     (command:run-manipulation 'paint-over designator
+                                               (robot:robot-hand rover 0) nil)))
+                  (run:run-ticks 9)))
+              "paint-over failed: none of its methods is for"))))
+
+(test handlers.with-other-endings-are-told-of
+  (is-true (has-words-p (rover-writes ()
+                          (driver:run-plan (plan-of (rpl:handle-failure ((:stucked () (return 1)))
+                                                      (rpl:fail :class :stuck)))))
+                        "a clause is for :stucked, but the class is :stuck")))
+
 ;;; Kickers and attributes of things.
 
 (defun told-of-run (&rest forms)

@@ -62,10 +62,15 @@
 
 (defun slip-for-p (type class)
   "True if TYPE, a symbol that is not called like CLASS, may be meant for it: they differ in more
-than in digits."
-  (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name))))
-    (and (resembles-p type class)
-         (string-not-equal (letters type) (letters class)))))
+than in digits, perhaps by an ending as in STUCK and STUCKED."
+  (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
+         (ending-p (short long)
+           (and (<= 4 (length short))
+                (<= (length long) (+ 3 (length short)))
+                (starts-with-subseq short long :test #'char-equal))))
+    (let ((own (letters type)) (other (letters class)))
+      (and (string-not-equal own other)
+           (or (resembles-p type class) (ending-p own other) (ending-p other own))))))
 
 (defun missed-clause (failure)
   "Return what a clause around FAILURE is for that was most likely meant for its class, which is the

@@ -90,10 +90,21 @@ lambda list that ends in an optional one."
     ((cons symbol) (or (member (first form) *returning-nothing*)
                        (get (first form) 'command-shape)))))
 
-(defun doubt-result (name form)
-  "Warn if FORM, the continuation in a call of the command NAME, does at once what is to be done in
-the end."
-  (when (returns-nothing-p form)
+(defun called-early-p (form count)
+  "True if FORM calls without arguments a user's function that could itself be a continuation, with
+COUNT arguments, and that is not known to return one."
+  (and (typep form '(cons symbol null))
+       (users-symbol-p (first form))
+       (fboundp (first form))
+       (not (macro-function (first form)))
+       (callable-with-p (first form) count)
+       (not (find 'function (ensure-list (third (ensure-list (sb-introspect:function-type
+                                                              (first form)))))))))
+
+(defun doubt-result (name form count)
+  "Warn if FORM, the continuation in a call of the command NAME, which gets COUNT arguments, does at
+once what is to be done in the end."
+  (when (or (returns-nothing-p form) (called-early-p form count))
     (let ((*print-pretty* nil))
       (doubt-definition "~(~A~): ~S is done at once, not when the command has ended, and returns ~
                          no continuation. Write (continuation (err &rest results) ~:*~S)."
@@ -203,6 +214,6 @@ later (reading 149)."
          (doubt-count ',name '(,(first resource) ,@variables &optional continuation) arguments)
          (doubt-unquoted ',name arguments)
          (doubt-units ',name arguments)
-         (doubt-result ',name (nth ,(1+ (length parameters)) arguments))
+         (doubt-result ',name (nth ,(1+ (length parameters)) arguments) ,(+ 2 (length results)))
          form)
        ',name)))

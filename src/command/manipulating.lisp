@@ -144,10 +144,14 @@ is NIL (manual E)."
            (operation-arguments operation)))
 
 (defun failed-text (operation)
-  "Return in words that the manipulation OPERATION failed, and why if that is its designator."
-  (format nil "~A failed~@[: ~A is not local, as objects of manipulations must be. Go there, as by ~
-               robot-goto-designator, and search again with the type :local~]"
-          (command-prefix (operation-command operation)) (far-designator operation)))
+  "Return in words that the manipulation OPERATION failed, and why if that is its designator, or no
+method is for the things."
+  (let ((far (far-designator operation)))
+    (format nil "~A failed~@[: ~A is not local, as objects of manipulations must be. Go there, as ~
+                 by robot-goto-designator, and search again with the type :local~]~:[~;: none of ~
+                 its methods is for ~A; their patterns ask for something else~]"
+            (command-prefix (operation-command operation)) far
+            (not (or far (operation-subject operation))) (objects-text operation))))
 
 (defstruct (manipulation-command (:include command) (:copier nil)
                                  (:constructor %make-manipulation-command))
