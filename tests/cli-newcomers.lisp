@@ -38,6 +38,7 @@
                                 ("robot-turn" "function" "(robot-turn robot angle")
                                 ("robot-blocked" "error code" "robot-go-forward")
                                 ("wood" "substance" "120")
+                                ("circle" "clause of maps" "(circle (x y) radius")
                                 ("switch-on" "manipulation" "switch-on lamp [hand]")
                                 ("parlour" "map" "20 by 20")
                                 ("butler" "robot" "parlour")

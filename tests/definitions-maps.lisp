@@ -294,3 +294,99 @@ DESCRIPTOR-OF returns of its number, as text."
         (let ((text (trouble-of wrong)))
           (is (search ", line 1502" text) "~A" text)
           (is (search "pot1500" text) "~A" text))))))
+
+;;; Clauses of users.
+
+(defparameter *polygon* '(world:define-map-clause polygon (map &rest parts)
+                          "(polygon (x y) (x y) (x y)... substance parameter)"
+                          :check (<= 5 (length parts))
+                          :clauses (loop with (substance parameter) = (last parts 2)
+                                         for (start end) on (butlast parts 2)
+                                         collect `(wall ,start ,(or end (first parts))
+                                                        ,substance ,parameter)))
+  "The definition of a clause of maps, a closed line of walls.")
+
+(defmacro with-polygons (&body body)
+  `(with-own-definitions (eval *polygon*) ,@body))
+
+(test map-clauses.of-users-stand-for-others
+  (with-polygons
+    (eval '(world:define-map-clause den (map point)
+            "(den (x y))"
+            :clauses `((polygon (2 2) (7 2) (2 7) slate 5)
+                       (obj (bear :prototype egg*) ,point ((:size 3)) (cub ())))))
+    (define-shed 9 "A shed." '(rect (0 0) (8 8) bricks 1) '(den (3.5 4)))
+    (let ((grid (grid-of (world:find-map 'shed))) (world (world:make-world 'shed)))
+      (is (equal '("CUB#1" "BEAR#2") (mapcar #'princ-to-string (world:world-thing-list world))))
+      (is (equal '(:color :size) (world:map-attribute-names (world:find-map 'shed))))
+      (define-shed 9 '(rect (0 0) (8 8) bricks 1) '(wall (2 2) (7 2) slate 5)
+        '(wall (7 2) (2 7) slate 5) '(wall (2 7) (2 2) slate 5))
+      (is (equalp grid (grid-of (world:find-map 'shed)))))))
+
+(test map-clauses.of-users-are-told-of-as-ours
+  (with-polygons
+    (loop for (clause . words)
+            in '(((polygon (2 2) slate 5) "(polygon (2 2) slate 5)" "(polygon (x y) (x y)")
+                 ((polygon (2 2) (7 a) (2 7) slate 5) "(7 a) (2 7)" "(wall (2 2) (7 a) slate 5)"
+                  "numbers from -1e15")
+                 ((polygn (2 2)) "wall, rect, circle, obj or polygon"))
+          for complaint = (file-complaint (format nil "(world:defmap m (9 9)~% (wall (1 1) (2 2) ~
+                                                       bricks 1)~% ~S)" clause))
+          do (is-true (apply #'has-words-p complaint "defmap m" "line 3)" words) "~A" complaint))
+    (is (equal '(("goes beyond the map") ("did you mean slate?") ())
+               (loop for clause in '((polygon (2 2) (70 2) (2 70) slate 5)
+                                     (polygon (2 2) (7 2) (2 7) slat 5)
+                                     (polygon (2 2) (7 2) (2 7) slate 5))
+                     collect (loop for warning in (define-shed 9 clause)
+                                   collect (find-if (lambda (words) (search words warning))
+                                                    '("goes beyond the map"
+                                                      "did you mean slate?"))))))))
+
+(test map-clauses.without-end-are-refused
+  (with-own-definitions
+    (eval '(world:define-map-clause loop (map) "(loop)" :clauses '((loop))))
+    (handler-case (progn (define-shed 9 '(loop)) (fail "accepted"))
+      (base:malformed-definition (condition)
+        (is (search "stand for itself" (princ-to-string condition)))))))
+
+(test map-clauses.are-defined-or-refused
+  (loop for (expected . form)
+          in '(("no clause of the simulator has" wall (map) "(wall)" :clauses '())
+               ("with a form" nook (map) "(nook)")
+               ("one of the options" nook (map) "(nook)" :cells '())
+               ("one of the options" nook (map) "(nook)" :claws '())
+               ("a string" nook (map) :clauses '())
+               ("variables for the map" nook () "(nook)" :clauses '())
+               ("a symbol" 7 (map) "(nook)" :clauses '()))
+        do (is (search expected (first (complaints `(world:define-map-clause ,@form)))) "~S" form))
+  (is (search "cannot be undefined" (first (complaints '(base:undefine 'map-clause 'wall)))))
+  (is (equal '(nil nil) (complaints '(world:define-map-clause nook (map) "(nook)" :clauses '())
+                                    '(base:undefine 'map-clause 'nook)))))
+
+(defun load-compiled (text function)
+  "Call FUNCTION, which is to load the file whose name it is given: TEXT, compiled. Return the
+warnings of the compiler."
+  (with-own-definitions
+    (call-with-file
+     (lambda (path)
+       (uiop:with-temporary-file (:pathname fasl :type "fasl")
+         (prog1 (warnings-of (lambda () (compile-file path :output-file fasl)))
+           (funcall function fasl))))
+     (format nil "(in-package :ars-magna.tests)~%~A" text))))
+
+(test restarts.leave-clauses-out-of-compiled-maps
+  (let ((warnings (load-compiled *leaky-shed*
+                                 (lambda (fasl)
+                                   (call-choosing 'base:skip-clause (lambda () (load-here fasl)))
+                                   (is (world:wall-at-p (world:find-map 'shed) 1 3))
+                                   (is (null (world:find-things 'box 'shed)))
+                                   (is (= 1 (length (world:find-things 'bag 'shed))))))))
+    (is (= 1 (length warnings)))
+    (is (search "line 4)" (first warnings)))))
+
+(test map-clauses.may-be-defined-in-the-file-that-uses-them
+  (is (null (load-compiled (format nil "~S (world:defsubstance slade 3)
+(world:defmap shed (9 9) (polygon (2 2) (7 2) (2 7) slade 5))" *polygon*)
+                           (lambda (fasl)
+                             (load-here fasl)
+                             (is (world:wall-at-p (world:find-map 'shed) 4 2)))))))

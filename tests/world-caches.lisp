@@ -49,6 +49,19 @@
     (cached-map '(wall (1 1) (2 2) bricks 1))
     (is (search "is stale" (first (message-texts))) "place types count too")))
 
+(test cache.is-stale-when-what-clauses-stand-for-changes
+  (with-fresh-cache
+    (flet ((define-post (x)
+             (eval `(world:define-map-clause post (map y) "(post y)"
+                     :clauses (list (list 'wall (list ,x y) (list ,x y) 'bricks 1))))))
+      (define-post 3)
+      (let ((built (grid-of (cached-map '(post 4)))))
+        (is (equalp built (grid-of (cached-map '(post 4)))))
+        (is (null (message-texts)) "it was kept, and read")
+        (define-post 5)
+        (is (world:wall-at-p (cached-map '(post 4)) 5 4))
+        (is (search "is stale" (first (message-texts))))))))
+
 (defun damage-cache (position byte)
   (with-open-file (file (cache-file) :direction :io :if-exists :overwrite
                                      :element-type '(unsigned-byte 8))

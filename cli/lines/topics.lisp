@@ -190,6 +190,7 @@ or none."
     ("substance" all-substances substance-name substance-words)
     ("kicker" all-kickers kicker-name kicker-words)
     ("manipulation" all-manipulations manipulation-name manipulation-words)
+    ("clause of maps" all-clause-kinds clause-kind-name clause-kind-usage)
     ("map" all-maps map-name map-words)
     ("robot" all-blueprints blueprint-name robot-words)
     ("experiment" all-experiments experiment-name experiment-text)

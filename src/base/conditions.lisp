@@ -66,7 +66,9 @@
 (setf (documentation 'malformed-definition-place 'function)
       "Return the file and line of what makes no sense, a string, or NIL if it was typed."
       (documentation 'malformed-definition-clause 'function)
-      "Return the clause that makes no sense, as read; NIL where something is missing.")
+      "Return the clause that makes no sense, as read; NIL where something is missing."
+      (documentation 'malformed-definition-expected 'function)
+      "Return in words what should be there instead.")
 
 (addition definition-warning definition-warning-text)
 (define-condition definition-warning (warning)

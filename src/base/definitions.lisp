@@ -90,8 +90,7 @@ define as functions, or is no name of a function."
 (addition skip-definition skip-clause read-again)
 (document-restarts
  'skip-definition "Leave the definition with the mistake out. What had its name keeps it."
- 'skip-clause "Leave the clause of a map that has the mistake out, and go on with the next. Of a map
-that was compiled all is left out, or nothing: see SKIP-DEFINITION."
+ 'skip-clause "Leave the clause of a map that has the mistake out, and go on with the next."
  'read-again "Read the definition, or the clause, again from its file, after you have mended it
 there."
  'use-value "Use the value that you type instead: another clause, definition, name or value.")

@@ -77,7 +77,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:abridged #:safe-text #:unqualified-text #:text-as-typed #:+more+)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
-           #:malformed-definition
+           #:malformed-definition #:malformed-definition-expected
            #:malformed-definition-place #:malformed-definition-clause
            #:definition-warning #:definition-warning-text #:warn-of-definition #:doubt-definition
            #:unknown-name #:reject-name #:plain-name #:misuse #:reject-use
@@ -143,7 +143,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:source-here #:source-file #:count-in-file #:part-in-file-p
            #:skip-comment #:current-source
            #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause
-           #:call-with-definition #:expand-definition #:title
+           #:call-with-definition #:expand-definition #:forms-or-rejection #:title
            #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:line-of-clause #:skip-definition #:skip-clause #:read-again)
@@ -157,7 +157,7 @@ bordeaux-threads, closer-mop and SBCL's documented packages so that no other lay
   (:export #:csv-number-p #:csv-line #:csv-texts #:broken-line #:broken-line-text)
   ;; user-macros
   (:export #:define-user-macro #:advice-on-use #:strange-keyword #:test-advice #:body-advice
-           #:user-macro-form #:call-blaming-form)
+           #:user-macro-form #:call-blaming-form #:variable-after)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register
            #:*definition-listener* #:seal-definitions #:lookup-entry #:from-this-file-p

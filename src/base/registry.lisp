@@ -281,10 +281,10 @@ SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of w
 
 (addition undefine)
 (defun undefine (kind name)
-  "Take back the definition of NAME, of KIND: MAP, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
-MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. Its variable becomes unbound;
-worlds that are under way keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE for what is
-no user's to define, and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
+  "Take back the definition of NAME, of KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE,
+KICKER, MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. Its variable becomes
+unbound; worlds that are under way keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE
+for what is no user's to define, and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
   (check-argument undefine name (typep name '(or symbol string)) "a symbol, the name of what goes")
   (let ((registry (find-registry kind)))

@@ -9,15 +9,15 @@
 ;;; compared.
 ;;;
 ;;; A run depends on what it uses: its map and robots; the kickers on its things, and the attributes
-;;; of these; the place types and substances in the map; the robots' parts of users' kinds; the
-;;; kickers, manipulations and users' commands that it was asked for. It also depends on everything
-;;; in the files that define these. Functions that stand in other files, or were typed, are not
-;;; covered.
+;;; of these; the place types, substances and users' kinds of clauses in the map; the robots' parts
+;;; of users' kinds; the kickers, manipulations and users' commands that it was asked for. It also
+;;; depends on everything in the files that define these. Functions that stand in other files, or
+;;; were typed, are not covered.
 
 (defparameter *definition-kinds*
   (list (cons :map *maps*) (cons :robot *robots*) (cons :kicker *kickers*)
-        (cons :place-type *place-types*) (cons :attribute *attributes*)
-        (cons :substance *substances*)
+        (cons :map-clause *map-clauses*) (cons :place-type *place-types*)
+        (cons :attribute *attributes*) (cons :substance *substances*)
         (cons :part *object-kinds*) (cons :command *commands*))
   "The kinds of definitions, and the registry of each. Manipulations have methods instead.")
 
@@ -85,6 +85,7 @@
   (let ((map (world-map (simulation-world simulation))))
     (ecase kind
       (:map (list (map-name map)))
+      (:map-clause (map-clause-kinds map))
       (:robot (mapcar #'robot-name (simulation-robots simulation)))
       (:kicker (append (kickers-at-work simulation) (asked-for 'set-kicker 1 simulation)))
       (:place-type (mapcar #'name-of-place-type

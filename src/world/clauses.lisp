@@ -58,7 +58,10 @@ which expected EXPECTED there."
                     (find-if #'public-variable-p (find-all-symbols name)))))
     (and other (format nil "~A:~A" (package-name (symbol-package other)) other))))
 
-;;; Clauses one by one. A path is a list of positions that leads to a clause from the definition.
+;;; Clauses one by one.
+
+(defvar *path* '()
+  "The positions that lead from the definition at hand to the clause that is being carried out.")
 
 (defun clause-again (path)
   "Return the clause at PATH of the definition at hand as it stands in its file now."
@@ -69,7 +72,7 @@ which expected EXPECTED there."
   "Call FUNCTION with CLAUSE, the one at PATH of the definition at hand. A user who chooses so
 leaves it out (then return NIL), or has FUNCTION called with another: read again, or typed. A whole
 definition that is typed takes the place of the one at hand."
-  (restart-case (funcall function clause)
+  (restart-case (let ((*path* path)) (funcall function clause))
     (skip-clause ()
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
       nil)
@@ -83,3 +86,10 @@ definition that is typed takes the place of the one at hand."
       (if (other-definition-p other)
           (use-value other)
           (call-with-clause function other path)))))
+
+(defun parts-of-clauses (function clauses first)
+  "Return the parts, appended, that FUNCTION returns of CLAUSES, the elements from FIRST on of what
+is being carried out; or of others that the user puts in their place."
+  (loop for clause in clauses
+        for position from first
+        append (call-with-clause function clause (append *path* (list position)))))

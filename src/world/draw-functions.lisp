@@ -107,9 +107,13 @@ something, so that it is not the only one of its text, or cannot draw."
           ((symbolp meant) `',meant)
           (t `',value))))
 
+(defun code-p (key value)
+  "True if VALUE, of the attribute KEY, has code that is to be evaluated."
+  (and (consp value) (same-name-p key :draw-function)))
+
 (defun entry-form (thing-name entry)
   (destructuring-bind (key value) entry
-    (if (and (consp value) (same-name-p key :draw-function))
+    (if (code-p key value)
         `(list ',key ,(draw-function-form thing-name value))
         `',entry)))
 

@@ -123,8 +123,7 @@ Signals an error if PATH is write-protected."
                       (ldb (byte 32 0) (aref words position))
                       (ldb (byte 32 32) (aref words position))
                       (bits-to-double (aref words (1+ position))))))
-  (note-walls map)
-  map)
+  (note-walls map))
 
 (defun begins-as-cache-p (path)
   "True if the file PATH is empty or begins as caches do."

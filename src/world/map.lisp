@@ -42,10 +42,12 @@
   (enclosed nil :type boolean)
   (things '() :type list)
   ;; The names, keywords, of the attributes that its things say something of.
-  (attribute-names '() :type list :read-only t)
+  (attribute-names '() :type list)
   ;; The name of the package that its author wrote in.
   (package nil :type (or null string) :read-only t)
   (clauses '() :type list)
+  ;; The names of the kinds of clauses that users have defined and its author wrote.
+  (clause-kinds '() :type list)
   (cache nil :type (or null string pathname))
   ;; Where the map lies elsewhere; see MAP-FRAME.
   (frame '(1 0 0 0) :type list :read-only t)
@@ -75,6 +77,7 @@ radians against the clock. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP said some
  map-enclosed "Return true if walls fill all cells at the map's edges, so that no line leads out."
  map-resident "Return the world of the map that top-level code works in, NIL if nobody has asked."
  map-attribute-names "Return the keywords of the attributes that the map's things start with."
+ map-clause-kinds "Return the names of the users' kinds of clauses that the map is written with."
  map-package "Return the name of the package that the map's author wrote in, or NIL."
  map-things "Return the recipes of the things that a fresh world of the map starts with.")
 

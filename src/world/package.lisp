@@ -46,6 +46,9 @@
            #:def-place-type #:define-place-type #:find-place-type #:all-place-types
            #:place-type-index #:doorway #:convex #:concave #:beak)
   (:export #:*place-types* #:*attributes* #:*substances* #:*kickers* #:*maps*)
+  ;; map clauses
+  (:export #:define-map-clause #:*map-clauses* #:map-clause-kinds
+           #:all-clause-kinds #:clause-kind-name #:clause-kind-usage)
   ;; defmap
   (:export #:defmap #:define-map #:rebuild-map)
   ;; access

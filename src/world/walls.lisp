@@ -1,4 +1,4 @@
-;;;; walls.lisp -- drawing the wall, rect and circle clauses of a map.
+;;;; walls.lisp -- the wall, rect and circle clauses of a map, and how they are drawn.
 
 (in-package :ars-magna.world)
 
@@ -40,16 +40,15 @@ steps (reading 57)."
              (column-in map (first end)) (row-in map (second end))
              (substance-number map type) (double from) (double to)))
 
-(defun draw-rect (map corner opposite type &rest parameters)
+(defun draw-rect (map corner opposite type p0 &optional (p1 p0) (p2 p0) (p3 p0))
   "Draw the outline; the second corner is beside the first, the third opposite
 it (readings 55 and 56)."
-  (destructuring-bind (p0 &optional (p1 p0) (p2 p0) (p3 p0)) parameters
-    (destructuring-bind ((x0 y0) (x1 y1)) (list corner opposite)
-      (loop for (start end from to) in `(((,x0 ,y0) (,x1 ,y0) ,p0 ,p1)
-                                         ((,x1 ,y0) (,x1 ,y1) ,p1 ,p2)
-                                         ((,x1 ,y1) (,x0 ,y1) ,p2 ,p3)
-                                         ((,x0 ,y1) (,x0 ,y0) ,p3 ,p0))
-            do (draw-wall map start end type from to)))))
+  (let ((beside (list (first opposite) (second corner)))
+        (last (list (first corner) (second opposite))))
+    (draw-wall map corner beside type p0 p1)
+    (draw-wall map beside opposite type p1 p2)
+    (draw-wall map opposite last type p2 p3)
+    (draw-wall map last corner type p3 p0)))
 
 (defun draw-circle (map center radius type parameter)
   "Draw the digitised outline (midpoint algorithm), pressed against the map's edges (reading 22)."
@@ -78,26 +77,35 @@ against the edges, is the edges."
            (cond ((minusp slack) (incf slack (+ 1 (* 2 y))))
                  (t (decf x) (incf slack (+ 1 (* 2 (- y x))))))))
 
-;;; Checking.
+;;; The clauses.
 
-(defun check-wall-clause (definition clause kind)
-  "Signal MALFORMED-DEFINITION unless CLAUSE, of KIND :WALL or :RECT, can be drawn."
-  (destructuring-bind (&optional start end type &rest parameters) (rest clause)
-    (unless (and (number-pair-p start) (number-pair-p end) type (symbolp type)
-                 (member (length parameters) (if (eq kind :wall) '(1 2) '(1 4)))
-                 (every #'quantity-p parameters))
-      (reject-clause definition clause
-                     (format nil "(~(~A~) (x0 y0) (x1 y1) substance parameter [~A]), with numbers ~
-                             from -1e15 to 1e15"
-                             kind
-                             (if (eq kind :wall) "parameter1" "three parameters more"))))))
+(defun made-of-p (type parameters counts)
+  "True if something can be made of the substance TYPE with PARAMETERS, as many as one of COUNTS."
+  (and type (symbolp type) (member (length parameters) counts) (every #'quantity-p parameters)))
 
-(defun check-circle-clause (definition clause)
-  (destructuring-bind (&optional center radius type parameter &rest others) (rest clause)
-    (unless (and (number-pair-p center) (finite-p radius) (<= 0 radius)
-                 type (symbolp type) (quantity-p parameter) (null others))
-      (reject-clause definition clause
-                     "(circle (x y) radius substance parameter), numbers, radius not below 0"))))
+(define-map-clause wall (map start end type &rest parameters)
+    "(wall (x0 y0) (x1 y1) substance parameter [parameter1]), with numbers from -1e15 to 1e15"
+  :check (and (number-pair-p start) (number-pair-p end) (made-of-p type parameters '(1 2)))
+  :corners (list start end)
+  :substance type
+  :cells (apply #'draw-wall map start end type parameters))
+
+(define-map-clause rect (map start end type &rest parameters)
+    "(rect (x0 y0) (x1 y1) substance parameter [three parameters more]), with numbers from -1e15
+to 1e15"
+  :check (and (number-pair-p start) (number-pair-p end) (made-of-p type parameters '(1 4)))
+  :corners (list start end)
+  :substance type
+  :cells (apply #'draw-rect map start end type parameters))
+
+(define-map-clause circle (map center radius type parameter)
+    "(circle (x y) radius substance parameter), numbers, radius not below 0"
+  :check (and (number-pair-p center) (finite-p radius) (<= 0 radius)
+              (made-of-p type (list parameter) '(1)))
+  :corners (destructuring-bind (x y) center
+             (list (list (- x radius) (- y radius)) (list (+ x radius) (+ y radius))))
+  :substance type
+  :cells (draw-circle map center radius type parameter))
 
 ;;; Building.
 
@@ -114,16 +122,10 @@ against the edges, is the edges."
                                   --dynamic-space-size"
                              possible (min 32767 (isqrt possible)))))))
 
-(defun draw-clause (map clause)
-  (let ((kind (first clause)))
-    (apply (cond ((same-name-p kind "WALL") #'draw-wall)
-                 ((same-name-p kind "RECT") #'draw-rect)
-                 (t #'draw-circle))
-           map (rest clause))))
-
-(defun clause-substance (clause)
-  "Return the name of the substance that CLAUSE, a wall, rect or circle, is made of."
-  (fourth clause))
+(defun substances-of (map clauses)
+  "Return the names of what CLAUSES of MAP, walls, rects and circles, are made of."
+  (remove-duplicates (loop for clause in clauses collect (clause-value :substance map clause))
+                     :test #'same-name-p :from-end t))
 
 (defun clear-walls (map)
   "Empty all cells of MAP and number the substances of its clauses."
@@ -132,9 +134,7 @@ against the edges, is the edges."
           (map-parameters map) (make-doubles size)
           (map-substances map) (make-array size :element-type '(unsigned-byte 16))
           (map-substance-types map)
-          (coerce (cons nil (remove-duplicates (mapcar #'clause-substance (map-clauses map))
-                                               :test #'same-name-p :from-end t))
-                  'simple-vector))))
+          (coerce (cons nil (substances-of map (map-clauses map))) 'simple-vector))))
 
 (defun note-parameter-range (map)
   (loop for flag across (map-flags map)
@@ -145,22 +145,19 @@ against the edges, is the edges."
                   (setf (map-least-parameter map) least
                         (map-greatest-parameter map) greatest))))
 
-(defun note-enclosure (map)
+(defun note-walls (map)
+  "Note what is to be known of the walls of MAP, now that all are drawn. Return MAP."
+  (note-parameter-range map)
   (let ((right (1- (map-width map))) (bottom (1- (map-height map))))
     (setf (map-enclosed map)
           (and (loop for x from 0 to right
                      always (and (filled-at-p map x 0) (filled-at-p map x bottom)))
                (loop for y from 0 to bottom
-                     always (and (filled-at-p map 0 y) (filled-at-p map right y)))))))
-
-(defun note-walls (map)
-  "Note what is to be known of the walls of MAP, now that all are drawn."
-  (note-parameter-range map)
-  (note-enclosure map))
+                     always (and (filled-at-p map 0 y) (filled-at-p map right y)))))
+    map))
 
 (defun draw-walls (map)
   "Draw all clauses of MAP into its empty grid. Return MAP."
   (clear-walls map)
-  (dolist (clause (map-clauses map)) (draw-clause map clause))
-  (note-walls map)
-  map)
+  (dolist (clause (map-clauses map)) (clause-value :cells map clause))
+  (note-walls map))

@@ -1,0 +1,144 @@
+;;;; map-clauses.lisp -- DEFINE-MAP-CLAUSE: the kinds of clauses that a map can have (manual 5.1).
+
+(in-package :ars-magna.world)
+
+;;; A definition says all that is to be known of a kind of clause: how it is written, which clauses
+;;; are right, and what they stand for. Our own kinds are walls that are drawn, or things; those of
+;;; users stand for other clauses. So a map keeps only ours, and its cache depends on nothing else.
+
+(defstruct (clause-kind (:constructor make-clause-kind (name usage derived-p function))
+                        (:copier nil))
+  "What clauses called NAME are: written as USAGE says, and of other clauses if DERIVED-P. FUNCTION
+returns, of an option, a map and a clause, the value of the form for the option."
+  (name nil :type symbol :read-only t)
+  (usage "" :type string :read-only t)
+  (derived-p nil :type boolean :read-only t)
+  (function nil :type function :read-only t))
+(document-functions
+ clause-kind-name "Return the symbol that clauses of the kind begin with."
+ clause-kind-usage "Return how clauses of the kind are written, a string.")
+
+(define-registry map-clause "kind of map clause" :sealed t :internal t
+  :finder find-clause-kind :lister all-clause-kinds)
+
+(defun map-title (map) (title "defmap" (map-name map)))
+
+(defun clause-value (option map clause &optional (kind (find-clause-kind (first clause))))
+  "Return the value of the form for OPTION that the KIND of CLAUSE, of MAP, has; NIL without one."
+  (funcall (clause-kind-function kind) option map clause))
+
+(defun kind-of-clause (map clause)
+  "Return the kind of CLAUSE of MAP. Signals MALFORMED-DEFINITION."
+  (let ((kind (and (typep clause '(cons symbol)) (find-clause-kind (first clause) nil))))
+    (cond ((null kind)
+           (reject-clause (map-title map) clause
+                          (format nil "a clause: ~{~(~A~)~#[~; or ~:;, ~]~}"
+                                  (defined-names *map-clauses*))))
+          ((proper-list-p clause) kind)
+          (t (reject-clause (map-title map) clause
+                            "a clause without a dot before its last element")))))
+
+(defun check-clause (map clause kind)
+  "Signal MALFORMED-DEFINITION unless CLAUSE of MAP fits KIND."
+  (unless (handler-case (clause-value :check map clause kind)
+            (malformed-definition (condition) (error condition))
+            (error () nil))
+    (reject-clause (map-title map) clause (clause-kind-usage kind))))
+
+;;; What clauses stand for. The parts of a map are walls, rects and circles, and recipes of things.
+
+(defun wrong-derivation-text (kind condition)
+  "Return in words what there should be instead of a clause of KIND that stands for one of which
+CONDITION says that it is wrong."
+  (let ((*print-pretty* nil))
+    (format nil "~A; it stands for ~(~S~), where there should be ~A" (clause-kind-usage kind)
+            (abridged (malformed-definition-clause condition))
+            (malformed-definition-expected condition))))
+
+(defun derived-parts (map clause kind depth)
+  "Return the parts of the clauses that CLAUSE of MAP, of KIND, stands for, at DEPTH inside others.
+A mistake in these is one in CLAUSE."
+  (when (< 50 depth)
+    (reject-clause (map-title map) clause "a clause that does not stand for itself, without end"))
+  (pushnew (clause-kind-name kind) (map-clause-kinds map))
+  (handler-case (call-for-value
+                 (lambda ()
+                   (loop for other in (clause-value :clauses map clause kind)
+                         append (parts-of-clause map other (1+ depth))))
+                 (map-title map) clause (clause-kind-usage kind))
+    (malformed-definition (condition)
+      (if (or (plusp depth) (eq clause (malformed-definition-clause condition)))
+          (error condition)
+          (reject-clause (map-title map) clause (wrong-derivation-text kind condition))))))
+
+(defun parts-of-clause (map clause &optional (depth 0))
+  "Return the parts that CLAUSE of MAP, at DEPTH inside others, stands for. Signals
+MALFORMED-DEFINITION."
+  (let ((kind (kind-of-clause map clause)))
+    (check-clause map clause kind)
+    (cond ((clause-kind-derived-p kind) (derived-parts map clause kind depth))
+          ((clause-value :things map clause kind))
+          (t (list clause)))))
+
+(defun code-in-clause (map clause)
+  "Return the code in CLAUSE of MAP, as CODE-IN-THING does. One that is wrong has none: that is a
+warning in a file that is compiled. What users' kinds stand for is not known yet."
+  (let ((code '()))
+    (forms-or-rejection (lambda ()
+                          (let ((kind (kind-of-clause map clause)))
+                            (unless (clause-kind-derived-p kind)
+                              (check-clause map clause kind)
+                              (setf code (clause-value :code map clause kind))))
+                          '())
+                        t)
+    code))
+
+;;; Defining kinds.
+
+(defun check-clause-definition (definition name lambda-list usage options)
+  (check-name definition name "kind of clause")
+  (unless (and (proper-list-p lambda-list) (first lambda-list) (symbolp (first lambda-list)))
+    (reject-clause definition lambda-list
+                   "(map argument...), variables for the map and the rest of a clause"))
+  (unless (stringp usage)
+    (reject-clause definition usage "a string that shows a clause, as \"(door (x y) width)\""))
+  (check-options definition options
+                 (if *marking-p*
+                     '(:check :corners :substance :cells :things :code)
+                     '(:check :clauses)))
+  (let ((old (find-clause-kind name nil)))
+    (unless (or *marking-p*
+                (and (getf options :clauses) (or (null old) (clause-kind-derived-p old))))
+      (reject-clause definition name
+                     "a name that no clause of the simulator has, and :clauses with a form"))))
+
+(defun clause-function-form (lambda-list options)
+  "Return the function of a kind whose clauses fit LAMBDA-LIST, and whose forms are in OPTIONS."
+  (destructuring-bind (map . parameters) lambda-list
+    (multiple-value-bind (whole parameters) (variable-after '&whole parameters)
+      (with-gensyms (option clause kind)
+        `(lambda (,option ,map ,clause)
+           (declare (ignorable ,map))
+           (destructuring-bind (,@(and whole `(&whole ,whole)) ,kind ,@parameters) ,clause
+             (declare (ignore ,kind))
+             (case ,option
+               ,@(loop for (key form) on options by #'cddr collect `(,key ,form))
+               ,@(unless (getf options :check) '((:check t))))))))))
+
+(addition define-map-clause)
+(define-user-macro define-map-clause (&whole form name lambda-list &optional usage
+                                      &body options &environment environment)
+  "Define clauses (NAME argument...) of DEFMAP. LAMBDA-LIST is a variable for the map, whose name
+and size are known, and a macro lambda list for the arguments. The string USAGE shows a clause; an
+error in one says it. Options are forms:
+  :clauses form -- a list of the clauses, such as walls and things, that it stands for
+  :check form -- true of arguments that are right; by default all that fit are
+Maps that are there do not change. Return the name. Signals MALFORMED-DEFINITION."
+  `(eval-when (:compile-toplevel :load-toplevel :execute)
+     ,(expand-definition
+       form environment
+       (lambda ()
+         (check-clause-definition (title "define-map-clause" name) name lambda-list usage options)
+         `((register *map-clauses* ',name
+                     (make-clause-kind ',name ,(one-line usage) ,(and (getf options :clauses) t)
+                                       ,(clause-function-form lambda-list options))))))))
