@@ -71,7 +71,7 @@
                  (:file "attaching") (:file "failing-kickers") (:file "placing") (:file "setting-attributes")
                  (:file "recipes") (:file "undeclared") (:file "forking")
                  (:file "residents") (:file "new-thing") (:file "kicking")
-                 (:file "map-things") (:file "defmap") (:file "check")
+                 (:file "map-things") (:file "defmap")
                  (:file "soundness") (:file "facts")))
    (:module "src/ways" :serial t
     :components ((:file "package") (:file "terrain") (:file "queue") (:file "crossing")

@@ -14,7 +14,7 @@
 (defun position-of (thing) (multiple-value-list (world:thing-position thing)))
 
 (defmacro is-sound (world)
-  `(is (null (world:world-invariant-violations ,world))))
+  `(is (null (world-violations ,world))))
 
 ;;; Attributes.
 
@@ -369,14 +369,18 @@
 (test world.invariants-notice-damage
   (with-own-definitions
     (let* ((world (open-world)) (box (thing-in world 'box 1 1)) (pen (thing-in world 'pen 2 2)))
-      (flet ((noticed () (world:world-invariant-violations world)))
+      (flet ((noticed () (world-violations world)))
         (is (null (noticed)))
         (setf (world::thing-x box) 9d0)
         (is (noticed))
         (setf (world::thing-x box) 1d0 (world::thing-obsmove-p box) t)
         (is (noticed))
         (setf (world::thing-obsmove-p box) nil (world::thing-location pen) box)
-        (is (noticed))))))
+        (is (noticed))
+        (setf (world::thing-location pen) :floor)
+        (is (null (noticed)))
+        (push pen (world:thing-contents box))
+        (signals base:contradiction (world:check-world world))))))
 
 (test digest.is-of-the-state
   (with-own-definitions

@@ -65,7 +65,7 @@ that name on it; or, with an empty BODY, remove its kicker NAME, even a global o
 5.3.1). TARGET is (variable thing); the variable is bound to the thing in test and body. Return
 the kicker as attached, if any."
   (let ((definition (title "put-kicker" name)))
-    (check-kicker-name definition name)
+    (check-name definition name "kicker")
     (unless (and (proper-list-p target) (= 2 (length target)))
       (reject-clause definition target "(variable thing)"))
     (destructuring-bind (variable thing) target

@@ -50,10 +50,9 @@
 (defun declared-name-like (name)
   "Return the name of a defined attribute for which NAME, of no attribute, may be a slip; or NIL."
   (let ((key (attribute-key name)))
-    (unless (attribute-of key)
-      (unless (eq key :draw-function)
-        (find-if (lambda (other) (resembles-p key other))
-                 (cons :draw-function (defined-names *attributes*)))))))
+    (unless (or (attribute-of key) (eq key :draw-function))
+      (find-if (lambda (other) (resembles-p key other))
+               (cons :draw-function (defined-names *attributes*))))))
 
 ;;; Defining.
 

@@ -6,8 +6,7 @@
 ;;; its code is tried on small maps.
 
 (defun check-place-type-options (definition name lambda-list options)
-  (unless (and name (symbolp name) (not (keywordp name)))
-    (reject-clause definition name "a symbol as the name of the place type"))
+  (check-name definition name "place type")
   (unless (and (consp lambda-list) (null (cdr lambda-list))
                (first lambda-list) (symbolp (first lambda-list)))
     (reject-clause definition lambda-list "a list of one variable, to be bound to the cell"))
@@ -86,11 +85,6 @@ REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment
                      (lambda () (place-type-forms name lambda-list options))))
 
-(defun check-place-type (definition confusion rules)
-  (check-probability definition :confusion confusion)
-  (when (> (length rules) 255)
-    (reject-clause definition (list :check-matchers '|...|) "at most 255 matchers")))
-
 (defun type-to-precede (definition before)
   "Return the place type that BEFORE, the option of a definition, means, or NIL."
   (cond ((null before) nil)
@@ -108,7 +102,9 @@ CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cach
          (old (definition-to-replace name *place-types*))
          (next (type-to-precede definition before))
          (new (%make-place-type name)))
-    (check-place-type definition confusion rules)
+    (check-probability definition :confusion confusion)
+    (when (> (length rules) 255)
+      (reject-clause definition (list :check-matchers '|...|) "at most 255 matchers"))
     (when (and (null old) (= (length (registry-objects *place-types*)) 255))
       (reject-clause definition name "at most 255 place types"))
     (setf (place-type-confusion new) (double confusion)

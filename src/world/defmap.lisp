@@ -6,28 +6,25 @@
 ;;; is MALFORMED-DEFINITION, with restarts for it. When it is expanded they are only looked through
 ;;; for code, and for mistakes to warn of in a file that is compiled.
 
-(defun find-places (map path key)
+(defun find-places (map path)
   "Find the places of MAP anew and keep it in the file PATH, if that is one and all code of place
-types worked."
+types worked. Return MAP."
   (let ((whole (nth-value 1 (classify-places map))))
-    (when (and path whole) (write-cache map path key))))
+    (when (and path whole) (write-cache map path (cache-key map)))
+    map))
 
 (defun build-map (map)
   "Fill the grid of MAP from its clauses, or from its cache if that holds them."
-  (let* ((path (usable-cache-path map))
-         (key (and path (cache-key map))))
-    (unless (and path (restore-from-cache map path key))
-      (draw-walls map)
-      (find-places map path key))
-    map))
+  (let ((path (usable-cache-path map)))
+    (unless (and path (restore-from-cache map path (cache-key map)))
+      (find-places (draw-walls map) path))))
 
 (addition rebuild-map)
 (defun rebuild-map (map)
   "Find the places of MAP (a map or its name) anew, by the place types that are defined now, and
 rewrite its cache. Worlds of MAP see the change at once. Return the map."
-  (let* ((map (find-map map)) (path (usable-cache-path map)))
-    (find-places map path (and path (cache-key map)))
-    map))
+  (let ((map (find-map map)))
+    (find-places map (usable-cache-path map))))
 
 ;;; What is doubtful.
 
@@ -35,15 +32,12 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
   "Warn of CLAUSE, or a name in one, of MAP with a text made of CONTROL and ARGUMENTS."
   (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-place clause) control arguments))
 
-(defun outside-p (map point)
-  (destructuring-bind (x y) point
-    (not (and (<= 0 x (map-width map)) (<= 0 y (map-height map))))))
-
 (defun warn-of-walls (map clause walls)
   "Warn of what is doubtful in WALLS, which CLAUSE of MAP stands for."
   (when (loop for wall in walls
-                thereis (some (lambda (corner) (outside-p map corner))
-                              (clause-value :corners map wall)))
+                thereis (loop for (x y) in (clause-value :corners map wall)
+                                thereis (not (and (<= 0 x (map-width map))
+                                                  (<= 0 y (map-height map))))))
     (doubt-clause map clause "~S goes beyond the map, which is ~D by ~D metres; what is outside is ~
                               pressed against its edge."
                   clause (map-width map) (map-height map)))

@@ -64,8 +64,7 @@
       (let* ((group (ensure-group world probability))
              (index (group-count group)))
         (when (= (* 3 index) (length (group-row group)))
-          (setf (group-row group) (replace (make-array (* 6 index) :initial-element nil)
-                                           (group-row group))))
+          (setf (group-row group) (resize (group-row group) (* 6 index))))
         (incf (group-count group))
         (setf (attachment-group attachment) group)
         (seat-member group index attachment)))))
@@ -122,16 +121,13 @@
 (define-constant +large-group+ 5000
   :documentation "How many members of a group are more than a processor keeps near itself.")
 
-(defun ensure-outlook (group)
-  "Return the outlook of GROUP."
-  (or (group-outlook group)
-      (setf (group-outlook group) (make-outlook))))
-
 (defun read-group-ahead (group end dice)
   "Read what it takes to move the things of those before END in the row of GROUP whose trials will
 succeed next. Return the index in the row of the first for which that was not done."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice))
-  (let* ((row (group-row group)) (outlook (ensure-outlook group)) (gaps (outlook-gaps outlook))
+  (let* ((row (group-row group))
+         (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
+         (gaps (outlook-gaps outlook))
          (index (group-skip group)) (batch (make-array +batch+))
          (ahead (foresee outlook index end (group-scale group) dice)))
     (declare (dynamic-extent batch) (type (unsigned-byte 50) index) (type outlook outlook))
@@ -195,10 +191,9 @@ large group, memory is read ahead if the first that runs moves its thing."
 (defun run-group (group dice tick)
   (refresh-rate group dice)
   (let ((end (group-count group)))
-    (flet ((end-row ()
-             (decf (group-skip group) end)
-             (when (group-dead group) (bury-dead group))))
-      (unwind-protect (run-row group end dice tick) (end-row)))))
+    (unwind-protect (run-row group end dice tick)
+      (decf (group-skip group) end)
+      (when (group-dead group) (bury-dead group)))))
 
 (declaim (inline skip-group))
 (defun skip-group (group)

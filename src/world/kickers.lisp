@@ -49,13 +49,13 @@
 (defun attachment-name (attachment)
   (kicker-name (attachment-kicker attachment)))
 
-(defun write-attachment (attachment stream)
-  (format stream "kicker ~A of ~A" (attachment-name attachment) (attachment-thing attachment)))
-
 (defmethod print-object ((attachment attachment) stream)
-  (if (or *print-escape* *print-readably*)
-      (print-unreadable-object (attachment stream) (write-attachment attachment stream))
-      (write-attachment attachment stream)))
+  (flet ((write-name ()
+           (format stream "kicker ~A of ~A" (attachment-name attachment)
+                   (attachment-thing attachment))))
+    (if (or *print-escape* *print-readably*)
+        (print-unreadable-object (attachment stream) (write-name))
+        (write-name))))
 
 (define-registry kicker "kicker" :object-p kicker-p :by-symbol t)
 
@@ -110,9 +110,6 @@ a thing. Return the kicker."
                (thing-function (list (getf options :test))))
       :body ,(thing-function body))))
 
-(defun check-kicker-name (definition name)
-  (check-name definition name "kicker"))
-
 (public defkicker)
 (define-user-macro defkicker (&whole form name lambda-list &optional options
                      &body body &environment environment)
@@ -127,7 +124,7 @@ Signals MALFORMED-DEFINITION. Return the name."
     (expand-definition
      form environment
      (lambda ()
-       (check-kicker-name definition name)
+       (check-name definition name "kicker")
        (unless (and (proper-list-p lambda-list) (= 1 (length lambda-list)))
          (reject-clause definition lambda-list "a list of one variable"))
        (values `((define-kicker ',name

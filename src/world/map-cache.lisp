@@ -37,11 +37,9 @@
 
 ;;; Writing.
 
-(defun count-cells (numbers) (count-if #'plusp numbers))
-
 (defun map-words (map key)
   "Return the words that stand for the grid of MAP."
-  (let* ((walls (count-cells (map-flags map))) (places (count-cells (map-places map)))
+  (let* ((walls (count-if #'plusp (map-flags map))) (places (count-if #'plusp (map-places map)))
          (words (make-array (+ +cache-header+ (* 2 (+ walls places)))
                             :element-type '(unsigned-byte 64)))
          (position +cache-header+))

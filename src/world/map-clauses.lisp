@@ -84,20 +84,20 @@ MALFORMED-DEFINITION."
   "Return the code in CLAUSE of MAP, as CODE-IN-THING does. One that is wrong has none: that is a
 warning in a file that is compiled. What users' kinds stand for is not known yet."
   (let ((code '()))
-    (forms-or-rejection (lambda ()
-                          (let ((kind (kind-of-clause map clause)))
-                            (unless (clause-kind-derived-p kind)
-                              (check-clause map clause kind)
-                              (setf code (clause-value :code map clause kind))))
-                          '())
-                        t)
+    (flet ((look ()
+             (let ((kind (kind-of-clause map clause)))
+               (unless (clause-kind-derived-p kind)
+                 (check-clause map clause kind)
+                 (setf code (clause-value :code map clause kind)))
+               '())))
+      (forms-or-rejection #'look t))
     code))
 
 ;;; Defining kinds.
 
 (defun check-clause-definition (definition name lambda-list usage options)
   (check-name definition name "kind of clause")
-  (unless (and (proper-list-p lambda-list) (first lambda-list) (symbolp (first lambda-list)))
+  (unless (typep lambda-list '(cons (and symbol (not null))))
     (reject-clause definition lambda-list
                    "(map argument...), variables for the map and the rest of a clause"))
   (unless (stringp usage)

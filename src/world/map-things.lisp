@@ -55,13 +55,10 @@
   (check-thing-clause definition clause (first clause) (second clause)))
 
 (defun check-position (map clause position)
-  (let ((width (map-width map)) (height (map-height map)))
-    (unless (and (number-pair-p position)
-                 (<= 0 (first position)) (< (first position) width)
-                 (<= 0 (second position)) (< (second position) height))
-      (reject-clause (map-title map) clause
-                     (format nil "a position (x y) in the map, from 0 to below ~D and ~D"
-                             width height)))))
+  (unless (and (number-pair-p position) (apply #'map-index map position))
+    (reject-clause (map-title map) clause
+                   (format nil "a position (x y) in the map, from 0 to below ~D and ~D"
+                           (map-width map) (map-height map)))))
 
 (defun code-in-thing (definition head descriptor contents)
   "Return a list of (key form) for the code in the parts of a thing's clause. Signals

@@ -56,6 +56,13 @@
 (defun make-octets (size) (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
 (defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
 
+(defun clear-grid (map)
+  "Empty all cells of MAP."
+  (let ((size (* (map-width map) (map-height map))))
+    (setf (map-flags map) (make-octets size)
+          (map-parameters map) (make-doubles size)
+          (map-substances map) (make-array size :element-type '(unsigned-byte 16)))))
+
 (addition map-p map-name map-width map-height map-frame)
 (document-functions
  map-p "True of a map."

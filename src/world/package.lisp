@@ -92,7 +92,5 @@
            #:run-kickers #:kick-thing
            #:find-attachment #:detached-kicker
            #:attachment #:attachment-kicker #:attachment-thing #:self)
-  ;; check
-  (:export #:world-invariant-violations)
   ;; soundness
   (:export #:check-world #:world-kicker-generation #:*kicker-generation*))

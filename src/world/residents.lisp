@@ -85,17 +85,13 @@ are things, so it is done when the name is first asked for in a run."
       (warn-once (list :thing-like name) world
                  (format nil "No thing here is called ~(~A~). Did you mean ~(~A~)?" name like)))))
 
-(defun name-missed-last (world)
-  "Return the name that was asked for last, and first then, of those that no thing in WORLD has, and
-the one that may be meant, or NIL, in a list; () if there was none."
-  (let ((key (find-if (lambda (key) (typep key '(cons (eql :thing)))) (world-noted-names world))))
-    (and key (list (second key) (thing-like (second key) world)))))
-
 (defun missed-name-text ()
-  "Return in words which name of no thing FIND-THING was asked for last in the current world, and
-what may be meant; NIL if it was asked for none."
-  (destructuring-bind (&optional name like) (and *world* (name-missed-last *world*))
-    (and name (format nil "nothing here is called ~(~A~)~@[; did you mean ~(~A~)?~]" name like))))
+  "Return in words which name of no thing FIND-THING was asked for last, and first then, in the
+current world, and what may be meant; NIL if it was asked for none."
+  (let* ((noted (and *world* (world-noted-names *world*)))
+         (name (second (find-if (lambda (key) (typep key '(cons (eql :thing)))) noted))))
+    (and name (format nil "nothing here is called ~(~A~)~@[; did you mean ~(~A~)?~]"
+                      name (thing-like name *world*)))))
 
 (addition find-thing)
 (defun find-thing (name &optional world)

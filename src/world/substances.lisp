@@ -49,9 +49,7 @@ PARAMETER, a number; the string DOCUMENTATION says what it is. Our addition to m
 Return the name."
   (expand-definition form environment
                      (lambda ()
-                       (unless (and name (symbolp name) (not (keywordp name)))
-                         (reject-clause "defsubstance" name
-                                        "a symbol as the name of the substance"))
+                       (check-name "defsubstance" name "substance")
                        (check-parameter-form name parameter)
                        (unless (typep documentation '(or null string))
                          (reject-clause (title "defsubstance" name) documentation

@@ -23,11 +23,8 @@
 
 (defun small-map (width height filled-p)
   "Return a map in which the cells for which FILLED-P of column and row is true are walls."
-  (let ((map (%make-map :name 'sample :width width :height height))
-        (size (* width height)))
-    (setf (map-flags map) (make-octets size)
-          (map-parameters map) (make-doubles size)
-          (map-substances map) (make-array size :element-type '(unsigned-byte 16)))
+  (let ((map (%make-map :name 'sample :width width :height height)))
+    (clear-grid map)
     (dotimes (y height)
       (dotimes (x width)
         (when (funcall filled-p x y)

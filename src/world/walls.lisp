@@ -129,12 +129,9 @@ to 1e15"
 
 (defun clear-walls (map)
   "Empty all cells of MAP and number the substances of its clauses."
-  (let ((size (* (map-width map) (map-height map))))
-    (setf (map-flags map) (make-octets size)
-          (map-parameters map) (make-doubles size)
-          (map-substances map) (make-array size :element-type '(unsigned-byte 16))
-          (map-substance-types map)
-          (coerce (cons nil (substances-of map (map-clauses map))) 'simple-vector))))
+  (clear-grid map)
+  (setf (map-substance-types map)
+        (coerce (cons nil (substances-of map (map-clauses map))) 'simple-vector)))
 
 (defun note-parameter-range (map)
   (loop for flag across (map-flags map)
