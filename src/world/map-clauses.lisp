@@ -103,9 +103,8 @@ warning in a file that is compiled. What users' kinds stand for is not known yet
   (unless (stringp usage)
     (reject-clause definition usage "a string that shows a clause, as \"(door (x y) width)\""))
   (check-options definition options
-                 (if *marking-p*
-                     '(:check :corners :substance :cells :things :code)
-                     '(:check :clauses)))
+                 `(:check :clauses
+                   ,@(and *marking-p* '(:corners :substance :cells :things :code))))
   (let ((old (find-clause-kind name nil)))
     (unless (or *marking-p*
                 (and (getf options :clauses) (or (null old) (clause-kind-derived-p old))))
