@@ -17,7 +17,9 @@ types worked. Return MAP."
   "Fill the grid of MAP from its clauses, or from its cache if that holds them."
   (let ((path (usable-cache-path map)))
     (unless (and path (restore-from-cache map path (cache-key map)))
-      (find-places (draw-walls map) path))))
+      (clear-walls map)
+      (dolist (clause (map-clauses map)) (clause-value :cells map clause))
+      (find-places (note-walls map) path))))
 
 (addition rebuild-map)
 (defun rebuild-map (map)

@@ -152,9 +152,3 @@ to 1e15"
                (loop for y from 0 to bottom
                      always (and (filled-at-p map 0 y) (filled-at-p map right y)))))
     map))
-
-(defun draw-walls (map)
-  "Draw all clauses of MAP into its empty grid. Return MAP."
-  (clear-walls map)
-  (dolist (clause (map-clauses map)) (clause-value :cells map clause))
-  (note-walls map))
