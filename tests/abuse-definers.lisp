@@ -7,7 +7,7 @@
 
 (defun find-contradictions (world)
   "Signal an error if WORLD contradicts itself."
-  (let ((violations (world-violations world)))
+  (let ((violations (world:world-invariant-violations world)))
     (when violations (error 'contradiction :text (format nil "~{~A~^; ~}" violations)))))
 
 (defun look-about (robot)

@@ -102,7 +102,7 @@
           (is (eq 'tin (stand-in (hand 0))) "the tin has only fallen out of it")))
     (world:destroy-thing (thing 'tin))
     (is (null (stand-in (hand 0))))
-    (is (null (world-violations (robot:robot-world cook))))))
+    (is (null (world:world-invariant-violations (robot:robot-world cook))))))
 
 (test part.is-pulled-out-of-what-its-own-hand-gets
   "A hand in a hamper cannot hold that; somebody put it there."

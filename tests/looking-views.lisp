@@ -72,7 +72,7 @@
            (things (robot::things-in-view (eye) :non-local)))
       (is (< 60 (length things) 180))
       (is (equal things (remove-duplicates things)))
-      (is (null (world-violations world)))
+      (is (null (world:world-invariant-violations world)))
       (is (notany (lambda (flags) (logtest flags robot::+seen+)) (world:world-flags world))))))
 
 (test scan.agrees-with-the-line-of-sight

@@ -313,7 +313,7 @@ what has been seen."
 
 (defun watch-ride (simulation)
   "Note what is wrong in SIMULATION after a tick."
-  (dolist (violation (append (world-violations
+  (dolist (violation (append (world:world-invariant-violations
                               (run:simulation-world simulation))
                              (mapcan #'robot-violations
                                      (run:simulation-robots simulation))))

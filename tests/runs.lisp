@@ -332,7 +332,7 @@
                        (world:make-new-thing 'pea (list :with (first-of i)) '((:size .1)))
                        (world:move-thing (first-of i) 4 4)))))
            (is (null (time:asking (time:*simulation*)
-                       (world-violations
+                       (world:world-invariant-violations
                         (run:simulation-world time:*simulation*)))))
            (run:stop-simulator)
            (is (= (run:state-digest)

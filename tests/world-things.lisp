@@ -14,7 +14,7 @@
 (defun position-of (thing) (multiple-value-list (world:thing-position thing)))
 
 (defmacro is-sound (world)
-  `(is (null (world-violations ,world))))
+  `(is (null (world:world-invariant-violations ,world))))
 
 ;;; Attributes.
 
@@ -369,7 +369,7 @@
 (test world.invariants-notice-damage
   (with-own-definitions
     (let* ((world (open-world)) (box (thing-in world 'box 1 1)) (pen (thing-in world 'pen 2 2)))
-      (flet ((noticed () (world-violations world)))
+      (flet ((noticed () (world:world-invariant-violations world)))
         (is (null (noticed)))
         (setf (world::thing-x box) 9d0)
         (is (noticed))

@@ -14,11 +14,6 @@
 (defmacro with-own-definitions (&body body)
   `(call-with-own-definitions (lambda () ,@body)))
 
-(defun world-violations (world)
-  "Return in a list what is wrong with WORLD, a string; NIL if nothing is."
-  (handler-case (progn (world:check-world world) '())
-    (error (condition) (list (princ-to-string condition)))))
-
 (defmacro with-only ((registry &rest names) &body body)
   "Run BODY where REGISTRY knows what is called NAMES, forms, and nothing else."
   `(base:with-own-definitions ()

@@ -97,7 +97,7 @@
 (test worlds.things-stand-in-the-open
   (do-shipped (name world)
     (is (null (things-in-walls world)) "in ~A" name)
-    (is (null (world-violations world)))))
+    (is (null (world:world-invariant-violations world)))))
 
 ;;; What is in them.
 
@@ -222,7 +222,7 @@
               (loop repeat 20
                     do (run:run-ticks 1000)
                        (is (null (things-in-walls world)) "in ~A" name)
-                       (is (null (world-violations world)) "in ~A" name))
+                       (is (null (world:world-invariant-violations world)) "in ~A" name))
               (is (null (mapcar #'base:message-text (base:take-messages))))))))
 
 (test worlds.repeat-themselves

@@ -93,4 +93,5 @@
            #:find-attachment #:detached-kicker
            #:attachment #:attachment-kicker #:attachment-thing #:self)
   ;; soundness
-  (:export #:check-world #:world-kicker-generation #:*kicker-generation*))
+  (:export #:check-world #:world-invariant-violations
+           #:world-kicker-generation #:*kicker-generation*))

@@ -165,10 +165,6 @@ is exhausted storage, once the stack is unwound."
           (map-place-types map) (coerce (cons nil (registry-objects *place-types*))
                                         'simple-vector))))
 
-(defun forget-places (map number)
-  "Let no cell of MAP be a place of the type NUMBER."
-  (setf (map-places map) (nsubstitute 0 number (map-places map))))
-
 (defun classify-places (map)
   "Find the places of MAP anew, by the place types known now. A type whose code fails is left out,
 with a warning. Return MAP, and true if no type was left out. See reading 70."
@@ -179,7 +175,7 @@ with a warning. Return MAP, and true if no type was left out. See reading 70."
                                   (check-directions map type number))
                (error (condition)
                  (setf whole nil)
-                 (forget-places map number)
+                 (setf (map-places map) (nsubstitute 0 number (map-places map)))
                  (warn-of-definition "Map ~A has no places of type ~A: ~A"
                                      (map-name map) (place-type-name type) condition))))
     (values map whole)))

@@ -188,3 +188,8 @@ file, could have come about by itself."
   (check-things world)
   (check-places world)
   (check-kickers world))
+
+(defun world-invariant-violations (world)
+  "Return in a list what CHECK-WORLD says is wrong with WORLD, a string; NIL if nothing is."
+  (handler-case (progn (check-world world) '())
+    (error (condition) (list (princ-to-string condition)))))
