@@ -210,6 +210,19 @@ the kicker IN-USE, after the definitions FORMS; in the second run nothing is new
       (is-true (has-words-p (told nil) "The kicker prowl-about is on no thing"))
       (is (string= "" (told "(defun prowl (cat) (world:set-kicker cat 'prowl-about))"))))))
 
+(test attributes.misspelt-in-equal-clauses-have-lines-of-their-own
+  (with-own-definitions
+    (uiop:with-temporary-file (:pathname path :type "lisp")
+      (write-text "(in-package :ars-magna.tests)
+(world:defmap barn (9 9)
+  (obj cat (5 5) ((:size 1) (:colour red)))
+  (obj dog (4 5) ((:size 1) (:colour red))) (obj cow (3 5) ())
+  (obj pig (3 5)
+       ((:size 1) (:colour red))))" path)
+      (let ((text (with-output-to-string (*error-output*) (load path))))
+        (is-true (has-words-p text "line 3): cat has :colour" "line 4): dog has :colour"
+                              "line 5): pig has :colour"))))))
+
 (test attributes.asked-for-are-compared-with-those-of-things
   (flet ((told (key)
            (first (told-of-run `(world:defkicker in-use (thing) ()

@@ -14,19 +14,28 @@
                  (t (return))))
   i)
 
+(defvar *last-element* '("" 0 0 nil)
+  "A list of text, start and number of which ELEMENT-BOUNDS was asked last, and where that began:
+elements of long lists are asked for one after the other.")
+
 (defun element-bounds (text start number)
   "Return where in TEXT the element NUMBER, from 0, of the list that begins at START begins and
 ends; NIL if there is no list, or it cannot be read."
   (with-words (text)
-    (flet ((end-of-form (position)
-             (let ((end (nth-value 1 (read-words position))))
-               (and (integerp end) end))))
-      (when (starts-at-p "(" text start)
-        (let ((begin nil) (end (1+ start)))
-          (loop repeat (1+ number)
-                do (setf begin (skip-blanks text end)
-                         end (or (end-of-form begin) (return-from element-bounds nil))))
-          (values begin end))))))
+    (destructuring-bind (last-text last-start last-number last-begin) *last-element*
+      (let ((known-p (and last-begin (eq text last-text) (= start last-start)
+                          (<= last-number number))))
+        (flet ((end-of-form (position)
+                 (let ((end (nth-value 1 (read-words position))))
+                   (if (integerp end) end (return-from element-bounds nil)))))
+          (when (starts-at-p "(" text start)
+            (let* ((begin (if known-p last-begin (skip-blanks text (1+ start))))
+                   (end (end-of-form begin)))
+              (loop repeat (if known-p (- number last-number) number)
+                    do (setf begin (skip-blanks text end)
+                             end (end-of-form begin)))
+              (setf *last-element* (list text start number begin))
+              (values begin end))))))))
 
 (defun bounds-of-place (text place)
   "Return where what stands at PLACE, see PLACE-IN-TEXT, or what is around it, begins and ends."
@@ -44,7 +53,9 @@ is NIL or FILE cannot be read."
        (ignore-errors
          (let ((text (text-of-file file)))
            (multiple-value-bind (start end) (bounds-of-place text place)
-             (line-number text (or (form-position text form start end) start)))))))
+             (line-number text (or (car (find form (forms-in text start end)
+                                              :key #'cdr :test #'found-p))
+                                   start)))))))
 
 (defun line-of-form-being-read (stream)
   "Return on which line of its file the form begins that LOAD reads from STREAM."

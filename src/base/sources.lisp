@@ -148,22 +148,37 @@ first, and its number."
 (defvar *last-forms* '("" 0 0 ())
   "A list of the text, start and end of which FORMS-BETWEEN was asked last, and the answer.")
 
-(defun forms-between (text start end)
+(defun forms-in (text start end)
   "Return conses (position . form) for the forms in parentheses in TEXT between START and END."
+  (with-words (text)
+    (loop for position in (openings text start end)
+          collect (cons position (read-words position)))))
+
+(defun forms-between (text start end)
+  "Return what FORMS-IN does, which is asked for again and again."
   (destructuring-bind (last-text last-start last-end forms) *last-forms*
     (if (and (= start last-start) (= end last-end)
              (or (eq text last-text) (string= text last-text)))
         forms
-        (let ((forms (with-words (text)
-                       (loop for position in (openings text start end)
-                             collect (cons position (read-words position))))))
-          (setf *last-forms* (list text start end forms))
-          forms))))
+        (fourth (setf *last-forms* (list text start end (forms-in text start end)))))))
+
+(defun found-p (form found)
+  "True if FOUND, what FORMS-IN read, is FORM, word by word."
+  (and found (same-words-p found form)))
+
+(defvar *last-place* '(())
+  "A cons of what FORMS-BETWEEN returned and its tail that begins with what was found there last.")
 
 (defun form-position (text form start end)
-  "Return where FORM, a list, stands in TEXT between START and END, or NIL."
-  (loop for (position . found) in (forms-between text start end)
-        when (and found (same-words-p found form)) return position))
+  "Return where FORM, a list, stands in TEXT between START and END, or NIL. What is asked for one
+after the other mostly stands so, too: it is looked for from the one before on, then from START."
+  (let ((forms (forms-between text start end)))
+    (flet ((look (from)
+             (let ((tail (member form from :key #'cdr :test #'found-p)))
+               (when tail (setf *last-place* (cons forms tail)))
+               (car (first tail)))))
+      (or (and (eq forms (car *last-place*)) (look (cdr *last-place*)))
+          (look forms)))))
 
 (defun word-position (text form start end)
   "Return where the first word of FORM, or FORM itself, stands in TEXT, or NIL."

@@ -46,12 +46,13 @@ is written, in a map if MAP-P."
                 thing-name name like)
         (option-text thing-name name map-p))))
 
-(defun warn-of-slips (definition name descriptor &key map-p)
-  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION, that of a map if MAP-P."
+(defun warn-of-slips (definition name descriptor &key clause)
+  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION, in its CLAUSE if it is a
+map's."
   (dolist (slip (slips-in descriptor))
     (warn-of-definition "~A~@[ (~A)~]: ~A" definition
-                        (clause-place (assoc (first slip) descriptor))
-                        (slip-text name slip map-p))))
+                        (clause-place (or clause (assoc (first slip) descriptor)))
+                        (slip-text name slip clause))))
 
 (defun note-slips (name descriptor world)
   "Warn, once, of what may be slips in DESCRIPTOR of the thing NAME, made on the fly in WORLD."
