@@ -285,3 +285,48 @@ the continuation of FIRST got; claims that it was called exactly once."
                  (command:camera-remove ,(camera 0) 7))
           do (signals base:wrong-argument (apply command arguments)))
     (signals base:wrong-argument (robot:in-location 'pen (hand 0)))))
+
+;;; What a tick settles.
+
+(test settling.is-left-out-while-there-is-nothing-to-settle
+  "It is back with each thing that a tick settles, until that is over."
+  (with-cook (:clean t)
+    (flet ((settled-p () (run:run-ticks 1) (world:world-settled-p world:*world*)))
+      (loop for (begin end)
+              in (list (list (lambda () (designate 'pen) (designate 'apple))
+                             (lambda () (map nil #'robot:drop-designator
+                                             (robot:live-designators cook))))
+                       (list (lambda () (put-into (hand 1) (thing 'hamper)))
+                             (lambda () (put-into (hand 1) nil)))
+                       (list (lambda () (put-into (camera 0) (bin 0)))
+                             (lambda () (put-into (camera 0) nil)))
+                       (list (lambda () (world:move-thing (thing 'apple) (hand 0))
+                               (command:hand-track (hand 0))
+                               (run:run-ticks 1))
+                             (lambda () (world:move-thing (thing 'apple) 5.5 5.5))))
+            do (is-true (settled-p))
+               (funcall begin)
+               (is-false (settled-p))
+               (funcall end))
+      (is-true (settled-p)))))
+
+(test settling.is-not-forgotten
+  "What there is to settle comes up when nothing has been for a while."
+  (with-cook (:clean t)
+    (let ((*answers* '()))
+      (run:run-ticks 5)
+      (command:camera-track (camera 0) (designate 'apple) (recorder 'track))
+      (run:run-ticks 5)
+      (robot:drop-designator (robot:camera-tracks (camera 0)))
+      (run:run-ticks 1)
+      (is (equal '(nil :lost-track) (mapcar #'first (answers-to 'track))))
+      (run:run-ticks 5)
+      (world:move-thing (thing 'apple) (hand 0))
+      (world:move-thing (thing 'pen) (hand 0))
+      (run:run-ticks 1)
+      (is (= 1 (length (robot:hand-contents (hand 0)))))
+      (run:run-ticks 5)
+      (put-into (hand 1) (thing 'hamper))
+      (world:move-thing (thing 'hamper) 2.5 2.5)
+      (run:run-ticks 1)
+      (is (null (stand-in (hand 1)))))))

@@ -108,6 +108,7 @@ first (reading 162)."
     (cond ((not (eq (operation-subject operation) (hand-holding hand)))
            (fail-with operation :grasp-lost))
           ((not (event-pending-p operation))
+           (unsettle (hand-robot hand))
            (go-on operation 'watch-grip +watch-period+)))))
 
 ;; As readings 222 and 239 say.

@@ -93,6 +93,7 @@ WRONG-ARGUMENT if there is none."
 
 (defun take-number (robot designator)
   "Give DESIGNATOR the smallest free number of ROBOT, and a serial number (reading 198)."
+  (unsettle robot)
   (let* ((designators (robot-designators robot))
          (number (or (position nil designators)
                      (vector-push-extend nil designators))))

@@ -81,6 +81,7 @@ it holds moves along, what it tracks is lost; warnings say so."
   (let ((old (part-location part)))
     (when (thing-p location)
       (pushnew #'watch-container (world-move-watchers (location-world part))))
+    (unsettle (part-robot part))
     (setf (part-location part) location)
     (part-moved part old)))
 

@@ -26,7 +26,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:camera-last-view-tick
            #:camera-tracking
            #:hand #:hand-p #:hand-robot #:hand-index #:hand-strength #:hand-location
-           #:hand-contents #:hand-holding #:hand-way-in
+           #:hand-contents #:hand-holding #:unsettle #:hand-way-in
            #:storage-bin #:storage-bin-p #:storage-bin-robot #:storage-bin-index
            #:storage-bin-capacity #:storage-bin-closed-p #:storage-bin-contents)
   (:export #:world-tick #:ensure-timeline)

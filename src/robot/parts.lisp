@@ -196,6 +196,11 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   "Return a list of all of ROBOT that does one thing at a time: itself, its parts and its mind."
   (append (list robot) (robot-parts robot) (list (robot-mind robot))))
 
+(defun unsettle (robot)
+  "Let the next tick look for what there is to settle in the world of ROBOT. To be called before
+anything comes to be that WORLD-SETTLED-P excludes."
+  (setf (world-settled-p (robot-world robot)) nil))
+
 (addition hand-holding)
 (defun hand-holding (hand)
   "Return the thing that HAND holds, or NIL."
@@ -265,7 +270,9 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 ;;; Hands and bins are places where things can be (see the world layer).
 
 (defmethod location-contents ((hand hand)) (hand-contents hand))
-(defmethod (setf location-contents) (contents (hand hand)) (setf (hand-contents hand) contents))
+(defmethod (setf location-contents) (contents (hand hand))
+  (unsettle (hand-robot hand))
+  (setf (hand-contents hand) contents))
 (defmethod location-contents ((bin storage-bin)) (storage-bin-contents bin))
 (defmethod (setf location-contents) (contents (bin storage-bin))
   (setf (storage-bin-contents bin) contents))

@@ -80,7 +80,9 @@ See reading 161."
           (warning-set warning)))
       (if (eq code :interrupt)
           (tell-track-ended track code)
-          (push (cons track code) (robot-ended-tracks (camera-robot camera))))
+          (let ((robot (camera-robot camera)))
+            (unsettle robot)
+            (push (cons track code) (robot-ended-tracks robot))))
       (track-designator track))))
 
 (defun drop-designator (designator &key silently)

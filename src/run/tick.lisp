@@ -65,7 +65,7 @@ journal has that in the same place."
                (perform request timeline))
              (take-requests timeline)))
 
-(declaim (inline perform-requests run-due-events prolong-journal tell-observers
+(declaim (inline perform-requests run-due-events settle prolong-journal tell-observers
                  let-participants-act))
 (defun perform-requests (simulation timeline)
   "Perform what has been asked of SIMULATION since the last tick, in the order of asking."
@@ -74,6 +74,25 @@ journal has that in the same place."
 (defun run-due-events (timeline)
   "Let the tick begin that TIMELINE is to pass, and run what is due in it."
   (advance-agenda (timeline-agenda timeline)))
+
+(defun settled-robot-p (robot)
+  "True if a tick has nothing to settle for ROBOT, as WORLD-SETTLED-P says."
+  (flet ((unsettled-hand-p (hand)
+           (or (hand-location hand) (rest (hand-contents hand)) (grip-watched-p hand))))
+    (not (or (plusp (length (robot-designators robot)))
+             (robot-ended-tracks robot)
+             (some #'camera-location (robot-cameras robot))
+             (some #'unsettled-hand-p (robot-hands robot))))))
+
+(defun settle-all (world)
+  (settle-robots world)
+  (tend-tracks world)
+  (check-grips world)
+  (setf (world-settled-p world) (every #'settled-robot-p (world-robots world))))
+
+(defun settle (world)
+  "Settle what is inside of what in WORLD, tracks and grips, unless there is known to be none."
+  (unless (world-settled-p world) (settle-all world)))
 
 (defun prolong-journal (simulation)
   "Let the journal of SIMULATION, if it keeps one that is not full, reach to now."
@@ -128,9 +147,7 @@ journal has that in the same place."
                         (perform-requests simulation timeline))
              (:events (run-due-events timeline))
              (:kickers (run-kickers world))
-             (:settling (settle-robots world)
-                        (tend-tracks world)
-                        (check-grips world))
+             (:settling (settle world))
              (:continuations (end-changing timeline world)
                              (prolong-journal simulation)
                              (deliver-notifications timeline))

@@ -68,8 +68,8 @@
   ;; world
   (:export #:world #:world-p #:world-map #:world-seed #:world-flags #:do-cell #:cell-things
            #:world-rank-count #:thing-of-rank #:world-thing-list #:world-robots #:world-timeline
-           #:world-dice #:world-dice-set #:world-move-watchers #:*world* #:current-world
-           #:make-world #:reset-world #:seed-world #:world-has-kickers-p
+           #:world-dice #:world-dice-set #:world-move-watchers #:world-settled-p
+           #:*world* #:current-world #:make-world #:reset-world #:seed-world #:world-has-kickers-p
            #:some-kicker #:kicker-test #:kicker-body
            #:things-at
            #:find-thing #:find-things #:do-things #:world-live-count)

@@ -29,7 +29,11 @@ moved, been made or been destroyed"))
    (due-kickers '() list "the kickers to run in the next tick because somebody asked for it" :part))
   (:scratch
    (noted-names '() list "the names of attributes that somebody has been warned of")
-   (writer nil t "the thread that is changing the world, or NIL")))
+   (writer nil t "the thread that is changing the world, or NIL"))
+  ;; As long as it is NIL, each tick looks.
+  (:link
+   (settled-p nil boolean "a tick has nothing to settle in the world: no robot has a designator, an
+ended track, a part inside of something, a hand with two things in it or with a watched grip")))
 
 (addition world-p world-map world-seed world-robots)
 (document-functions
