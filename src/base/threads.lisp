@@ -113,7 +113,7 @@ since this Lisp is being left."
 (declaim (inline current-thread))
 (defun current-thread ()
   "Return the thread that asks."
-  (bordeaux-threads:current-thread))
+  sb-thread:*current-thread*)
 
 (defun thread-name (thread)
   "Return what THREAD is called, a string."

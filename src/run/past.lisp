@@ -52,6 +52,7 @@ could not be made, as somebody was at work in the run; or NIL."
   (rolled nil)
   (warned-p nil :type boolean))
 
+(declaim (inline noting-p))
 (defun noting-p (simulation)
   "True if somebody wants to know what is done to SIMULATION."
   (or (simulation-journal simulation) (simulation-past simulation)))

@@ -214,12 +214,18 @@ called then."
                    (reverse (shiftf (timeline-notifications timeline) '())))
              (pop (timeline-untold timeline)))))
 
+(declaim (inline notifications-left-p deliver-notifications))
+(defun notifications-left-p (timeline)
+  (or (timeline-notifications timeline) (timeline-untold timeline)))
+
 ;; What is left while one is called, forks that are made there take along.
+(defun deliver-all (timeline)
+  (let ((*tick-dice* nil))
+    (unwind-protect (loop for notification = (next-notification timeline)
+                          while notification
+                          do (apply (first notification) (rest notification)))
+      (when (notifications-left-p timeline) (deliver-all timeline)))))
+
 (defun deliver-notifications (timeline)
   "Call what is to be called at the end of this tick, in order; the rest also if a call is left."
-  (when (or (timeline-notifications timeline) (timeline-untold timeline))
-    (let ((*tick-dice* nil))
-      (unwind-protect (loop for notification = (next-notification timeline)
-                            while notification
-                            do (apply (first notification) (rest notification)))
-        (deliver-notifications timeline)))))
+  (when (notifications-left-p timeline) (deliver-all timeline)))

@@ -215,22 +215,25 @@ large group, memory is read ahead if the first that runs moves its thing."
                                (attachment-thing attachment)))
                     attachment)))
 
+(defun run-all-kickers (world)
+  (let ((*world* world) (self nil)
+        (dice (world-dice world :kickers))
+        (due (nreverse (shiftf (world-due-kickers world) '()))))
+    (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
+    (let ((tick (incf (world-kicker-tick world))))
+      (flet ((run-due (attachment) (run-due-kicker attachment world))
+             (run-chance (group)
+               (unless (skip-group group) (run-group group dice (if due tick 0)))))
+        (declare (dynamic-extent #'run-due #'run-chance))
+        (unwind-protect (call-each #'run-due due)
+          (call-each #'run-chance (world-kicker-groups world)))))))
+
+(declaim (inline run-kickers))
 (defun run-kickers (world)
   "Run for one tick the kickers of all things in WORLD: first those that RUN-KICKER has asked
 for, then those whose chance has come. Trouble in a kicker is queued as an error message.
 Return nothing."
-  (when (or (world-kicker-groups world) (world-due-kickers world))
-    (let ((*world* world) (self nil)
-          (dice (world-dice world :kickers))
-          (due (nreverse (shiftf (world-due-kickers world) '()))))
-      (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
-      (let ((tick (incf (world-kicker-tick world))))
-        (flet ((run-due (attachment) (run-due-kicker attachment world))
-               (run-chance (group)
-                 (unless (skip-group group) (run-group group dice (if due tick 0)))))
-          (declare (dynamic-extent #'run-due #'run-chance))
-          (unwind-protect (call-each #'run-due due)
-            (call-each #'run-chance (world-kicker-groups world)))))))
+  (when (or (world-kicker-groups world) (world-due-kickers world)) (run-all-kickers world))
   (values))
 
 (public run-kicker)
