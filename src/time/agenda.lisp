@@ -204,10 +204,12 @@ interrupted."
 
 (defun run-bucket (agenda last)
   "Run the events of the bucket that held LAST."
-  (if (zerop (agenda-unequal agenda))
-      (run-in-order agenda (first-of last))
-      (call-each (lambda (event) (run-if-pending agenda event))
-                 (bucket-by-priority (first-of last)))))
+  (declare #.*hot* (type agenda agenda))
+  (let ((first (first-of last)))
+    (cond ((eq first last) (run-if-pending agenda first))
+          ((zerop (agenda-unequal agenda)) (run-in-order agenda first))
+          (t (call-each (lambda (event) (run-if-pending agenda event))
+                        (bucket-by-priority first))))))
 
 (defun advance-agenda (agenda)
   "Go on to the next tick and run the events due in it."
