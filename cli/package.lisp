@@ -1,6 +1,6 @@
 ;;;; package.lisp -- the command-line face: the prompt Robot> and its commands.
 
-(defpackage :ars-magna.cli
+(ars-magna.host:define-package :ars-magna.cli
   (:documentation "Arguments of ./cli/ars-magna, the prompt, the line commands. The only code that
 ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:use :cl :ars-magna.base :ars-magna.world :ars-magna.time :ars-magna.robot
@@ -61,45 +61,5 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:trials-in-shard-p
                 #:missing-shards #:check-same-code)
-  ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
-           #:stream-line-column #:stream-write-char #:stream-write-string
-           #:stream-force-output #:stream-finish-output
-           #:stream-read-char #:stream-read-line #:stream-unread-char
-           #:stream-listen #:stream-clear-input)
-  ;; escapes, columns, drawn-line, console
-  (:export #:painted-spans #:unpainted-text #:broken-text
-           #:drawn-line-label #:drawn-line-text #:drawn-line-point #:drawn-line-shown
-           #:rows-to-show
-           #:console #:console-line #:console-asked-p #:tell-asking
-           #:wipe #:draw #:leave-line #:clear-screen #:fitted)
-  ;; handed-text
-  (:export #:make-handed-text #:press-key #:typed-ahead)
-  ;; line, names
-  (:export #:line #:line-name #:line-parameters #:line-sentence #:define-line #:all-lines
-           #:all-line-names #:find-line #:bad-line
-           #:line-family #:line-details #:line-full-name #:line-action #:usage)
-  ;; help
-  (:export #:slot-help)
-  ;; manipulate-line
-  (:export #:manipulation-usages)
-  ;; arguments
-  (:export #:read-argument #:argument-words)
-  ;; session, prompt
-  (:export #:session #:make-session #:session-robot #:session-errors #:session-input
-           #:session-quiet-p
-           #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks* #:*break-hooks*
-           #:tell-first-messages)
-  ;; listening, going-on
-  (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:run-of-robot #:words-for-run
-           #:away-p #:way-in #:pace-of)
-  ;; breakage
-  (:export #:awaited-answers #:ways-awaited #:simulator-broken-p #:asker-of-break
-           #:answers-break-p #:package-of-caller)
-  ;; sessions
-  (:export #:run-session-apart #:interrupt-session #:end-session #:enter-line #:at-work-on
-           #:abandon-session #:asked-of-others-p #:take-waiting)
-  ;; worlds
-  (:export #:all-worlds)
-  ;; main
-  (:export #:main))
+           #:stream-line-column #:stream-write-char #:stream-write-string #:stream-read-char))

@@ -17,10 +17,6 @@
       (unless (or (null text) (search *addition-sentence* text))
         (setf (documentation symbol kind) (format nil "~A~%~A" text *addition-sentence*))))))
 
-(defun externalp (symbol)
-  (let ((layer (symbol-package symbol)))
-    (eq :external (nth-value 1 (find-symbol (symbol-name symbol) layer)))))
-
 ;;; Layers SETF what they read of a run; users must not, as no journal would know. So where a
 ;;; function can be set and is not marked as SETTABLE, a face has a symbol of its own for it.
 
@@ -53,11 +49,7 @@
     reader))
 
 (defun show (symbol face)
-  "Let the package FACE export SYMBOL, or one that names the same function and cannot be set.
-Signals MISUSE if its layer does not export it."
-  (unless (externalp symbol)
-    (reject-use "~S is marked for ~A, but ~A does not export it. Add it to that package's exports."
-                symbol face (package-name (symbol-package symbol))))
+  "Let the package FACE export SYMBOL, or one that names the same function and cannot be set."
   (when (addition-p symbol) (tell-addition symbol))
   (let ((shown (if (only-read-p symbol) (reader-in symbol face) symbol)))
     (shadowing-import (list shown) face)

@@ -392,6 +392,10 @@ describes a slot."
           (is (or (null texts) (some (lambda (text) (search "anual" text)) texts))
               "~S does not cite the manual" symbol)))))
 
-(test public.must-be-exported-by-its-layer
-  (signals base:misuse
-    (ars-magna.faces::show 'ars-magna.base::find-mark :ars)))
+(test marks.export
+  (let ((symbol (intern "NEWLY-MARKED" :ars-magna.tests)) (marks base::*marks*))
+    (unwind-protect (let ((base:*marking-p* t))
+                      (eval `(base:addition ,symbol))
+                      (is (member symbol (external-symbols (find-package :ars-magna.tests)))))
+      (setf base::*marks* marks)
+      (unintern symbol :ars-magna.tests))))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.manual)
 
+(export '(entry-name entry-chapter chapter-title))
+
 (defstruct (entry (:copier nil))
   "What the reference says of NAME, as people write it. CHAPTER is a key of *CHAPTERS*, SECTION the
 heading that it is listed under there. USE is how it is written, FACTS lists (label text), TEXT what

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.manual)
 
+(export '(read-examples))
+
 ;;; A block is an example of the names that its author gives it: those in a heading or paragraph
 ;;; that has nothing but names in code, as in "### `robot-turn`, `turn`", or before it in bold code,
 ;;; as in "**`(par form...)`** succeeds when". The names hold for all blocks until others come, or a

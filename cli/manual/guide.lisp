@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.manual)
 
+(export '(read-guide))
+
 (defstruct (page (:copier nil))
   "A page of the guide. SOURCE is its name in the project, FILE that of the HTML; TOKENS are the
 HTML of its Markdown, its headings with anchors."

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.manual)
 
+(export '(escaped anchor))
+
 (defun escaped (text)
   "Return TEXT as it is written in HTML, between tags or in an attribute's double quotes."
   (with-output-to-string (out) (write-xml-text text out)))

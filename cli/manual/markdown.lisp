@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.manual)
 
+(export '(html-tokens tag-p tag-name attribute-value))
+
 (defun markdown-html (text)
   "Return the HTML of TEXT, in Markdown as GitHub has it. HTML in TEXT is left out."
   (multiple-value-bind (status html)

@@ -1,6 +1,6 @@
 ;;;; package.lisp -- our manual, as a set of HTML pages: ./cli/ars-magna --manual.
 
-(defpackage :ars-magna.manual
+(ars-magna.host:define-package :ars-magna.manual
   (:documentation "Writes the manual: its guide is made of the folders' README.md files, its
 reference of what is defined in this Lisp.")
   (:use :cl :ars-magna.base)
@@ -26,12 +26,4 @@ reference of what is defined in this Lisp.")
   (:import-from :ars-magna.cli
                 #:all-lines #:line-name #:line-family #:line-sentence #:line-details
                 #:line-parameters #:line-full-name #:line-action #:usage #:slot-help
-                #:manipulation-usages)
-  ;; html, markdown, guide
-  (:export #:escaped #:anchor #:html-tokens #:tag-p #:tag-name #:attribute-value
-           #:read-guide #:page-source #:page-file)
-  ;; entries, examples
-  (:export #:all-entries #:entry-name #:entry-chapter #:entry-symbol #:chapter-title
-           #:read-examples #:examples-of-entry)
-  ;; writing
-  (:export #:write-manual #:main))
+                #:manipulation-usages))

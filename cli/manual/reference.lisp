@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.manual)
 
+(export '(examples-of-entry))
+
 (defun fact-html (fact book)
   "Return the HTML of FACT, (label text)."
   (destructuring-bind (label text) fact

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.manual)
 
+(export '(all-entries))
+
 ;;; The chapter of a symbol follows from what it is.
 
 (defun definer-p (symbol)

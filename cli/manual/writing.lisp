@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.manual)
 
+(export '(write-manual main))
+
 (defparameter *own-files* '("style.css" "search.js")
   "The files beside this one that go with the pages as they are.")
 

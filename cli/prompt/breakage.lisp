@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(awaited-answers ways-awaited simulator-broken-p asker-of-break answers-break-p))
+
 (defvar *session* nil "The session that the debugger asks, in whatever thread; the newest.")
 
 (defvar *asking-p* nil "True in a thread that has broken and asks how to go on.")

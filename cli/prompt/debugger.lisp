@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(*break-hooks*))
+
 ;;; Only the thread that has the prompt reads what is typed. When a program in it breaks, by (BREAK)
 ;;; or an error that the user wants to look into, it asks how to go on before it reads the next
 ;;; line. When one in another thread breaks, such as the simulator's, that thread waits, and the

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(all-lines find-line))
+
 (defvar *aliases* '() "Lists (name text), in upper case and as typed: what ALIAS has defined.")
 
 (defun all-lines ()

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(go-to-run run-after tell-of-run run-of-robot words-for-run away-p way-in pace-of))
+
 (defun words-for-run (simulation)
   "Return in words where those are who are in SIMULATION: in a fork, a trial, or a map."
   (let* ((visitor (visitor-of simulation)) (visit (and visitor (session-visit visitor))))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(line line-name line-parameters line-family line-action usage))
+
 ;;; The prompt's own commands are defined here and in the files that follow, each once, by
 ;;; DEFINE-LINE; the robot's come from the command layer (see robot-lines.lisp). HELP, the menus and
 ;;; what is said of wrong arguments come from these definitions. Manual E.

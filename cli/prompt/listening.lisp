@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(*whereabouts-hooks* tell-first-messages))
+
 ;;; Each has a thread, a robot and a current simulation of its own. What a simulation has to say is
 ;;; shown by all that listen to it, and each of them can answer what breaks in its thread.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(run-session prompt))
+
 (defun do-next (session text)
   "Do what TEXT, a line, says, or let it answer the oldest break, if a program waits for that."
   (let ((breakage (first (session-breaks session))))

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.cli)
 
+(export '(session make-session session-robot session-errors session-input session-quiet-p
+          *prompt-robot*))
+
 (defvar *prompt-robot* nil
   "The name of the robot that the prompt commands: the one last given to SIMULATOR, or chosen.")
 

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.cli)
 
+(export '(run-session-apart interrupt-session end-session enter-line at-work-on abandon-session
+          asked-of-others-p))
+
 ;;; Each has a thread, a robot and a current simulation of its own.
 
 (defun call-apart (simulation robot-name function)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(package-of-caller))
+
 ;;; The shipped worlds, in the directory worlds/, are there from the start and called as their maps
 ;;; are. Others come from files: Lisp files that define a map and at least one robot in it.
 

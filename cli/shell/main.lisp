@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(main))
+
 ;;; Interactively, the world is live. A batch without a rate is headless: a fresh world, whose ticks
 ;;; pass only as its lines need them, so that the same lines and seed give the same run.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(tell-asking))
+
 ;;; What is typed next is for the program then, and for the prompt only after that.
 
 (defgeneric tell-asking (console)

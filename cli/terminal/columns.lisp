@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(broken-text))
+
 ;;; Accents take no column of their own, the characters of East Asia two. Codes that terminals obey,
 ;;; such as those for colours, take none.
 

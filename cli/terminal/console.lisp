@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(console console-line console-asked-p wipe draw leave-line clear-screen fitted))
+
 ;;; What the simulator and the user's programs print comes from other threads, at any time. The
 ;;; console keeps what each of them writes in one piece, and knows when a prompt has been written
 ;;; over and must be shown again. A terminal moves the cursor when the user presses return; nobody

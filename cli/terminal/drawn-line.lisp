@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(drawn-line-label drawn-line-text drawn-line-point drawn-line-shown rows-to-show))
+
 ;;; The line stands below all that is written meanwhile: it is wiped out before something is
 ;;; written, and drawn again after that. It has as many rows as the window is wide for; of more
 ;;; rows than the window has, those around the cursor are drawn. A window that becomes narrower

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(painted-spans unpainted-text))
+
 ;;; No other file of the prompt knows an escape code. They are those that all terminals of today
 ;;; have in common. Colours are the sixteen that users choose themselves, so that they suit their
 ;;; background; white and black are left to be what text is.

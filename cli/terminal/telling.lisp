@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(bad-line))
+
 ;;; Whoever makes a mistake may have typed a list without an end, an object that cannot be printed,
 ;;; or bytes that a terminal would obey.
 

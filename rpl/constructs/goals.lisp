@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.constructs)
 
+(export '(advice-on-goal))
+
 ;;; A goal is a plan that is found by a pattern. Of those that match, the most specific is chosen:
 ;;; one whose pattern matches nothing that the others' do not; of several such, the one defined
 ;;; first. So it does not matter in which order files are loaded, as it does for CRAM, which

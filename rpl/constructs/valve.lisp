@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.constructs)
 
+(export '(claim-p claim-valves valve))
+
 ;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted,
 ;;; the newest first. A part of a task that holds a valve may hold it as well, one part at a time.
 ;;; So HOLDERS of a valve are the first claim, its owner's, and those of tasks that this is part of;

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.fluents)
 
+(export '(fluent-pulses make-watcher watcher watcher-client watcher-wake watcher-pending
+          watcher-fluent watcher-p define-membership home-forked-p))
+
 ;;; A base fluent is set. A derived fluent is computed from others, its sources. While nobody
 ;;; uses it, it is computed on demand and its sources do not know of it; its first user (a watcher,
 ;;; or a derived fluent that is itself used) makes it a dependent of its sources and the last one

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.fluents)
 
+(export '(*runner* *home-in-use* home home-closed-p home-born home-on-change at-home call-at-home
+          in-use-p post next-entry posted-p))
+
 ;;; A fluent that somebody waits for has a home, the plan runner of those who wait. One thread at a
 ;;; time has a home; what others want to change meanwhile they post, and it is heard in the order of
 ;;; posting. The newest entry of the inbox comes first, the oldest of the outbox.

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.fluents)
 
+(export '(declare-fluent-variable declare-pulse known-pulse-p known-fluent-variable-p
+          known-vector-variable-p robots-fluent-p))
+
 ;;; Of a part of which the robot has several, such as a camera, a variable holds a vector of
 ;;; fluents. That vector is true, always, and so never what a condition means.
 

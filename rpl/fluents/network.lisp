@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.fluents)
 
+(export '(base-fluents depends-p looked-at-p forget-looks fluent-watchers fluent-text
+          operand-value one-fluent truth-value unwatch watch))
+
 ;;; Computing.
 
 (declaim (inline stored-value))

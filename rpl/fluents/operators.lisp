@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
+(export '(lifting lifting-and lifting-or))
+
 ;;; LIFTING is what plans turn calls of these operators into. Where no argument is a fluent it is
 ;;; plain Lisp, and where the compiler can see that none is, nothing is left of it.
 

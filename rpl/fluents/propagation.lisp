@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
+(export '(*on-outside-change* apply-settings give-back-all))
+
 ;;; A change is heard by the watchers of what was set, in order of arrival, and then by the
 ;;; dependent fluents in order of height, so that none is computed from a mixture of old and new
 ;;; values and each at most once. Watchers hear only of true values (and of errors). A watcher that

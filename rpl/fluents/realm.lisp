@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.fluents)
 
+(export '(*realm* +root+ fork-realm leave-realm realm-sources source-realm entity entity-realm
+          entity-like here fresh-twin foreign-p next-token))
+
 ;;; A fluent is an identity: plans, vectors, networks and global variables lead to it. A fork has
 ;;; states of its own for all of them. So each object that is an ENTITY belongs to a realm, and has
 ;;; a twin in each realm that came of that by forking: HERE finds it, by whatever road one has come

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
+(export '(repair-fluents))
+
 ;;; The lists of fluents may be in any state. So the fluents that somebody watches are found from
 ;;; the watchers, which are known; what the fluents remember of each other is dropped and made anew.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(enter-application))
+
 (defstruct (application (:include call-plan-node) (:copier nil))
   "A call of the plan and with the list of arguments that are the variables of its environment.")
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(name-without-quote-p check-quote))
+
 ;;; Calling. CALLER is compiled from the call's arguments: it takes the environment and a function,
 ;;; either the procedure's entry or a Lisp function, and calls that with them.
 

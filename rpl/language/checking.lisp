@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(warn-of-call doubt-own-form *advice-on-call* find-call fail-p may-return-p
+          endless-whenever-p))
+
 ;;; Plans and functions may be defined in any order, and in several files. So calls are looked at
 ;;; when all has been read that is compiled or loaded together, as Lisp does with its functions.
 ;;; What Lisp code calls is for Lisp to see.

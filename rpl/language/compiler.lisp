@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(define-plan-form hoisted-code plan-code refuse-code suspends-p))
+
 ;;; Every function here named X-CODE returns a form; evaluated once, when the plan is loaded, that
 ;;; form builds the nodes.
 

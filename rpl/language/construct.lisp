@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(all-constructs define-construct form build))
+
 ;;; A construct has four sides. Users meet a macro: its lambda list, documentation, and the error if
 ;;; it is written outside of plans. The compiler makes a node of it. A task runs the node step by
 ;;; step, in states that have names. And signals pass it. See rpl/README.md for how to add one.

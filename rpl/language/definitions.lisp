@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(split-documentation variable-of))
+
 (defun procedure-parts (parameters environment)
   "Return the scope of a procedure's body, and the lambda expression for its entry."
   (let ((scope (make-scope :environment environment))

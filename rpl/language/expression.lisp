@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(define-expression value child how result environment memory next at-once in-state-p))
+
 ;;; A frame is always in one of the states of its node. States have names; that a frame holds their
 ;;; number, in its counter, is nobody's business but this file's and FRAME-STATE's.
 

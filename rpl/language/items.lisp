@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(item-list))
+
 (defun item-list (operator sequence)
   "Return the elements of SEQUENCE, which OPERATOR goes through, in a list. Signals WRONG-ARGUMENT
 unless it is a vector or a list that ends."

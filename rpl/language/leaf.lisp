@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(condition-lambda awaited-lambda value-lambda))
+
 ;;; Where the plan's own text says so, conditions read fluents by value and operators are lifted.
 ;;; What is written for a truth value must not be a vector of fluents.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(block-code make-leave))
+
 ;;; To leave is to send an ESCAPE up. Where it crosses the border of a task, that task ends, its
 ;;; siblings evaporate, and the escape goes on in the task around them.
 

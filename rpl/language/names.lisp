@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(check-variables plain-parameters))
+
 (defun variable-trouble (name environment)
   "Return in words why NAME cannot be a lexical variable in ENVIRONMENT, or NIL. That it is special
 is another matter."

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(each-body-code give-way))
+
 ;;; After each turn others that are ready get theirs, so that a loop that never waits cannot keep
 ;;; them out. All of these can be left by RETURN.
 

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(author misplaced misplaced-advice misplaced-container misplaced-form
+          misplaced-suspension operator-in-p note-own-text note-expansion form-as-written
+          in-plans-only))
+
 ;;; Inside a plan, IF, AND, < and so on have their plan meaning whether they are read as Common
 ;;; Lisp's, the Nisp dialect's or ours: operators are known by name, as long as they are Lisp's or
 ;;; belong to a package of this system.

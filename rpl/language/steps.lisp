@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(binding-body-code body-code steps steps-parts))
+
 (declaim (inline enter-last))
 (defun enter-last (node environment frame)
   "Begin NODE as the last thing that FRAME does."

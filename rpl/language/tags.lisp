@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
+(export '(start-branch tagged-scope tags-in with-tags-code))
+
 ;;; WITH-TAGS binds the name of each (:tag name form) in it to a task that is yet to start, so that
 ;;; other branches can refer to it before. A second run of the same form gets a task of its own,
 ;;; with the same status fluent.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-pictures)
 
+(export '(tick-at))
+
 (defconstant +label-width+ 480
   "How wide the column with the names of the tasks is at most, in pixels.")
 (defconstant +tick-width+ 8 "How wide a tick is, in pixels, where there are neither few nor many.")

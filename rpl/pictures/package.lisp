@@ -1,6 +1,6 @@
 ;;;; package.lisp -- pictures of plans.
 
-(defpackage :ars-magna.rpl-pictures
+(ars-magna.host:define-package :ars-magna.rpl-pictures
   (:documentation "Pictures of plans that run or have run: joins the plan language with the
 canvas.")
   (:use :cl :ars-magna.base :ars-magna.canvas)
@@ -18,10 +18,4 @@ canvas.")
                 #:tree-image-tasks)
   (:import-from :ars-magna.rpl-robot #:call-with-plans-in-use)
   (:import-from :ars-magna.command #:trouble-p #:error-code-meaning)
-  (:import-from :ars-magna.display #:picture-kind #:save-svg #:lines-within)
-  ;; bars, timeline
-  (:export #:tick-at #:make-page #:page-end #:page-start #:scale-for #:draw-page)
-  ;; task-tree
-  (:export #:draw-task-tree #:fold-mark #:fold-mark-serial #:fold-mark-p)
-  ;; saving
-  (:export #:save-plan-timeline #:save-plan-tree))
+  (:import-from :ars-magna.display #:picture-kind #:save-svg #:lines-within))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-pictures)
 
+(export '(draw-task-tree fold-mark fold-mark-serial))
+
 (defconstant +indent+ 12 "How far the parts of a task are to the right of it, in pixels.")
 (defconstant +deepest+ 14 "From what depth on parts are indented no further.")
 (defconstant +mark+ 9 "How wide the mark is that says how a task is, in pixels.")

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-pictures)
 
+(export '(make-page page-end page-start scale-for draw-page))
+
 (defun draw-axis (canvas scale top bottom)
   "Draw lines at round ticks from TOP down to BOTTOM, and the numbers of these above and below."
   (loop with step = (nice-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))

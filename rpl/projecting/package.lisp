@@ -1,6 +1,6 @@
 ;;;; package.lisp -- plans that are tried in forks before they are done.
 
-(defpackage :ars-magna.rpl-projecting
+(ars-magna.host:define-package :ars-magna.rpl-projecting
   (:documentation "Projecting plans: what may become of them, in forks of their run or in a world
 that a robot believes in, and choosing by that.")
   (:use :cl :ars-magna.base :ars-magna.rpl.language :ars-magna.rpl-robot)
@@ -25,13 +25,4 @@ that a robot believes in, and choosing by that.")
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
                 #:*realm* #:fork-realm)
   (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
-  (:import-from :ars-magna.display #:take-snapshot #:picture-kind)
-  ;; rollout
-  (:export #:rollout-p #:rollout-seed #:rollout-state #:rollout-succeeded-p #:rollout-ticks
-           #:rollout-cost #:rollout-failure #:rollout-value)
-  ;; projection
-  (:export #:projection-p #:projection-text #:projection-rollouts #:projection-horizon
-           #:projection-tick #:projection-successes #:projection-probability
-           #:projection-interval #:projection-failures #:projection-mean-ticks)
-  ;; projecting, looking, picture
-  (:export #:project-plan #:with-rollout #:save-projection-picture))
+  (:import-from :ars-magna.display #:take-snapshot #:picture-kind))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(define-fluents all-fluent-variables))
+
 ;;; Each variable holds a fluent or, for cameras, hands and bins, a vector of fluents, one for each
 ;;; such part. RPL-INIT-ROBOT makes them; a headless simulation binds its own.
 

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(*interface* interface-p interface-robot interface-simulation interface-runner
+          interface-wishes holding-p call-with-plans))
+
 ;;; Whoever lets plans react holds the interface's lock. Headless that is whoever passes ticks or
 ;;; starts plans; live a thread of their own, which exists while there are plans and a clock. The
 ;;; simulator only posts to that and never waits for it.

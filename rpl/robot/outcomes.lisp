@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(define-outcome))
+
 ;;; The functions follow from the commands' definitions: what is the robot's is left out, cameras,
 ;;; hands and bins are given by index, and any argument may be a fluent. What becomes of the
 ;;; fluents when a command ends is said by DEFINE-OUTCOME, in the table of robot-commands.lisp.

@@ -1,6 +1,6 @@
 ;;;; package.lisp -- where plans meet a robot: the interface of the manual's appendix C.
 
-(defpackage :ars-magna.rpl-robot
+(ars-magna.host:define-package :ars-magna.rpl-robot
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world
@@ -67,45 +67,4 @@
                 #:part-of-p #:frame-node #:frame-up #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
                 #:entity-realm #:entity-like
-                #:*on-outside-change* #:note-word #:task-now #:*advice-on-call* #:advice-on-goal)
-  ;; fluents
-  (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
-           #:robot-place-input* #:robot-place* #:camera-input* #:camera-views*
-           #:camera-designators* #:camera-error* #:camera-tracking* #:camera-tracking-error*
-           #:camera-moved* #:camera-movement-error* #:hand-moved* #:hand-error* #:hand-lost*
-           #:hand-inside* #:hand-grasping* #:hand-input* #:storage-bin-moved*
-           #:storage-bin-error* #:storage-bin-jammer*)
-  (:export #:define-fluents #:define-outcome #:all-fluent-variables)
-  ;; interface, accessors
-  (:export #:rpl-init-robot #:rpl-robot #:rpl-robot-valve #:rpl-robot-part #:*trace-plans*
-           #:rpl-robot-speed #:rpl-robot-turn-angle #:rpl-robot-num-cameras #:rpl-robot-num-hands
-           #:rpl-robot-num-bins #:rpl-camera-field-of-view #:rpl-camera-resolution
-           #:rpl-camera-angle #:rpl-camera-last-view #:rpl-hand-strength
-           #:rpl-storage-bin-capacity #:rpl-storage-bin-real-capacity #:rpl-storage-bin-closed?
-           #:rpl-designator-data #:rpl-new-odometer #:rpl-grab-robot #:rpl-grab-camera
-           #:rpl-grab-hand #:rpl-grab-bin)
-  ;; commands
-  (:export #:rpl-robot-set-speed #:rpl-robot-set-turn-angle #:rpl-robot-turn
-           #:rpl-robot-about-face #:rpl-robot-turn-left #:rpl-robot-turn-right
-           #:rpl-robot-turn-corner #:rpl-robot-align-place #:rpl-robot-go-forward
-           #:rpl-robot-go-distance #:rpl-robot-goto-wall #:rpl-robot-follow-wall
-           #:rpl-robot-goto-designator
-           #:rpl-robot-stop #:rpl-robot-place #:rpl-camera-turn #:rpl-camera-align-place
-           #:rpl-camera-align-robot #:rpl-camera-view #:rpl-camera-get-object-designator
-           #:rpl-camera-get-all-object-designators #:rpl-camera-get-place-designator
-           #:rpl-camera-get-all-place-designators #:rpl-camera-track #:rpl-camera-untrack
-           #:rpl-camera-insert #:rpl-camera-remove #:rpl-hand-insert #:rpl-hand-insert-bin
-           #:rpl-hand-remove #:rpl-hand-grasp-desig #:rpl-hand-ungrasp #:rpl-hand-grasp-check
-           #:rpl-hand-track #:rpl-storage-bin-open #:rpl-storage-bin-close)
-  ;; running
-  (:export #:run-plan #:begin-plan #:end-plan #:plans #:*plan-limit* #:*plan-command-limit*
-           #:rpl-runner)
-  ;; interface, wishes and runs, for rooms above
-  (:export #:*interface* #:interface-p #:interface-robot #:interface-simulation #:interface-runner
-           #:interface-wishes #:holding-p #:call-with-plans #:wish #:wish-task #:wish-interface
-           #:serve-wish #:add-wish #:forget-wish #:grant-wish #:wishes-in-tick #:fork-at-rest
-           #:unwanted-wish-p #:call-apart #:ensure-interface #:*robot-to-drive* #:begin-in
-           #:note-robot-commanded
-           #:pass-until #:how-over)
-  ;; seeing
-  (:export #:plan-ending-p #:call-with-plans-in-use #:print-plans #:step-plan))
+                #:*on-outside-change* #:note-word #:task-now #:*advice-on-call* #:advice-on-goal))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(ensure-interface begin-in note-robot-commanded pass-until how-over plan-ending-p))
+
 (addition *plan-limit*)
 (defparameter *plan-limit* 100000
   "How many ticks RUN-PLAN lets pass, headless, before it gives a plan up.")

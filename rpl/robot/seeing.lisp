@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(call-with-plans-in-use))
+
 (setf *runner-in-use* (lambda () (and *interface* (interface-runner *interface*)))
       *home-in-use* (lambda ()
                       (let ((interface (usable-interface)))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(*robot-to-drive*))
+
 (defun end-plans-here (interface)
   "Let the plans of INTERFACE, which is to end, end in this thread. What interrupts that leaves one
 thing that they do to clean up, at most."

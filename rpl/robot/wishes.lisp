@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(wish wish-task wish-interface serve-wish add-wish forget-wish grant-wish wishes-in-tick
+          fork-at-rest unwanted-wish-p call-apart))
+
 ;;; A run cannot be forked at a plan's own step: what that is about to do is on Lisp's stack. So a
 ;;; task that wants it done leaves a wish, waits, and goes on in the same tick with what came of it.
 ;;; Wishes are served one at a time, the oldest first, when the reaction has come to rest; after

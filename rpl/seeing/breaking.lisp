@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.seeing)
 
+(export '(plan-break-p))
+
 ;;; A break is no error. Where nobody is there to answer a debugger it is a message, and the plan
 ;;; goes on.
 

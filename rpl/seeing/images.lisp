@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.rpl.seeing)
 
+(export '(image-of-tasks runner-mark task-image task-image-serial task-image-depth task-image-look
+          task-image-state task-image-name task-image-form task-image-calls task-image-awaits
+          task-image-since task-image-path task-image-parts task-image-folded-p tree-image-tick
+          tree-image-rows tree-image-plans tree-image-tasks))
+
 ;;; An image is made where no plan goes on, as between two ticks; whoever draws from it may do so in
 ;;; any thread. It has the rows that are to be seen, from top to bottom, and no more than so many of
 ;;; them: what is left out, or folded away, is only counted.

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.rpl.seeing)
 
+(export '(bar bar-call-p bar-commands bar-depth bar-end bar-failure bar-form bar-label
+          whole-bar-label bar-name bar-outcome bar-parts bar-serial bar-spans bar-start bars span
+          span-error span-end span-kind span-start span-text))
+
 (defstruct (span (:constructor make-span (kind start text &optional end)) (:copier nil))
   "From tick START to END of a task: KIND is :waiting (for what TEXT says), :parts (waiting for
 them), :blocked, :cleaning, :failure (TEXT says which; it takes no time) or :command (TEXT was under

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.seeing)
 
+(export '(*runner-in-use* *still* runner-to-see all-tasks task-numbered task-with))
+
 (defvar *runner-in-use* (constantly nil)
   "A function that returns the plan runner whose tasks are shown where nobody says which, or NIL.")
 

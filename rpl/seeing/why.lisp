@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.seeing)
 
+(export '(reasons))
+
 ;;; Effects follow their causes in the trace at once: a wake-up is due to the last change before it
 ;;; of what was waited for, the end of a wait for parts to the last part that ended.
 

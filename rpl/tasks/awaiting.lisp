@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(awaited-text))
+
 (defgeneric awaited-text (awaited)
   (:documentation "Return in words what a task that waits for AWAITED waits for.")
   (:method (awaited) (safe-text awaited :escape nil))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(*failure-hook* failure-of plan-backtrace operator-called-p))
+
 (defun operator-called-p (form &rest names)
   "True if FORM, of a plan's text, is a use of an operator that is called like one of NAMES."
   (and (typep form '(cons symbol)) (member (first form) names :test #'string=)))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(block-task check-together make-heed unblock-task))
+
 ;;; A blocked task keeps its place, with all that it consists of: what it waits for still counts,
 ;;; and it runs again when nobody blocks it any longer. The expressions that it is at may want to do
 ;;; something when that happens: those whose frame's DATA is a HEED.

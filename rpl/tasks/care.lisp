@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(leave-plan))
+
 ;;; An error in a leaf becomes a failure of its task. While *BREAK-ON-USER-ERROR* is true, and
 ;;; somebody is there to answer, the debugger comes first; its restarts are: do the leaf again, let
 ;;; it return a value, let the task fail, end the plan. An ABORT ends the plan that it meets. A leaf

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(count-steps set-charges stand-no-longer stand-still standing-still-p))
+
 ;;; A runner that is CHARGED-P takes what plans say of their thoughts for true: WITH-CHARGE and
 ;;; THINK wait, CHARGE-TICKS and CHARGE-STEPS count. If it has a BUDGET too, that is how many steps
 ;;; its tasks may take in a tick, all together, however often it reacts in that; it was ALLOTTED for

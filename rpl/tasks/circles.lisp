@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(hinderers hindrance-text report-circle taken-from those-who-took-from))
+
 ;;; A task is stuck if what it waits for can only come from tasks that are stuck. A task with parts
 ;;; is stuck if all of them are, policies, which only watch, not counted. Where it is not known who
 ;;; could help, somebody may: that is left to the report of deadlocks when nothing goes on any more.

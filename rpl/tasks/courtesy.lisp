@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(tell-at-rest))
+
 ;;; A task that tells another something by a pulse must not do so before the other waits for it. So
 ;;; the teller gives way until the hearer rests: until the hearer waits, is over, is kept from
 ;;; running, or has used its slice.

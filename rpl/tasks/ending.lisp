@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(complete complete-when-alone decide fail-or-escape receive status-word stop-waiting
+          unwind withdraw))
+
 ;;; What ends tells the construct that it is part of, which may then end too, and so on up. A task
 ;;; that is to evaporate does so at once, unless something in it has to be cleaned up first.
 

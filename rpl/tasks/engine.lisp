@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(advance-timers note-tick apply-next-batch close-runner digest-runner idle-p
+          make-plan-runner next-wake-time heard-from-outside-p plan-deadlocked-p post-batch
+          rest-in-tick post-call react react-to-all reseed-runner start-plan stop-plan))
+
 ;;; A reaction runs ready tasks until none is ready. Only then is the next posted batch applied, and
 ;;; time passes only when there is none. So a task that gives a command and waits for its pulse has
 ;;; reached the wait before the pulse can come.

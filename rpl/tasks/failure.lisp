@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(failure-matches-p failure-passed-on-by failure-subject failure-text make-failure
+          write-failure))
+
 ;;; A failure is a condition but no error: a plan that fails is part of the plan's business, and
 ;;; IGNORE-ERRORS in a plan's Lisp code must not swallow it. It spreads from a task to the
 ;;; construct that the task is part of, until something handles it.

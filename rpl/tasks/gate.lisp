@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(gate gate-holds hold-back release-hold spawn-gated))
+
 ;;; A task with a gate is at a frame of its own before its first expression, and goes on when
 ;;; nothing holds the gate any more. Its status is :created until then.
 

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(+nothing+ +parked+ bundle-p bundle-values call-leaf completion-p enter escape-p
+          escape-target escape-value leaf-function leaf-p make-bundle make-completion make-escape
+          make-leaf park required-slot single-value wake))
+
 ;;; A signal is what can happen to a task other than going on: a PLAN-FAILURE; an ESCAPE to an
 ;;; enclosing node, perhaps of an enclosing task; the word :EVAPORATE; or a COMPLETION, by which
 ;;; the construct that the task waits in ends well. A task that has children takes a signal only

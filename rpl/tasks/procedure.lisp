@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(entry-for declared-names declared-lambda-list reject-lisp-call procedures-to-offer
+          anonymous-procedure declare-procedure defined-p ensure-procedure enter-plan
+          install-procedure make-procedure procedure procedure-body procedure-entry
+          check-arguments procedure-name-p))
+
 ;;; A name that a plan calls leads to a cell, whether or not there is a procedure of that name yet.
 ;;; So procedures can be defined in any order, and defined anew while plans run: a call takes what
 ;;; is in the cell when it happens. Calls go by the very symbol. Who asks for a procedure by name,

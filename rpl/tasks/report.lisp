@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(*plan-end-hooks* report-end report-failure missed-text *plan-start-hooks*
+          task-state-text write-task-line write-task-tree))
+
 (defun blocker-of (task)
   "Return the task nearest to TASK, itself or one that it is part of, that is blocked; or NIL."
   (unless (task-doomed task)

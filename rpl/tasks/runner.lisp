@@ -2,6 +2,12 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(*runaway-limit* alone-p blocked-p make-ready plan-runner plan-runner-steps counted-steps
+          plan-runner-tasks plan-runner-tick runner-blocks runner-dice runner-lisps-dice
+          runner-tick runner-ticks-per-second runner-timers runner-stepper runner-note
+          runner-serial runner-alive client-forked-p hear-of-trouble note-seen runner-trace
+          runner-client runner-charged-p))
+
 ;;; Ready tasks queue first-in first-out by level; the highest level runs first. MASK has bit n set
 ;;; while somebody of level n may be queued, and the bit +INTERRUPT+, above all of these, when the
 ;;; running task is to look at its own signal.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(shape-of shape-fixed shape-keys shape-text keyword-slip misfit))
+
 (defstruct (shape (:constructor make-shape (least most fixed keys open)) (:copier nil))
   "How many arguments something takes, LEAST to MOST, of which FIXED are no keywords. KEYS are
 keywords; :NONE if there is no &KEY. OPEN is true if other keywords do as well."

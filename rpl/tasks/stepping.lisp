@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(spawn))
+
 ;;; Before each step a task gives way if somebody of a higher level has become ready, so that a
 ;;; policy reacts to what the last step did before the next one is taken.
 

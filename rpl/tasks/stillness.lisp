@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(report-deadlock report-stillness +no-fluent+ warn-of-no-fluent doubt-awaited
+          waiting-parts text-of-plans text-of-waits advice-on-stillness endless-advice
+          fluents-awaited))
+
 (define-global +no-fluent+ "a value that is no fluent"
   "What a task waits for that was given no fluent where it was to wait for one.")
 

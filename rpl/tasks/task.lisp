@@ -2,6 +2,12 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(current-form form-text whole-form-text forms-under-way frame-runs frame frame-counter
+          frame-data frame-environment frame-node frame-state frame-up make-frame make-task node
+          node-form task-awaiting task-cleaning task-frame task-index task-label task-level
+          task-newest-child task-runner task-signal task-status-fluent task-timer evaporating-p
+          part-of-p under-way-p frame-p node-names task-doomed task-uncounted-p task-older))
+
 ;;; A plan is a graph of nodes, its expressions. A task runs one of them as a chain of frames, the
 ;;; innermost of which is the task's own FRAME. Everything that a task knows is in its frames and
 ;;; their environments, on the heap. Children of a task exist only while its innermost frame is

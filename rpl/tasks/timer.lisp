@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(cancel-timer set-timer timer timer-client))
+
 ;;; Timers due at the same tick come in the order in which they were set. A timer knows its place
 ;;; in the heap, so that one that is no longer wanted leaves at once.
 

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(agent-text answer-p answer-error answer-issue issue-arguments issue-name issue-task
+          trace-entry-agent trace-entry-subject trace-so-far))
+
 ;;; A trace names tasks by number and holds no clock time, so that it is the same on every replay.
 ;;; An entry keeps things, not words: what is written of it is made when somebody reads it.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(note-command note-event start-trace stop-trace with-answer note-event))
+
 ;;; By whose doing something happens is known by *ASKER*: the task at work, or whoever posted what
 ;;; is being applied.
 

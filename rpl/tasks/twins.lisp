@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(note-twin has-twin-p twin-text end-text last-command last-pulse plan-function-p
+          results-of-command pulse-of-command teller-of-code))
+
 (defun note-twin (name call wait &optional fluent codes results)
   "Note that plans write CALL, with the names of its arguments, of which the first is a part if
 there are several of them, instead of a call of NAME; and that (wait-for WAIT) then waits for the

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(*speaking-task* install-task-variable make-task-bindings task-variable task-variable-p))
+
 ;;; Special variables belong to the thread, which all tasks share. A task variable is looked for
 ;;; from the task that asks outwards: in its frames, of which those that bind variables have
 ;;; TASK-BINDINGS as their DATA, in what it has set, in the frames of the task around it, and so on.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
+(export '(note-word task-now))
+
 ;;; Plans do again by themselves what they did, given what they were told. So whoever is to repeat a
 ;;; run must know what was said to its plans from outside: each word that can be notes itself, with
 ;;; the task or plan runner that it is said to.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(abridged safe-text unqualified-text text-as-typed +more+))
+
 ;;; A message quotes what is wrong. That may be a circle, a list of lists a thousand deep or a text
 ;;; of megabytes, and the message should be read all the same.
 

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.base)
 
+(export '(define-argument-type argument-type-text argument-of-type-p find-argument-type
+          argument-type-like trouble-with perhaps-degrees-p degrees-advice check-of-type
+          find-operator))
+
 (defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
                           (:copier nil))
   "A kind of argument: a test for it, and what it is in words. TROUBLE, if any, is a function that

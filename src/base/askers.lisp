@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(*asker* asker-note asker-forked-p *goes-on-in-forks-p* goes-on-in-forks-p note-of-asker
+          note-text))
+
 ;;; Who drives a robot from several sides wants to know whose command is under way. So whoever
 ;;; calls on others' behalf binds *ASKER*: CALL-USER-CODE to what it calls, plans to the task at
 ;;; work, the prompt to itself; and what is asked for keeps a note of it.

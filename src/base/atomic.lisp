@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(atomic-count compare-and-swap swap-if atomic-push atomic-incf atomic-decf memory-barrier))
+
 ;;; A PLACE here is the slot of a structure, by its accessor, the CAR or CDR of a cons, or the value
 ;;; of a symbol.
 

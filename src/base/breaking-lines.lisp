@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(wrapped-text))
+
 (defun break-place (text width)
   "Return where the first line of TEXT, WIDTH characters at most, ends."
   (flet ((last-place (character)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(define-function-class generic-name class-ancestors class-slot-names methods-on-class))
+
 (defmacro define-function-class (name documentation)
   "Define the class NAME, of generic functions, with DOCUMENTATION."
   `(defclass ,name (standard-generic-function)

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(code-references lambda-list-of callable-with-p function-file files-besides-functions
+          call-as-from-file))
+
 (defun code-references (function)
   "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
 symbols, other functions, and whatever else stands in its code or was closed over. In it are no

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(keep-place in-source-p call-at-place at-end-of-unit call-as-unit))
+
 ;;; A list that was made of one that stands in the source can be given its place: what the compiler
 ;;; has to say of it is then said of what the author wrote. See src/host/compiler.lisp.
 

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.base)
 
+(export '(check-argument reject-argument malformed-definition-expected malformed-definition-place
+          malformed-definition-clause warn-of-definition doubt-definition reject-name plain-name
+          reject-use outlived reject-outlived))
+
 ;;; A misused library signals one of these. A robot that fails in a task does not: it
 ;;; reports an error code through its command's continuation (manual 3.1.1).
 ;;;

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(contradiction contradict must-hold proper-list-of-p))
+
 ;;; What is put together from a file may contradict itself. Each layer checks its own kinds: nothing
 ;;; of a run that was read is used before all of it has been looked at.
 

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(copier with-copier copier-environment copier-variable copier-option copier-objects
+          note-copy settled))
+
 (defstruct (copier (:constructor make-copier ()) (:copier nil))
   "What copies a run. TABLE has what was copied to what; WORK the copies that are to be put right,
 each followed by how; TABLES the hash tables that are to be filled when all else is done. HOLDER is

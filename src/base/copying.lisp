@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(copying copy-values copy-slots))
+
 ;;; A COPIER walks from what it is given to all that can be reached, and remembers what it copied to
 ;;; what: two objects that refer to the same one do so in the copies. It copies an object first, and
 ;;; puts what is in the copy right later, from a list of work: so lists and chains may be as long as

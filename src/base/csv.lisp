@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(csv-number-p csv-line csv-texts broken-line))
+
 ;;; A row is one line: texts have no line ends in them (see PLAIN-TEXT). The library for this would
 ;;; take ten times as long, and loads half of Unicode to do so.
 

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(debugger-p foreign-hook debugger-hook common-debugger-hook *editor-gone-p*
+          with-debugger-hook))
+
 ;; A hook of ours, around which there may be others of ours, says nothing of who is there.
 (defvar *answerer* nil
   "The hook that CALL-ANSWERING-DEBUGGER has set last, consed to the one that somebody else had set

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(define-kind))
+
 (defun reader-name (conc slot)
   "Return the symbol of the reader of SLOT in structures whose accessors begin with CONC."
   (symbolicate conc slot))

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.base)
 
+(export '(current-source *definition* definition-again make-defining defining-form reject-clause
+          call-with-definition expand-definition forms-or-rejection title check-function-name
+          other-definition-p in-file-p missing-name read-value clause-place current-form-digest))
+
 ;;; A defining form is checked when it is expanded and carried out when that is evaluated. In
 ;;; both, *DEFINITION* says which one it is, so that an error names file and line, and restarts
 ;;; leave the definition out, read it again from its file, or take something else instead.

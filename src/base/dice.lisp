@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(dice make-dice copy-dice dice-state text-word))
+
 ;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the
 ;;; same numbers on every machine and every release of the compiler. A simulation owns one
 ;;; stream per purpose, so that an extra look does not change how a box moves.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(text-checksum digest make-digest digest-add digest-word digest-value))
+
 (defstruct (digest (:constructor make-digest ()) (:copier nil))
   "A sum over data, in order, that differs if any of them differs (FNV-1a, 64 bits)."
   (value #xCBF29CE484222325 :type word))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(reference digest-state))
+
 ;;; What belongs to an object is digested with it, by its state; what it only refers to, by what
 ;;; tells it apart from others, see REFERENCE.
 

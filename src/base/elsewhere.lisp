@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(call-telling-names bound-elsewhere-text run-elsewhere-text))
+
 ;;; WITH-SIMULATION binds robots' names, and only the thread of its body sees that. Another thread
 ;;; finds the robot of the top level under such a name, perhaps without knowing. Who notices that
 ;;; something is asked of that one can tell why.

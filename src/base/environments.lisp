@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.base)
 
+(export '(variable-kind local-variable-p known-variable-p special-variable-p local-function-p
+          known-function-p macro-expander lisps-own-p extended-environment evaluate-form walk-form
+          expand-in-walk))
+
 ;;; SB-CLTL2 looks into and extends lexical environments.
 
 ;;; Variables.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(call-refusing-exits refuse-exits call-allowing-exits))
+
 (defvar *refusal* nil
   "What is said, a string, while code runs that is not to end this Lisp; else NIL.")
 

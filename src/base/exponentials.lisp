@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(%logarithm power))
+
 ;;; Exponential.
 
 (define-constant +powers+ (doubles-table 128 #'power-row)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(facts known-facts define-facts listed fact-text))
+
 ;;; FACTS says it once, as labels and texts; DESCRIBE and the inspectors of editors show them. Of a
 ;;; symbol, DESCRIBE also shows what users' definitions call so, since maps, kickers and the like go
 ;;; by name.

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(field-name field-kept-p field-reader field-writer field-initial fields-of-type
+          blank-object note-lasting lasting-name lasting-function))
+
 ;;; A copy in a file has what another object of a run would need to go on: of a kind, what its
 ;;; roles :FIXED, :STATE and :MEMORY say; what is :SCRATCH or a :LINK is as at first. A structure
 ;;; without a kind has no roles, and all that is in it counts.

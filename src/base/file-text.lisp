@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(file-text illegible-file-line illegible-file))
+
 (define-condition illegible-file (ars-magna-error)
   ((file :initarg :file :reader illegible-file-name)
    (line :initarg :line :reader illegible-file-line))

@@ -2,6 +2,12 @@
 
 (in-package :ars-magna.base)
 
+(export '(base-directory native-name native-path native-path-of-directory path-called
+          existing-path missing-directory many-files-p replace-file plain-file-p check-unprotected
+          dangling-link-p name-in-directory file-size unusable-file-text shown-name +illegible+
+          encoded decoded cut-file call-with-file-lock make-directories make-new-directory
+          host-name process-number copy-permissions temporary-file-prefix remove-abandoned-files))
+
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defconstant +illegible+ (code-char #xFFFD)
     "Unicode's character for octets that cannot be read as text."))

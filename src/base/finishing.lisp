@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(in-any-case call-opening call-each))
+
 (declaim (inline call-opening))
 (defun call-opening (open-p function)
   "Call FUNCTION, in which this thread can be interrupted if OPEN-P."

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(finite-p positive-infinity-p double-to-bits bits-to-double))
+
 ;;; The library ieee-floats reckons the bits from sign, exponent and fraction. That conses and
 ;;; takes three times as long, which digests would feel, and it does not know the infinities.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(*front-end* serve-while-waiting hook-of-front-end ask-how-to-go-on input-of-programs))
+
 (defvar *front-end* nil "The front end that can ask people, an object; NIL if there is none.")
 
 (defgeneric serve-while-waiting (front-end)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(given))
+
 (defconstant +longest-given+ 100000 "How many conses and elements a datum has at most.")
 (defconstant +deepest-given+ 200 "How deep its lists stand in lists at most.")
 

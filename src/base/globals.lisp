@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(global-value define-global))
+
 (declaim (inline global-value (setf global-value)))
 (defun global-value (symbol)
   "Return the value that the variable SYMBOL has at top level, whatever this thread has bound it to.

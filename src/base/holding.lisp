@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(holds-p))
+
 ;;; For messages that name where something was found. What belongs to a run, such as tasks and
 ;;; robots, is not looked into: from there one gets everywhere.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(answering-debugger debugger-asking end-inquiries *inquiry-hooks* *debugger-refused-p*))
+
 ;;; Code that we call may enter a debugger of somebody else: Lisp's own, or that of an editor. What
 ;;; is typed there may go wrong too. That is a matter of the debugger: it must not come to those
 ;;; handlers of ours inside of which the code has been called. And the editor may go before it is

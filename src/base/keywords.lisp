@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(define-with-keywords))
+
 (defun check-keywords (operator known options)
   "Signal UNKNOWN-NAME if the list OPTIONS, given to OPERATOR, has a keyword that is not one of
 KNOWN."

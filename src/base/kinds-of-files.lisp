@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(note-kind-of-file file-advice foreign-file-p check-not-foreign))
+
 ;;; The layer that writes or reads a kind of file notes how such files begin.
 
 (defvar *kinds-of-files* '() "Lists (kind beginning advice).")

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.base)
 
+(export '(slots-to-show *object-kinds* kind-p kind-of kind-called kind-name kind-slots all-kinds
+          find-kind-name kind-slot-name kind-slot-role kind-slot-type kind-slot-text
+          kind-slot-part-p kind-slot-reader kind-slot-writer object-slots reset kind-slot-shared-p))
+
 ;;; A kind is a structure whose slots say what they are, by role:
 ;;;
 ;;;   :fixed    the model: how the object was made;

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(time-limit let-callers-handle call-with-limit))
+
 (deftype time-limit ()
   "The condition that is signalled when the time for a form is up, as by WITH-TIMEOUT."
   'sb-ext:timeout)

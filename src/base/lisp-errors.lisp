@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(note-error-code variable-slip))
+
 ;;; What SBCL reports of a wrong type differs between its versions: the type that its compiler has
 ;;; derived, the variable that was to be bound. Tables of experiments hold these texts, and two
 ;;; rows of one trial must be equal. So a type error names the value and the widest common type

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(note-dispatch-character value-behind *function-meant* ours-called))
+
 (defun functions-like (name package)
   "Return the functions and macros, not Lisp's, that PACKAGE sees and for which NAME may be a slip."
   (let ((symbols '()) (lisp (find-package "COMMON-LISP")))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(define-shared define-shared-slots))
+
 (addition cannot-fork)
 (define-condition cannot-fork (ars-magna-error)
   ((value :initarg :value :reader cannot-fork-value)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(write-json-string write-xml-text *entities*))
+
 (defun write-json-string (text stream &key in-page)
   "Write TEXT to STREAM as a string of JSON, which JavaScript reads too. If IN-PAGE, nothing in it
 can end the script of a page that it stands in."

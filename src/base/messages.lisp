@@ -2,6 +2,13 @@
 
 (in-package :ars-magna.base)
 
+(export '(error-policy warn-at-once warn-notably *message-queue* make-message-queue message-queue
+          copy-message-queue message-queue-read-p message-queue-listener
+          message-queue-error-policy message message-kind message-items message-asker
+          message-robot message-told-p *robot-told-of* message-run *run-that-reports* *told-of*
+          take-messages queue-message message-text phrase write-message *message-limit*
+          make-message message-cause message-queue-unsignalled))
+
 ;;; Messages are queued as lists of items and become text only when somebody reads them. The
 ;;; queue is bounded: past *MESSAGE-LIMIT* the oldest go, and how many went is remembered.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(same-name-p nearest-name resembles-p value-equal name-string))
+
 ;;; The manual compares attribute values, place types, substances, maps and manipulations by
 ;;; what they are called: `red' read in the user's package is the `red' of the definition.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(+largest+ +largest-quantity+ within-reason-p quantity-p amount-p probability-p whole-p))
+
 ;;; Positions, distances, speeds, angles and times are kept below 1e9 either way: there a
 ;;; double-float is exact to 1e-7 metres or radians, so that what is added up in a run stays true,
 ;;; and a count of ticks can be added to another for ever. (At 20 ticks a second 1e9 ticks take a

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(operator-name operator-function define-operator check-operands))
+
 ;;; An operator says what its arguments are, and how it is done again when a journal is replayed.
 ;;; Nothing else is ever called because a journal says so.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(name-before-p))
+
 (defun first-part (text start)
   "Return the number that the digits of TEXT from START on make, or else the character there, and
 where what follows begins."

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(*kept-variables* become call-with-own-definitions))
+
 (defun become (object model)
   "Make the structure OBJECT like MODEL, another of its type, slot by slot. Return OBJECT."
   (dolist (name (class-slot-names (class-of object)) object)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(package-locked-p lock-package unlock-package lock-violation locked-symbol))
+
 ;;; What a locked package has cannot be redefined by accident.
 
 (defun package-locked-p (package)

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(call-with-parameters call-with-parameter-values parameter-values digest-parameters
+          follow-parameters changed-parameters))
+
 (defmacro with-parameters-bound ((values) &body body)
   "Run BODY with the parameters bound to those in the list that the variable VALUES holds, in order.
 For those defined before this is compiled, as all of ours are, that is much quicker than PROGV."

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.base)
 
+(export '(parameter parameter-symbol parameter-clean parameter-type check-parameter-value
+          describe-type define-parameter parameter-settings check-parameters
+          *noise-before-cleaning*))
+
 ;;; Each parameter is a special variable that users may SETF. From its one definition come its
 ;;; documentation, the check of its value, what CLEAN-SIMULATION does to it and the prompt's
 ;;; list. A headless run binds all of them anew; a live run follows the global values.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(ticks-for noise-of-step per-tick-drift per-tick-probability))
+
 (macrolet
     ((define-group (group &rest definitions)
        `(progn

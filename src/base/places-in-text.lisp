@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(reading-place))
+
 ;;; The compiler knows which element of which form a form is: see PLACE-IN-TEXT. The text is
 ;;; followed down to that as far as it can be: a quoted form, for one, is no list in the text. In
 ;;; what has been reached, the form is looked for.

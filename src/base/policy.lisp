@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(*hot* compiler-note declaim-final double heap-bytes make-room room-p cell-index surely
+          tick-count))
+
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))
     "How a function that a profile pointed at is compiled: (declare #.*hot*)."))

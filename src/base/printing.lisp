@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(call-printing-plainly printing-plainly printing-words))
+
 ;;; *PRINT-BASE* and its kin are the user's, and for what he reads at his REPL. Whoever writes data,
 ;;; a table, a picture, JSON, is not to follow them.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(environment-value real-microseconds date-and-time run-command run-attached run-filter))
+
 (defun environment-value (name)
   "Return the value of the environment's variable called NAME, a string, or NIL if it is not set."
   (uiop:getenv name))

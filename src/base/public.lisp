@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(document-functions document-restarts all-restarts restart-documentation public addition
+          settable settable-p addition-p public-symbols *marking-p*))
+
 ;;; A mark stands directly before the definition of a name: PUBLIC if the name is the manual's,
 ;;; ADDITION if it is ours. The packages that users see, the faces ARS and NISP, collect what is
 ;;; marked (see src/faces.lisp). What no mark names is the business of the layers alone.
@@ -38,10 +41,11 @@
   "True while the simulator is being loaded. What is defined later is a user's, and not marked.")
 
 (defun mark-names (names addition-p)
-  "Mark each of NAMES, a symbol or a list (symbol face...)."
+  "Mark each of NAMES, a symbol or a list (symbol face...), and export it."
   (when *marking-p*
     (dolist (name names)
       (destructuring-bind (symbol &rest faces) (ensure-list name)
+        (export symbol (symbol-package symbol))
         (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p))))))
 
 (defmacro public (&rest names)

@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.base)
 
+(export '(call-with-lisps-dice *lisps-dice* seeded-lisps-dice reseed-lisps-dice
+          call-with-own-lisps-dice rolling lisps-dice-numbers lisps-dice-numbers-p
+          lisps-dice-of-numbers dice-rolled roll-back unheard-of-number tick-dice make-tick-dice
+          begin-tick-dice *tick-dice*))
+
 ;;; What CL:RANDOM says must not depend on what has gone on in Lisp before. Programs (continuations,
 ;;; plans, what is around them) have a random state of their run's, seeded when it begins. Code that
 ;;; changes a world has another, as a journal repeats the world but not the programs; in each tick

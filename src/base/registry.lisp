@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.base)
 
+(export '(registry define-registry registry-objects register *definition-listener*
+          seal-definitions lookup-entry from-this-file-p entry-name entry-object entry-source
+          entry-digest registry-entries users-p names-to-offer defined-names all-definitions
+          definition-to-replace variable-in-use-p entries-meant take-back reinstate))
+
 ;;; One registry for each kind of definition. Names compare as names, whatever package they were
 ;;; read in; the newest definition of a name counts. A registry that tells names apart by symbol,
 ;;; as functions are, finds the very symbol first and then whatever is called the same.

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(source-here source-file count-in-file part-in-file-p skip-comment line-of-clause
+          form-digest file-digest))
+
 ;;; A source is a list (file digest): the file that a definition was read from, and a number for
 ;;; what was in it then. NIL stands for a definition that was typed. Definitions carry their
 ;;; source through compiled files, so it is a plain list.

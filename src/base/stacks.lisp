@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(regain-room))
+
 (defun stack-full-p (condition)
   "True if CONDITION, a STORAGE-CONDITION, is that a stack has overflowed."
   (search "STACK" (string (type-of condition))))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(define-table-test weak-table-p))
+
 (defmacro define-table-test (test hash)
   "Let MAKE-HASH-TABLE take the function called TEST as its test; HASH is the name of a function
 that returns equal integers, not negative, for what TEST holds equal."

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(format-briefly report-briefly own-text our-text report-anyhow of-lines-typed-p
+          reading-trouble text-of-condition one-line-text point-in-text hundredths editors-output))
+
 ;;; A condition may have to report a list without an end, or an object that cannot be printed.
 
 (defmacro printing-briefly (() &body body)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(*test-doubt* map-calls map-comparisons code-doubt))
+
 ;; The layer that knows fluents sets it.
 (defvar *test-doubt* (constantly nil)
   "A function of a form, a test in Lisp code: it returns in a sentence why that is not what is

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(blank-p one-line cut visible obeyed-p))
+
 (defun blank-p (char)
   "True if CHAR is a space, newline or the like."
   (member char '(#\Space #\Tab #\Return #\Page #\Newline)))

@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.base)
 
+(export '(make-lock with-lock call-if-free make-semaphore signal-semaphore wait-on-semaphore
+          wait-a-while wait-patiently call-when-free *leaving-p* call-when-leaving start-thread
+          own-thread-p join-thread interrupt-thread thread-alive-p current-thread users-thread-p
+          yield-thread thread-name spread-specials))
+
 ;;; No thread is killed: threads are asked to end, and then joined. One that is in users' code which
 ;;; does not return may be interrupted, at the user's word.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(arctangent))
+
 ;;; CL:SIN, COS, ATAN, EXP, LOG and EXPT call the C library. Its last bits depend on its version and
 ;;; on the processor. These functions only add, subtract, multiply, divide and read tables. IEEE
 ;;; arithmetic defines each of these operations to the bit, and SBCL never fuses two of them. The

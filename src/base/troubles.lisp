@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(trouble-set errors-in forget-errors show-unseen *echo-output* drop-unsignalled
+          skip-unseen signal-trouble))
+
 ;;; A message has a cause if it tells of an error in users' code, or of the failure of a plan that
 ;;; nobody waits for. The error policy of the queue decides what happens then:
 ;;;

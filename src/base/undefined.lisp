@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(undefined-name still-undefined-p))
+
 (defun undefined-name (condition)
   "Return the name that CONDITION, a warning of the compiler's, says is not defined, and whether as
 a :FUNCTION or :VARIABLE; NIL if it says something else."

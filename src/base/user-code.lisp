@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.base)
 
+(export '(call-user-code *user-error-hooks* note-waiting report-break continue-inside user-calls
+          make-user-calls user-calls-origin user-calls-count *user-calls* user-calls-waiting-p
+          user-calls-place as-users-code abort-user-code *spoilt-by-leaving-p* brief-text
+          text-of-origin recurring-code recurring-remedy report-user-error))
+
 ;;; Continuations, kickers, tests and whatever else users give to the simulator is called here. A
 ;;; call may end in four ways besides returning. It may signal an error, or be aborted: then it has
 ;;; ended, and a message says so. It may be left, as by THROW or because its thread is to end; then

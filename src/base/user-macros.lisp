@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(export '(define-user-macro advice-on-use strange-keyword test-advice body-advice user-macro-form
+          call-blaming-form variable-after))
+
 ;;; Macros made by DEFMACRO signal errors of Lisp's where they are not used as they should be, and
 ;;; look for the end of a circle. DEFINE-USER-MACRO's do not: whatever is wrong with the form, it is
 ;;; a MALFORMED-DEFINITION, where it stands and in forms around it too.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(users-symbol-p variable-name-p variable-forms variable-name-trouble))
+
 ;;; What a user defines by a name can often be had as the value of a variable of that name too.
 
 (defun variable-name-trouble (name)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(make-weak weak-value weak-pointer-p))
+
 (defun make-weak (object)
   "Return what leads to OBJECT as long as anything else does."
   (sb-ext:make-weak-pointer object))

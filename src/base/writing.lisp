@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.base)
 
+(export '(call-replacing-file write-file-anew unwritten-reason))
+
 (defun new-file-for (file)
   "Return the absolute path of the file that is to be written for FILE: where a link leads to, if it
 is one. Signals an error if there is something that is no file of bytes or is write-protected, or no

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.clim)
 
+(export '(clim-canvas canvas-subjects subject-at))
+
 ;;; It remembers in which boxes the subjects were drawn, so that a click finds them. Arcs that are
 ;;; not whole are drawn as lines, because CLIM counts angles in its own way.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.clim)
 
+(export '(robot-window window-watcher window-layers))
+
 (defmacro define-window-command ((name title) (window) documentation &body body)
   "Define a command without arguments that the menus call TITLE. Trouble in BODY is reported."
   `(progn

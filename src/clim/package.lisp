@@ -1,6 +1,6 @@
 ;;;; package.lisp -- the CLIM layer: the displays in a window. The one door to McCLIM.
 
-(defpackage :ars-magna.clim
+(ars-magna.host:define-package :ars-magna.clim
   (:documentation "A window that shows a robot in its world while it runs, and takes commands.
 McCLIM's symbols are written with their packages. Manual B.")
   (:use :cl :ars-magna.base :ars-magna.world :ars-magna.time :ars-magna.robot
@@ -27,13 +27,4 @@ McCLIM's symbols are written with their packages. Manual B.")
   (:import-from :ars-magna.cli
                 #:fundamental-character-output-stream #:fundamental-character-input-stream
                 #:stream-line-column #:stream-write-char #:stream-write-string
-                #:stream-read-char #:stream-read-line #:stream-unread-char)
-  ;; watcher
-  (:export #:watcher #:make-watcher #:start-watching #:stop-watching #:watch-simulation
-           #:watcher-snapshot #:watcher-robot #:painted)
-  ;; canvas
-  (:export #:clim-canvas #:canvas-subjects #:subject-at)
-  ;; frame
-  (:export #:robot-window #:make-robot-window #:window-watcher #:window-layers #:refresh)
-  ;; opening
-  (:export #:open-window #:close-window #:find-window))
+                #:stream-read-char #:stream-read-line #:stream-unread-char))

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.clim)
 
+(export '(watcher make-watcher start-watching stop-watching watch-simulation watcher-snapshot
+          watcher-robot painted))
+
 ;;; Three threads meet here. The one that runs the ticks calls the observer, which makes a snapshot
 ;;; if one is wanted and else only notes that the last one is stale. The one that paints is told
 ;;; of each snapshot, and says when it has PAINTED. The pacer, in between, wants the next snapshot

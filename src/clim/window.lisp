@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.clim)
 
+(export '(make-robot-window refresh))
+
 ;;; A new snapshot, or a new line of the transcript, queues one event, however many come before it
 ;;; is handled; handling it paints the panes that have changed, as one picture. Everything in the
 ;;; window happens in its own thread.

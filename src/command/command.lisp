@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(command error-code *commands* command-shape command-instant-p))
+
 ;;; A command is defined once (see define-command.lisp); its COMMAND object is what the prompt, the
 ;;; journal and the plan language know of it.
 

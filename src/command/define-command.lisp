@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(define-command))
+
 (defun replace-start (prefix replacement string)
   "Return STRING with PREFIX at its start replaced by REPLACEMENT, or NIL."
   (when (starts-with-subseq prefix string)

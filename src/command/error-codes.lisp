@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(trouble-p))
+
 ;;; An error code says in a word what went wrong; people want a sentence, and a remedy. What codes
 ;;; mean is said here, once for all commands: of several that can end with the same code, each has
 ;;; a message of its own besides (see DEFINE-COMMAND).

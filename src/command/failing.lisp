@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(command-failure))
+
 (defstruct (command-failure (:conc-name failure-)
                             (:constructor make-failure
                                 (tick asked command resource arguments asker code text

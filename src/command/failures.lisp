@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(failure-sentences))
+
 (defun argument-as-typed (argument)
   "Return ARGUMENT of a command as one would type it in Lisp, as far as one can."
   (let ((index (and (part-p argument) (part-index argument))))

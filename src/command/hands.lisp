@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(check-grips grip-watched-p))
+
 ;;; A grip is only lost by what the world does to the thing held: kickers, manipulations, another
 ;;; hand, destruction.
 

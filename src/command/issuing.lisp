@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.command)
 
+(export '(issue *ticks-follow-p* between-runs-p *asked-with* parameters-bound doubt-asked-with
+          asked-elsewhere-p))
+
 ;;; What is of another run.
 
 (defun owner-of-argument (argument)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(manipulation-command-p command-for))
+
 ;;; What is given for an object is a designator. One that is invalid, false, non-local, or of
 ;;; another robot designates nothing that could be manipulated.
 
@@ -143,15 +145,23 @@ is NIL (manual E)."
              (and (designator-p argument) (not (eq :local (designator-type argument)))))
            (operation-arguments operation)))
 
+(defun things-meant (operation)
+  "Return what the designators given to OPERATION, a manipulation, designate; NIL if that of one is
+nothing."
+  (let ((things (loop for argument in (operation-arguments operation)
+                      when (designator-p argument)
+                        collect (designated-thing argument (operation-resource operation)))))
+    (and (notany #'null things) things)))
+
 (defun failed-text (operation)
-  "Return in words that the manipulation OPERATION failed, and why if that is its designator, or no
-method is for the things."
-  (let ((far (far-designator operation)))
-    (format nil "~A failed~@[: ~A is not local, as objects of manipulations must be. Go there, as ~
-                 by robot-goto-designator, and search again with the type :local~]~:[~;: none of ~
-                 its methods is for ~A; their patterns ask for something else~]"
-            (command-prefix (operation-command operation)) far
-            (not (or far (operation-subject operation))) (objects-text operation))))
+  "Return in words that the manipulation OPERATION failed, and why if that is its designator, or the
+things, which no method is for."
+  (format nil "~A failed~@[: ~A is not local, as objects of manipulations must be. Go there, as by ~
+               robot-goto-designator, and search again with the type :local~]~@[: none of its ~
+               methods is for ~{~A~^, ~}; their patterns ask for something else~]"
+          (command-prefix (operation-command operation))
+          (far-designator operation)
+          (and (null (operation-subject operation)) (things-meant operation))))
 
 (defstruct (manipulation-command (:include command) (:copier nil)
                                  (:constructor %make-manipulation-command))

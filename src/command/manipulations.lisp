@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.command)
 
+(export '(define-manipulation manipulation-methods method-shape method-source method-digest
+          manipulation-method))
+
 ;;; A manipulation is a name with methods, the newest first. Of those that take what was given, the
 ;;; first that is for the things designated is chosen when the manipulation begins; it must still be
 ;;; for them when its delay has passed. What happens then is a command's operation on the value of

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.command)
 
+(export '(operation operation-command operation-resource operation-p finish succeed fail-with
+          notify report go-on))
+
 ;;; Issuing a command posts an OPERATION, a request, to the timeline of its robot. At the start of
 ;;; the next tick the operation takes its resource over, interrupting what was there, and waits for
 ;;; the command's delay; then its body runs, with the preconditions as they are by then. The body

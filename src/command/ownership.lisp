@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(under-way-text interruption-text))
+
 ;;; The newest request always wins, whoever asks: the prompt, a plan, a continuation, a program. So
 ;;; whoever drives a robot from several sides at once needs to see who drives it now.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(check-commands))
+
 (defparameter *step-needs*
   '((turn-on robot t)
     (drive-a-while robot t)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(withdraw-command withdrawal withdrawal-continuation))
+
 ;;; GRAB-RESOURCE takes a resource from whatever occupies it by then. Who only wants an end of what
 ;;; it has asked for itself withdraws that. A command is known by its continuation. What the journal
 ;;; notes is what that came to: that a command was interrupted, a track, or nothing.

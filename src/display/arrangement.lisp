@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(users-scale drawn-scale lines-within))
+
 (define-constant +usual-scale+ 8 :documentation "What GRAPHICS-SCALE* is until a user sets it.")
 
 (define-argument-type 'picture-scale (lambda (value) (and (finite-p value) (<= 1 value 256)))

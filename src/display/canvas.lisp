@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.canvas)
 
+(export '(canvas canvas-p canvas-color-p paint-rectangles paint-arc paint-path paint-segments
+          paint-string call-with-clipping with-clipping call-with-origin with-origin
+          call-with-subject with-subject subject-title call-on-canvas with-canvas
+          +character-width+ +line-height+ blank-canvas))
+
 ;;; A canvas is what the bodies of :graphics get as their window. Coordinates are pixels, x to the
 ;;; right and y down. As in X, the outline of a rectangle and a line run through the middles of
 ;;; pixels, so an outline W wide covers W+1 of them. Arcs are inscribed in their box; the outline of

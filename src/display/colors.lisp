@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.canvas)
 
+(export '(color shade color-called mix +least-contrast+ primaries color-of-primaries luminance
+          contrast ink-on tinted))
+
 ;;; A colour is an integer, as a pixel is to CLX: #xRRGGBB. Vectors run from dark to light. The
 ;;; manual names the vectors; their values are ours. Shade 9 of each is its plain colour. The eight
 ;;; plain colours were chosen, by a search over hue, chroma and lightness, so that any two of them

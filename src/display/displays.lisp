@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(draw-display display-title +displays+))
+
 (define-constant +details+
     '((:state "Robot state" draw-state) (:designators "Robot designators" draw-designators)
       (:cameras "Cameras" draw-cameras) (:hands "Hands" draw-hands)

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.canvas)
 
+(export '(*calls-left* draw-rectangle draw-rectangles draw-arc draw-arcs draw-line draw-lines
+          draw-segments draw-point draw-points draw-glyph draw-glyphs draw-image-glyph
+          draw-image-glyphs clear-area))
+
 ;;; Signatures and meanings are CLX's, so that code written for it runs. Like CLX, they check
 ;;; their arguments here, at the door, and return nothing of use.
 

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.canvas)
 
+(export '(gcontext gcontext-p create-gcontext gcontext-foreground gcontext-background
+          gcontext-line-width gcontext-line-style gcontext-dashes with-gcontext))
+
 ;;; A graphics context is changed only for the extent of a body, as WITH-GCONTEXT of CLX does.
 ;;; Whatever starts to draw on a canvas binds a fresh one, so threads that draw share nothing.
 

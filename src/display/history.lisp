@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(history))
+
 ;;; A history is kept by an observer of its simulation from when somebody first asks for it. Trails
 ;;; are kept with the simulation, under the names of robots, and are never altered: so forks have
 ;;; them as they were, and what is rewound has the part of them that is still so.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(turn-ink to-pixels pixels-of inked around draw-circle box-around overlap-p))
+
 ;;; Lines are dark and have a light halo: on light ground the line is seen, on dark ground the halo,
 ;;; on what is between both. So nobody need know what is below.
 

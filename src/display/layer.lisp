@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.display)
 
+(export '(text-layers picture-layers layer-title layer-documentation define-layer layer-named
+          text-layer-named layer-words))
+
 ;;; All there is to know of a layer stands in its DEFINE-LAYER. The menus, the prompt, the
 ;;; documentation, the legend, pictures and text maps read it. For the layers themselves see
 ;;; layers.lisp. A layer is drawn at a depth:

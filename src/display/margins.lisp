@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(draw-framed with-map-svg snapshot-part))
+
 ;;; The parts. The origin is that of the map.
 
 (defun title-of (robots map)

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.display)
 
+(export '(make-moment moments-watcher remarked-moments checked-moments check-kinds of-kinds
+          in-order moment-weight moment-words))
+
 ;;; A journal says what was asked for, not what came of it. So it is repeated, and after each tick
 ;;; somebody looks what a robot holds now that it did not, what lies in its bins, and what failed.
 

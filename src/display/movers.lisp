@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(thing-image-x thing-image-y draw-ring robot-radius half-width))
+
 ;;; Things.
 
 ;;; In colour a thing is a shape around its place. The larger its :size, the larger it is; its shape

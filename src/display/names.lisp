@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(drawn-name draw-names))
+
 ;;; A name is written near by where its box meets no thing, robot, number of a designator or other
 ;;; name, and rather no wall, no mark of a place and no trail; if there is no such room, not at all.
 ;;; Other lines end before a name. Robots come first, whose names may lie on any wall if need be, or

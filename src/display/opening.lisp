@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(*display-opener* *displays-waiter* announce-display))
+
 (defvar *display-opener* nil
   "A function of a robot that opens its display in a window, or NIL if nothing that can is loaded.")
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(check-map-options picture-kind save-svg save-snapshot))
+
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
                                               (in-color t) scale title)
   "Write an SVG document of DISPLAY from SNAPSHOT to STREAM; ROBOT is the image of a robot in it."

@@ -2,6 +2,12 @@
 
 (in-package :ars-magna.display)
 
+(export '(snapshot take-snapshot snapshot-of snapshot-tick snapshot-map snapshot-things
+          snapshot-robots snapshot-robot thing-image robot-image robot-image-name robot-image-x
+          robot-image-y robot-image-designators thing-image-location camera-image
+          camera-image-index hand-image hand-image-index bin-image bin-image-index
+          designator-image in-part shown-part))
+
 ;;; A snapshot is made where the world stands still, and never changes; whoever draws, in whatever
 ;;; thread, draws from one. An image is what it knows of a thing, a robot or a part. The image of a
 ;;; thing that has not changed since the snapshot before is the same object.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(describe-subject))
+
 (defmethod subject-title ((image thing-image)) (princ-to-string (thing-image-thing image)))
 (defmethod subject-title ((image robot-image)) (princ-to-string (robot-image-name image)))
 (defmethod subject-title ((image camera-image)) (format nil "Camera ~D" (camera-image-index image)))

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.canvas)
 
+(export '(svg-canvas svg-stream call-with-svg with-svg write-svg number-text write-number
+          write-text))
+
 ;;; Elements are written as they are drawn; numbers with at most two decimals. What is drawn with
 ;;; clipping is gathered first, and wrapped in a clipping element only if it reaches beyond
 ;;; its box, which it seldom does.

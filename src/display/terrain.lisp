@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(draw-terrain))
+
 ;;; Runs of wall cells with the same look are merged into rectangles, and all rectangles of a
 ;;; look are drawn at once: a picture of a big floor is made of few elements.
 

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.canvas)
 
+(export '(+text-font+ text-width paint-text character-width draw-words call-with-opacity
+          with-opacity))
+
 ;;; How wide a text is depends on the fonts of whoever looks at it. So the widths here are what it
 ;;; takes at most: those of the wider one of DejaVu Sans and of Helvetica, to which Arial and
 ;;; Liberation Sans are alike. What fits by them fits everywhere.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.canvas)
 
+(export '(+textures+ draw-texture))
+
 ;;; A texture is a list of marks, repeated in square tiles. Where coordinates are multiples of the
 ;;; size of a tile, so are the marks of areas beside each other. Lines run through all tiles of a
 ;;; rectangle, so that large areas take few of them. Coordinates in a tile are from 0 to 1.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(telling-what-breaks))
+
 ;;; Code that fails, or goes on without an end, is reported once and not called again; whoever asked
 ;;; for it draws something else. Code that is defined anew is another function, and called.
 

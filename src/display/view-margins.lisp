@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(draw-view-margins view-edges))
+
 ;;; A window shows a part of the map. Numbers and bar stand in strips at its edges, from one end to
 ;;; the other, and the map is in view between these: so they hide nothing that one could see there
 ;;; otherwise. A number at the end of its strip is moved so that it is whole. All is in pixels of

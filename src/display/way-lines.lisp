@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.display)
 
+(export '(make-way-line draw-way-lines draw-way-sample draw-arrows draw-way-marks jumps-seen-p
+          jumps-of way-seen-p call-along draw-jump-dots draw-start))
+
 ;;; Ways may go along one line. So each goes in a lane of its own, a few pixels beside where it
 ;;; was, and they are drawn together: all halos, then all lines, then arrowheads, then the marks of
 ;;; their ends, one around the other where they are on one spot. None hides what is of another.

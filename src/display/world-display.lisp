@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.display)
 
+(export '(draw-movers))
+
 ;;; Terrain never changes and may be kept by a canvas; movers are drawn over it. Angles grow
 ;;; clockwise from the right on the map and on the canvas alike.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.fiveam)
 
+(export '(is-success-rate))
+
 (defun condition-given (experiment condition)
   "Return the condition of EXPERIMENT that CONDITION means; its only one if that is NIL."
   (let ((all (experiment-conditions experiment)))

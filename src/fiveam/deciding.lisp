@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.fiveam)
 
+(export '(pass-probability))
+
 ;;; A suite that cries wolf is soon ignored. So what is tested is whether the rate is below what it
 ;;; should be, and a LEVEL bounds how often that is said where it is not so. Half of LEVEL is for
 ;;; looks on the way: after each trial, by evidence that may be looked at that often. The other half

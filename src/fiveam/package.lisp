@@ -1,6 +1,6 @@
 ;;;; package.lisp -- checks for FiveAM that hold plans to their rates: the one door to FiveAM.
 
-(defpackage :ars-magna.fiveam
+(ars-magna.host:define-package :ars-magna.fiveam
   (:nicknames :ars-fiveam)
   (:documentation "Checks for suites of tests written with FiveAM, which hold plans, programs and
 experiments to their rates of success. Use it beside FIVEAM.")
@@ -13,10 +13,4 @@ experiments to their rates of success. Use it beside FIVEAM.")
                 #:experiment-trials #:experiment-limit #:experiment-package #:doubt-nested-run
                 #:find-condition #:condition-name
                 #:run-guarded #:replay-trial #:call-in-silence #:call-by-workers #:form-text
-                #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error)
-  ;; deciding
-  (:export #:pass-probability)
-  ;; checking
-  (:export #:is-success-rate)
-  ;; repeating
-  (:export #:repeat-trial))
+                #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.fiveam)
 
+(export '(repeat-trial))
+
 ;;; A check ends in a log that is read elsewhere, perhaps long after. So what it says repeats a
 ;;; trial in any Lisp that has the same code, whatever has been set there.
 

@@ -1,6 +1,6 @@
 ;;;; package.lisp -- the floors layer: maps from elsewhere, and ours for others.
 
-(defpackage :ars-magna.floors
+(ars-magna.host:define-package :ars-magna.floors
   (:documentation "Occupancy grids as ROS's map_server keeps them, a flat YAML file and an image,
 PGM or PNG: read as maps, written from maps, and the way between their metres and our cells. Names
 chipz.")
@@ -9,12 +9,4 @@ chipz.")
   (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-frame
                 #:map-substances #:map-substance-types #:map-parameters #:+wall+ #:find-map
                 #:defmap #:*substances* #:find-substance #:substance-name #:substance-parameter
-                #:bricks)
-  ;; trouble
-  (:export #:unusable-floor #:unusable-floor-file #:unusable-floor-line #:unusable-floor-reason)
-  ;; frames
-  (:export #:map-to-frame #:frame-to-map)
-  ;; importing
-  (:export #:import-map #:imported-map-form)
-  ;; exporting
-  (:export #:export-map))
+                #:bricks))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.geometry)
 
+(export '(pt-p set-pt! set-interval! set-pt-interval!))
+
 ;;; All numbers in here are double-floats; any real is accepted and coerced. An interval never
 ;;; has its min above its max. A point interval owns its two intervals: no other object shares
 ;;; them, so that a destructive operation changes its first operand only (manual 3.2.1).

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.host)
 
+(export '(closure-p closure-values copy-closure replace-closure-values cell-p cell-value
+          exit-cell-p make-cell))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 ;;; A closure is code and values. A variable that is closed over and assigned to is a CELL, which

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.host)
 
+(export '(code-constants constant-meant method-code declared-lambda-list same-code-p
+          structure-reader-p source-at))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. Since 2.4.10, the names of called functions are no
 ;;; constants of code: it calls them through a linkage table. The names of macros, constants and
 ;;; inline functions that were used are in the cross references, those of structures in the types of

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.host)
 
+(export '(show-lambda-list nested-p place-of set-place call-with-current-place positions-of-forms
+          edited-file error-context call-with-error-context call-as-compiler call-as-other-file
+          wrap-compilation-units wrap-unit-summaries context-original-form))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 ;;; SBCL remembers where each list stands that it has read to compile or load it. A list that was

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(calls-under-way disabled-hook-p take-foreground yield-foreground))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 (defun calls-under-way (&optional (limit 100))

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.host)
 
+(export '(function-arguments form-behind-comma user-type-p walk-expressions bound-in-walk-p
+          variables-of-walk))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 (defun function-arguments (name)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(double-high-bits double-bits make-double make-single))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 (declaim (inline double-high-bits double-bits make-double make-single))

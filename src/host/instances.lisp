@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(reference-slots layout-of layout-number instance-slot copy-condition))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. Layouts were called wrappers in SBCL 2.2.
 
 (defun immediate-type-p (type)

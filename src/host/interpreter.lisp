@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(environment-p environment-values fixed-slot-p))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. An SBCL that was built without SB-EVAL has no
 ;;; interpreted functions: there nothing is one.
 

@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.host)
 
+(export '(deferring-interrupts allowing-interrupts waiting held-off-p protecting-strictly
+          call-allowing-interrupts call-holding-interrupts call-open-to-interrupts with-deadline
+          deadline-passed))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 ;;; What interrupts a thread is a time limit, Ctrl-C, another thread, or that it is to end. It may

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(octets-before-garbage scrub-stack dynamic-usage collections))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 (defun dynamic-usage ()

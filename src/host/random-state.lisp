@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(words words-of-state fill-words wrap-renewal))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. In all of them a random state is 627 words of the
 ;;; Mersenne Twister MT19937: two constants, the place of the next word, and 624 words.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(form-start line-reached encapsulated-condition))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 (defun form-start (stream)

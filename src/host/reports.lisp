@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(*report-addition*))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. A debugger of Lisp's or of an editor writes a report as
 ;;; PRINC does.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(restore-stack))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 ;;; Near its end a stack has pages that must not be touched. The first is opened when a program

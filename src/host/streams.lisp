@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(octet-input text-output descriptor-stream input-within-p))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 (deftype descriptor-stream ()

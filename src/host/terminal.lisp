@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(rows-and-columns char-width))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 (defconstant +ask-for-size+ (if (uiop:featurep :linux) #x5413 #x40087468)

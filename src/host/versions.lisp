@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(untried-host-text))
+
 ;;; Internal names of SBCL come and go. INTERNAL looks a name up when a file of this folder is
 ;;; compiled, among the names that it has had, and says clearly when there is none. No file names
 ;;; such a symbol directly, so none fails to be read.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.host)
 
+(export '(wrap-function unwrap-function wrapped-p))
+
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
 (defun wrap-function (name wrapper &optional (type 'ars-magna))

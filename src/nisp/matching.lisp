@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.nisp)
 
+(export '(matchvar matchvar-p matchvar-name make-matchvar))
+
 ;;; ?x is read as a matchvar, an object that means itself. There is one for each name, so that
 ;;; patterns with the same matchvars are EQUAL, also after a trip through a compiled file.
 

@@ -4,7 +4,7 @@
   (:documentation "The accessors of slots by name, see slots.lisp: !_X for the slot x of any type.")
   (:use))
 
-(defpackage :ars-magna.nisp
+(ars-magna.host:define-package :ars-magna.nisp
   (:documentation "Nisp's typed forms, slot access, matching and reader syntax, and the registries
 of types and slots that other layers fill. Shadows LET, LOOP and IF by forms that understand
 everything the Common Lisp ones do; its own code is written with them.")
@@ -17,20 +17,4 @@ everything the Common Lisp ones do; its own code is written with them.")
                 #:interval #:make-interval #:interval-min #:interval-max
                 #:pt-interval #:make-pt-interval #:pt-interval-x #:pt-interval-y
                 #:pt-interval-dx #:pt-interval-dy)
-  ;; control
-  (:export #:if #:loop #:!= #:nop #:vref #:out)
-  ;; typed lists
-  (:export #:untyped-bindings #:untyped-lambda-list #:lambda-list-variables)
-  ;; binding
-  (:export #:let #:\\ #:continuation #:deffunc #:defproc)
-  ;; types
-  (:export #:void #:lst #:~ #:thing-descriptor #:robot-continuation
-           #:define-nisp-type #:make #:make-object)
-  ;; slots
-  (:export #:define-nisp-slot #:slot-ref #:slot-names)
-  ;; matching
-  (:export #:matchvar #:matchvar-p #:matchvar-name #:make-matchvar #:matchq)
-  ;; readtable
-  (:export #:in-readtable #:readtable-name)
-  ;; loading
-  (:export #:dsklap))
+  (:export #:out #:\\ #:in-readtable #:readtable-name))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.nisp)
 
+(export '(define-nisp-slot slot-ref slot-names))
+
 ;;; Slot `x' of any type is read by the generic function ARS-MAGNA.SLOTS::!_X, and set by (SETF
 ;;; !_X): dispatch, subtypes and caching are CLOS's. The reader turns !_x and !>p.x into calls
 ;;; of it, and a form with a type, !(PT x), into a call of that type's own reader. Structures and

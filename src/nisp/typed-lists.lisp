@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.nisp)
 
+(export '(untyped-bindings untyped-lambda-list lambda-list-variables))
+
 ;;; A hyphen and a type after a variable declare its type (manual 3.1). Types are documentation:
 ;;; they are checked for being there and then dropped, known or not. A name that may be a slip for
 ;;; that of a known type is warned of.

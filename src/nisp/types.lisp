@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.nisp)
 
+(export '(define-nisp-type make-object))
+
 (public void)
 (deftype void ()
   "The type of no values (manual 3.1)."

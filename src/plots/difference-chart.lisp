@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.plots)
 
+(export '(difference-chart))
+
 (defstruct (difference (:constructor make-difference (label estimate low high words)) (:copier nil))
   "An estimate with an interval, any of which may be NIL, and what else is said of it."
   (label "" :read-only t)

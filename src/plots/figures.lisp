@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.plots)
 
+(export '(figure-text power-of-ten))
+
 ;;; Inside, all numbers are rationals: nothing overflows, whatever their size, and the same data
 ;;; make the same picture to the last byte.
 

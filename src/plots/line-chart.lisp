@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.plots)
 
+(export '(line-chart))
+
 ;;; Words along the axis across are counted, so that all else deals with numbers.
 
 (defun numbered (series words)

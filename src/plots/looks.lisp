@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.plots)
 
+(export '(draw-marker))
+
 ;;; The colours are those of Okabe and Ito (Color Universal Design, 2008), which most colour-blind
 ;;; people tell apart, without yellow, which is faint on white. Markers and dashes tell series apart
 ;;; without any colour. There are 7, 10 and 6: so no two of the first 210 series look alike.

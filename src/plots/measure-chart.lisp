@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.plots)
 
+(export '(measure-chart))
+
 ;;; The numbers of a group stand in columns of four pixels, as high as there are many in each. So
 ;;; ten numbers and ten thousand are drawn alike.
 

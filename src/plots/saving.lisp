@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.plots)
 
+(export '(save-chart))
+
 (defun save-chart (file chart)
   "Save CHART, an SVG document that a function such as LINE-CHART has returned, in FILE, replacing
 it: SVG or, where the program rsvg-convert is installed, PNG, as its name ends. Return the file's

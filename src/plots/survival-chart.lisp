@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.plots)
 
+(export '(survival-chart))
+
 ;;; The curve.
 
 (defun stairs (steps end reader plane)

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.robot)
 
+(export '(all-blueprints blueprint-x blueprint-y blueprint blueprint-name blueprint-map
+          blueprint-angle blueprint-cameras blueprint-hands blueprint-bins blueprint-parts))
+
 ;;; A blueprint is fixed once DEFROBOT has read it; any number of robots can be made by it, each in
 ;;; a world of its own.
 

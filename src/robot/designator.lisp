@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.robot)
 
+(export '(designator-serial *robot-meant* designators-on *designator-limit* thing-space
+          designator-local-p* serial-designator make-designator))
+
 ;;; A designator denotes a thing, a PLACE, or nothing: then it is false and X, Y is where the robot
 ;;; believes something to be. Type, angle and data are for programs to read, the rest is the
 ;;; simulator's. It is valid until it is dropped (see tracks.lisp); its number is then free,

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.robot)
 
+(export '(outer-location inside-p part-inside part-reaches-p part-reaches-bin-p take-up set-down
+          move-part space-around settle-robots))
+
 ;;; A hand or camera is in the open with its robot (location NIL), inside a thing, or inside one of
 ;;; the robot's storage bins. What a hand holds is where the hand is. Invariants: nothing is inside
 ;;; itself by way of a hand; after each tick, what a part is inside of is within the robot's

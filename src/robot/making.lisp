@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(blueprint-robot make-robot robot-of-blueprint start-trouble))
+
 ;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
 ;;; name; a fresh simulation makes another by the same blueprint.
 

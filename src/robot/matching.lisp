@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(specification-p specification-trouble notice-probability))
+
 ;;; A descriptor specification is a list of (attribute value) or (attribute value threshold). A
 ;;; thing matches if readings of all those attributes fit; these readings are what is reported.
 ;;; A thing that says nothing of a boolean attribute counts as having it false; of any other, it

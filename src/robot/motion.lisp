@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.robot)
 
+(export '(set-robot-pose set-robot-angle drive-tick turn-tick robot-speed-now standing-p
+          longest-step step-now robot-turn-angle-now begin-movement robot-last-move
+          robot-last-move-estimate robot-cell-index))
+
 (define-constant +straight+ 1d-12
   :documentation "A component of a heading that is nearer to 0 is rounding, and taken for 0.")
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(add-designator))
+
 (defun forget-oldest (robot)
   "Drop the oldest designator of ROBOT that no camera tracks."
   (let ((oldest nil))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(own-symbol reading-reliability reading-deviation read-attribute angle-error))
+
 ;;; A discrete attribute is read right with a probability that falls with distance; a wrong reading
 ;;; is any value of the domain, so it may be right by luck. A reading of a numeric attribute is
 ;;; normally distributed; its deviation grows with distance. The manual's formula for that, which

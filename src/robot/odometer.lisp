@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(odometer-robot odometer-estimate odometer-origin-angle))
+
 ;;; An odometer is dead reckoning with intervals. It starts at (0,0) with heading 0 when it is
 ;;; reset, so the x axis of its positions is the heading at that moment. Each step adds an interval
 ;;; that is sure to contain what really happened; so does the sum. The bounds of the cosine

@@ -2,6 +2,12 @@
 
 (in-package :ars-magna.robot)
 
+(export '(robot-blueprint robot-retired robot-enders find-blueprint robot-drove-tick robot-failure
+          robot-designators robot-resources robot-mind mind-p mind-robot parts-of-kind
+          robot-ended-tracks part camera-last-view-tick camera-tracking unsettle hand-way-in
+          ensure-timeline robot-placements robot-put-x robot-put-y robot-moved robot-turned-low
+          robot-turned-high))
+
 ;;; The robot and each part is a resource: it does one thing at a time. A part's LOCATION is NIL
 ;;; (with the robot), a container among the things, or a storage bin.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(robot-place-here sense-place-type canonical-directions nearest-direction))
+
 (defun robot-cell (robot)
   (map-cell (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
 

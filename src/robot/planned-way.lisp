@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(robot-way-left))
+
 ;;; A robot is given one command after the other; where these are to lead only the program knows
 ;;; that gives them. What it says of that decides nothing: it is no part of a run's digest, and a
 ;;; journal does not have it. But it belongs to the run, so that forks have it, too.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(within-reach-p in-same-cell-p reached-p))
+
 ;;; Searches, tracks, hands and approaches share one idea of what is next to a robot, that of
 ;;; WITHIN-REACH-P. A cell that blocks robots cannot be entered, so all that is in it counts as next
 ;;; to a robot that stands at the cell. What a robot has arrived at is always within its reach.

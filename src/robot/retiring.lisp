@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(check-in-run retire-robot close-robot settle-robot resident-p))
+
 ;;; A robot is retired when its definition, its map or its run is replaced. What it was doing is
 ;;; interrupted; whoever still holds it and commands it is told so.
 

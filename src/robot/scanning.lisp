@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(look-for-things look-for-places camera-heading))
+
 ;;; SCAN-DENSITY* rays cross the field of view. Whatever lies in a cell that one of them meets is in
 ;;; view, up to and with the first cell that is a wall or holds something that obstructs vision; so
 ;;; is all that lies in the robot's own cell. What is within reach needs no ray, as rays from next

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(line-clear-p in-sight-p))
+
 ;;; Sight passes from cell to cell until a wall, or a cell where something on the floor obstructs
 ;;; it. Neither the cell of the eye nor that of the target does. The walk ends after as many borders
 ;;; as lie between them, as by distance rounding could end it one cell before or behind the target.

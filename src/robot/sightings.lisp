@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(sighting sighting-p designate distance-to bearing-to))
+
 ;;; A sighting is what a camera takes for a thing or place. Those found together become designators
 ;;; one after another, so each must still be where it was seen when its turn comes.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(check-robot))
+
 (defun check-parts (robot parts type)
   "Signal CONTRADICTION unless PARTS, a vector, are ROBOT's own, of TYPE."
   (loop for part across parts

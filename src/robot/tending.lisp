@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(tend-tracks tracks-busy-p start-track trackable-p out-of-sight-p end-on-arrival))
+
 ;;; A track refreshes angle and distance of its designator, never the data, and points the camera
 ;;; there. It is lost when the denotation is occluded, moves too fast -- its direction from the
 ;;; robot changes in a tick by more than half the field of view -- or is arrived at, and by chance.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(tracking-p end-track drop-designator track track-operation track-ended approaching-p))
+
 ;;; A track is what a camera does in the background of its commands: it keeps pointing where its
 ;;; designator's denotation is. Tracks are looked after once a tick, after events and kickers. A
 ;;; track may end at any moment of a tick, and is over at once; but whoever asked for it is told

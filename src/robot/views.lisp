@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.robot)
 
+(export '(take-view))
+
 ;;; Each pixel is the parameter of the surface that its ray meets: of a wall, of the largest thing
 ;;; that obstructs vision in the first cell that has one, or 0 where the map ends. Things on the
 ;;; way that do not obstruct vision, but have a substance, corrupt it: the pixel is the mean of them

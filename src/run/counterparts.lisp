@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(counterpart-here))
+
 (defgeneric counterpart-here (object)
   (:documentation "Return what OBJECT, of another run, is in the current simulation, a fork of that
 run; or NIL. Signals WRONG-ARGUMENT for what has no counterpart.")

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(environment-of note-environment fork-p *simulation-variables*))
+
 ;;; Robots' names, and what *SIMULATION-VARIABLES* lists, are bound by WITH-SIMULATION; for a live
 ;;; run they are global. A fork keeps their values, and they are bound while somebody works in it.
 

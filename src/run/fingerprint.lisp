@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(definitions-of definition-entry))
+
 ;;; A journal has a list (kind name number) for each definition that the run depends on, where the
 ;;; number is a digest of the form that was read. It has (:file name number) for each file that
 ;;; these definitions are from, as the run may depend on other forms there too. Comments and layout

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(call-with-fork *fork-asker* refuse-fork))
+
 ;;; A fork is a run like any other, headless, of a world of its own. What the original has bound for
 ;;; those who work in it (its robots, the fluents of plans) belongs to it too: a fork keeps that as
 ;;; its environment, which is bound while somebody works in the fork.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(fresh-simulation *rewound-end-hooks* variables-among))
+
 ;;; WITH-SIMULATION makes a fresh world, with fresh robots in it, for its extent.
 
 ;;; Passing ticks.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(write-journal read-journal))
+
 ;;; The first line is a comment, then comes the head, one line for each entry, and the end. Behind
 ;;; each a comment has a check sum of it and all before it, so that damage is found, and where. See
 ;;; plain-data.lisp for what they look like.

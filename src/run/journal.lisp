@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(journal journal-remarks))
+
 ;;; A journal is a header, entries (tick operator argument ...) in the order in which they took
 ;;; effect, and the tick at which it ended. An operator is a name that DEFINE-OPERATOR has
 ;;; defined; robots, parts, things and designators stand in an entry as lists that name them (see

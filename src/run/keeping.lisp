@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(let-fork-be-kept))
+
 ;;; A fork is made at the end of a tick. When there are too many, each new one ousts the one whose
 ;;; loss matters least for its age; so recent forks are close together, old ones are far apart, and
 ;;; the first always stays. How often forks are made depends on the clock: keeping them must take no

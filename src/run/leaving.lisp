@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(undone-text note-lines-typed))
+
 ;;; A script that commands a live robot and then ends does not wait for the command. A warning says
 ;;; so where there is no debugger; at a REPL leaving is the user's choice. The clock may still run:
 ;;; what is read here are single slots and atomic lists, and an error in reading is ignored.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(start-clock stop-clock doubt-wait call-as-owner *simulator-hooks* *hook-options*))
+
 (defvar *simulator-hooks* '()
   "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
 

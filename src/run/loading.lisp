@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(call-with-loaded-simulation))
+
 (addition damaged-simulation load-anyway)
 (document-restarts
  'load-anyway "Load the saved run although what is defined now is not what was defined then.")

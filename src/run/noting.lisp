@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(remark unremark note begin-journal end-of-journal))
+
 (defun close-full-journal (journal tick)
   "Let JOURNAL end at TICK, and say so."
   (setf (journal-full-p journal) t

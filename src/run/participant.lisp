@@ -2,6 +2,12 @@
 
 (in-package :ars-magna.run)
 
+(export '(participant-after-tick participant-after-ticks participant-origin participant-busy-p
+          participant-at-work-p participant-reseed participant-digest participant-copy
+          participant-end participant-clock-stopped participant-unfinished participant-cut-off
+          participant-around-p participant-at-rest check-forkable call-as-participant-makes-way
+          participant-place))
+
 ;;; A participant acts on what happens in a run, by way of requests only. It may keep ticks coming,
 ;;; has chance of its own, and knows when the run ends. What it asks for is in the journal, so a
 ;;; run is repeated without it.

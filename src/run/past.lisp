@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(note-doing))
+
 ;;; A run that is told to keep forks (keeping.lisp) has a PAST: these forks, and as ACTS, in order,
 ;;; everything that was done to the run since the oldest fork: what its journal has, and what was
 ;;; asked of plans from outside. A fork of the past goes on as the run did if the acts that it does

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(tree-p))
+
 ;;; A bare name is a keyword, NIL or T; other symbols stand between bars, with their package. In
 ;;; strings and between bars a backslash begins the code of a character, in hexadecimal, up to a
 ;;; semicolon; so every datum is one line. The Lisp reader sees nothing but numbers. Reading interns

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(externalize internalize dereference))
+
 ;;; A journal outlives its run, so robots, parts and things stand in it as (:the KIND ARGUMENT...),
 ;;; by name, index or serial number. Lists that begin with :THE themselves are written as (:the
 ;;; :list ...), those that do not end in NIL as (:the :list* ...).

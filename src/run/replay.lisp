@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(call-with-replay replaying repeated-words journal-meant))
+
 (addition different-definitions replay-anyway)
 (document-restarts
  'replay-anyway "Replay the journal although what is defined now is not what was defined then.")

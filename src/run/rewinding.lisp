@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(earliest-tick *rewind-hooks*))
+
 ;;; To rewind a run is to fork the newest kept fork that is not later than the tick wanted, to let
 ;;; the new fork go on to that tick, and to put it in the place of the run, which is then over. The
 ;;; fork becomes the current simulation and the value of the variables, has the run's observers and

@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.run)
 
+(export '(simulation simulation-timeline simulation-gate simulation-observers simulation-trails
+          simulation-participants simulation-messages simulation-over simulation-agenda
+          simulation-ticking-p simulation-thread latest add-participant remove-participant
+          headless-p end-simulation simulation-past simulation-plans-dice-p))
+
 ;;; A run has no state of its own but the values of the parameters as it knows them: the rest is its
 ;;; timeline's and its world's.
 

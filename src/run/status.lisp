@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(designator-status robot-meant))
+
 ;;; All is plain data: numbers, symbols, strings and lists of such. Things and places are called as
 ;;; they print. A property list says what is what, so that there may be more in it one day.
 

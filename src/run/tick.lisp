@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.run)
 
+(export '(tick))
+
 ;;; TICK is the order of a tick. While the world changes, no program runs but users' kickers,
 ;;; manipulations and events; continuations come after that, and then whoever looks on. So
 ;;; whatever else a program does happens between ticks, and a journal can repeat it. Users' code

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.statistics)
 
+(export '(design-points))
+
 ;;; Each dimension has dice of its own: one more leaves the others as they are. More points of
 ;;; :RANDOM and :SOBOL begin with those that there were; those of a Latin hypercube are all others.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.statistics)
 
+(export '(mean variance deviation median quantile))
+
 ;;; What a sample is too small for is NIL: the mean of nothing, the variance of one number.
 
 (declaim (ftype (function (doubles) double-float) sum))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.statistics)
 
+(export '(+most-dimensions+))
+
 ;;; Each dimension has direction numbers V1, V2 ... of 32 bits, binary fractions. They follow from a
 ;;; primitive polynomial over two elements and from odd numbers to start with, by Bratley and Fox
 ;;; (Algorithm 659, 1988). The numbers are those of Joe and Kuo (SIAM J. Sci. Comput. 30, 2008). Of

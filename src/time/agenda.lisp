@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.time)
 
+(export '(event event-pending-p event-resource event-time event-function event-interrupt agenda
+          make-agenda agenda-tick agenda-pending queue-event queue-again +longest-delay+
+          cancel-event interrupt-event pending-event advance-agenda pending-events))
+
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
 ;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; what lies
 ;;; beyond waits in one list. Turning a page moves its far bucket into the near wheel. Queueing

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.time)
 
+(export '(have-done))
+
 (addition ask)
 (defun ask (object function)
   "Call FUNCTION, with no arguments, where the world of OBJECT, a simulation or robot, stands still:

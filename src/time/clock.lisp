@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.time)
 
+(export '(stands-still-p start-pacing))
+
 ;;; While all is idle the thread sleeps, and simulated time stands still. Between ticks it answers
 ;;; questions. It has the world in custody until it ends, in whatever way. What a tick is, and
 ;;; whether there is anything to do, is said by functions.

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.time)
 
+(export '(custody-questions custody-starter answer-questions call-with-custody mine-p
+          answer-meanwhile))
+
 ;;; A world, with the timelines of its runs, which follow one another, is in the custody of one
 ;;; thread at a time: the one that paces it, or one that passes its ticks or changes it, for as long
 ;;; as that takes. Custody is taken if nobody has it, and given up; it may be handed over to another

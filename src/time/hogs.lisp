@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.time)
 
+(export '(users-code-under-way users-code-broken-p abort-hog))
+
 ;;; A thread beside that of the simulation looks twice in *HOG-SECONDS* where that is. What it sees
 ;;; three times on end has been there for so long.
 

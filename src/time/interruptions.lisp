@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.time)
 
+(export '(request-name note-interruption interruption interruption-tick interruption-what
+          interruption-asker interruption-by interruption-by-asker))
+
 (defgeneric request-name (request)
   (:documentation "Return what REQUEST asks for, as people call it.")
   (:method ((request request)) (request-operator request)))

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.time)
 
+(export '(timeline-thread pacer-p check-rate clock-trouble *waits-while-paused-p* let-pass pace
+          hog-seconds seconds-now))
+
 ;;; A thread passes ticks at the pace RATE, a number of ticks per second or :FREE, for as long as
 ;;; anything is to be done (clock.lisp). Others steer it by setting its fields and waking it.
 

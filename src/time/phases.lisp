@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.time)
 
+(export '(phase-number changing-phase-p telling-phase-p))
+
 ;;; Phases are counted from 1, and 0 is between ticks. What happens in one the run's tick says. In
 ;;; those that change the world a fork does again by itself whatever users' code does there.
 

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.time)
 
+(export '(request request-operator request-arguments request-entry request-asker request-forked-p
+          request-phase perform))
+
 ;;; A request names an operator and has its arguments. It waits in a timeline (see timeline.lisp)
 ;;; until a tick begins; then it is performed, in the order of asking. Layers above include the
 ;;; structure for what they need besides, and add methods.

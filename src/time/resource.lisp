@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.time)
 
+(export '(resource resource-event resource-interruption resource-asked note-asked))
+
 (define-kind (resource :constructor nil)
     "What commands and events compete for: a robot or one of its parts. Anything else may serve as
 a resource of SCHEDULE too; these carry their pending event themselves, which is faster."

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.time)
 
+(export '(call-scheduled abandon release-resource scheduled))
+
 ;;; All that is asked of a resource, by SCHEDULE, GRAB-RESOURCE or a command, is taken in the order
 ;;; of asking, at the start of the next tick. Events of SCHEDULE meet on a resource by priority: the
 ;;; higher stays, of equals the one that was there. Whichever loses is interrupted. A command takes

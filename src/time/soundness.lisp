@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.time)
 
+(export '(fill-agenda check-occupant check-request))
+
 (defun put-in-place (agenda event)
   "Let EVENT, which says that it is pending, be so in AGENDA. Signals CONTRADICTION."
   (let ((resource (event-resource event)))

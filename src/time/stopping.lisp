@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.time)
 
+(export '(stop-pacing claim-pacing claimed-p unclaim-pacing call-alone))
+
 ;;; The thread ends by itself after its tick. Users' code that keeps it from ending is aborted, but
 ;;; only if whoever stops the run says so.
 

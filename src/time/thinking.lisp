@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.time)
 
+(export '(check-thinking thinking-modes-text thinking-mode-p timeline-thinking
+          set-timeline-thinking give-threads thinking-charged-p thinking-budget))
+
 ;;; The manual (1.2) keeps simulated time and thinking time apart. Who wants to know what thinking
 ;;; is worth has to tie them together again, and so that every machine does it alike. So a run has a
 ;;; thinking mode: :FREE, the world waits; :CHARGED, what says what it costs takes that many ticks,

@@ -2,6 +2,14 @@
 
 (in-package :ars-magna.time)
 
+(export '(timeline make-timeline timeline-p timeline-of timeline-name timeline-tick
+          timeline-agenda timeline-run timeline-over timeline-custody timeline-phase phase-here
+          timeline-moments timeline-on-moment begin-moment timeline-ticking-p timeline-passing-p
+          timeline-tick-dice timeline-inbox timeline-pacing timeline-fork-p check-not-over
+          check-own-run check-not-secluded secluded wake-owner post post-again take-requests
+          asked-inside-p owner-p *repeated* untold-p notify-later deliver-notifications
+          timeline-real-p share-custody))
+
 ;;; Whoever has the timeline in custody passes its ticks. Others reach it in two ways. POST leaves a
 ;;; request, which is performed at the start of the next tick, and returns at once; it is how
 ;;; commands are issued, from wherever. ASK, in asking.lisp, has a function called between two ticks

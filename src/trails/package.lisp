@@ -1,6 +1,6 @@
 ;;;; package.lisp -- where robots went in many trials, as a picture.
 
-(defpackage :ars-magna.trails
+(ars-magna.host:define-package :ars-magna.trails
   (:documentation "The ways of robots over their map. Knows neither experiments nor plans.")
   (:use :cl :ars-magna.base :ars-magna.canvas)
   (:import-from :ars-magna.time #:current-simulation)
@@ -36,13 +36,4 @@
                 #:moment-robot #:moment-weight #:moment-words #:moments-watcher
                 #:remarked-moments #:checked-moments #:check-kinds #:of-kinds #:in-order
                 #:shown-end)
-  (:import-from :ars-magna.plots #:draw-marker)
-  ;; trails
-  (:export #:way-trial #:way-outcome #:way-pieces #:note-places #:ways-along
-           #:straightened)
-  ;; trajectory
-  (:export #:save-trajectory)
-  ;; picture
-  (:export #:save-bundle)
-  ;; run-picture
-  (:export #:save-run-picture))
+  (:import-from :ars-magna.plots #:draw-marker))

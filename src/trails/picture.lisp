@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.trails)
 
+(export '(save-bundle))
+
 (defparameter *outcome-looks*
   '(("success" 0 #x0C3C9C 3/2 nil "succeeded") ("limit" 4 #xB07000 2 (6 3) "came to the limit")
     ("failure" 1 #xC22418 5/2 nil "failed")

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.trails)
 
+(export '(way-trial way-outcome way-pieces note-places ways-along straightened))
+
 (defstruct (way (:constructor make-way (trial outcome pieces)) (:copier nil))
   "Where a robot was in TRIAL, a number, which ended with OUTCOME: PIECES are lists of conses
 (x . y), in metres, one for each tick in which it moved, the first being where it started. A piece

@@ -1,6 +1,6 @@
 ;;;; package.lisp -- the ways layer: how to get from one point of a map to another.
 
-(defpackage :ars-magna.ways
+(ars-magna.host:define-package :ars-magna.ways
   (:documentation "Ways through a map, at any angle: away from walls where there is room, round what
 was found barred, planned anew at little cost. Field D* of Ferguson and Stentz (2006). Knows walls
 and places, and neither robots nor things.")
@@ -9,12 +9,4 @@ and places, and neither robots nor things.")
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags
                 #:map-places #:map-place-types #:+wall+ #:find-map #:number-pair-p
-                #:place-type-name #:place-type-index #:find-place-type #:doorway)
-  ;; terrain
-  (:export #:terrain #:terrain-p #:terrain-of #:terrain-map #:terrain-clearance)
-  ;; chart
-  (:export #:chart #:chart-p #:make-chart #:chart-terrain #:chart-map #:bar-cell #:free-cell
-           #:free-all-cells #:barred-cells #:crossing-cost)
-  ;; ways
-  (:export #:nearest-free-point #:find-way #:next-point #:way-cost #:straight-cost
-           #:way-length))
+                #:place-type-name #:place-type-index #:find-place-type #:doorway))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.ways)
 
+(export '(terrain))
+
 ;;; A metre costs 1 in the open, four times as much nearer to a wall than the clearance, and as much
 ;;; as the caller says in a cell of a place type that is named. Costs are numbers from 1 up, and
 ;;; +BARRED+ for walls. Cells have numbers, row by row, with a margin of walls, one cell wide,

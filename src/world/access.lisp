@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(change-world changing writing))
+
 ;;; Whoever runs a world changes it within its ticks: kickers, events, commands. What users do from
 ;;; anywhere else goes to the world's owner, its timeline, by one generic function: the layer above
 ;;; sends it to the thread that may do it, and notes it in the journal. A world says which thread

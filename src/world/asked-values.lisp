@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(asking-form-p range-p value-limits discrete-p in-domain-p can-be-false-p asks-range-p))
+
 ;;; Robots and manipulations ask in the same words, lists (attribute value [threshold]), manual
 ;;; 3.4.2 and 5.5.1; but a robot compares with what it senses, a manipulation with what is so.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(call-put-kicker find-attachment detached-kicker))
+
 (defun find-attachment (thing name)
   "Return the kicker called NAME on THING, as attached, or NIL."
   (find name (thing-kickers thing) :key #'attachment-name :test #'same-name-p))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(attribute define-attribute attribute-of built-in-attribute-p attribute-key *attributes*))
+
 ;;; An attribute is discrete, with a list of possible values, or numeric. Attributes that
 ;;; nobody defined may be stored and matched but are never sensed unasked. Manual 3.3, 3.4.2
 ;;; and 5.4.

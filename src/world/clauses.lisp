@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(number-pair-p check-options check-name call-for-value))
+
 (defun check-options (definition options known)
   "Signal MALFORMED-DEFINITION unless OPTIONS is a plist with keys among KNOWN, each once."
   (unless (and (proper-list-p options) (evenp (length options)))

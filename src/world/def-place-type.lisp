@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(define-place-type *place-types*))
+
 ;;; The form is checked when it is expanded, the values of its options when it is evaluated; then
 ;;; its code is tried on small maps.
 

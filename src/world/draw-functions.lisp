@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(drawing-code))
+
 ;;; A value is a function, or a symbol that names one, which then may be defined anew. Code says
 ;;; it: a definition, or a program that sets the attribute. Only names that code has said are
 ;;; called: so no file that holds data, such as a journal, can have any function called by its name.

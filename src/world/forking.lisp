@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(octets-of-copy))
+
 ;;; A world may have a hundred thousand things, each with kickers. So its things are copied first of
 ;;; all, one after the other; what a thing was copied to is then known by its rank, and what an
 ;;; attachment was copied to by its thing. What has been destroyed or taken off has no rank: it is

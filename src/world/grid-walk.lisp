@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(walk-grid cell-number grid-size +endless+ +no-limit+))
+
 ;;; Driving, sight, scans and the display all walk here (a digital differential analyser), so a
 ;;; line meets the same cells for each. Distances along it are in lengths of its direction. All is
 ;;; inline, with VISIT a known function, so that nothing is called or allocated for a cell.

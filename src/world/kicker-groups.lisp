@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(seed-world world-has-kickers-p some-kicker run-kickers))
+
 ;;; Each kicker on each thing is a trial of its probability on every tick. Kickers of equal
 ;;; probability form a group: a row of trials, tick after tick. Rather than rolling for each we
 ;;; draw how many fail before the next that succeeds (a geometric law) and skip them. A :test is

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(*kickers* kicker-test kicker-body kicker define-kicker attachment *kicker-generation*))
+
 ;;; A KICKER is abstract; an ATTACHMENT is a kicker on a thing. A thing has at most one kicker
 ;;; of each name. Redefining a kicker changes it wherever it is attached: worlds notice by
 ;;; *KICKER-GENERATION*. Manual 5.3.1.

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.world)
 
+(export '(location-contents location-position location-world location-closed-p location-full-p
+          location-name location-words))
+
 ;;; The location of a thing is :FLOOR (then it has a position of its own), something that
 ;;; holds it -- a thing or, in the layer above, a hand or storage bin -- or NIL: nowhere, as
 ;;; for prototypes and what has been destroyed. What holds things answers these questions.

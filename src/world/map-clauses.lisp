@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(*map-clauses* all-clause-kinds clause-kind-name clause-kind-usage))
+
 ;;; A definition says all that is to be known of a kind of clause: how it is written, which clauses
 ;;; are right, and what they stand for. Our own kinds are walls that are drawn, or things; those of
 ;;; users stand for other clauses. So a map keeps only ours, and its cache depends on nothing else.

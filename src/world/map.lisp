@@ -2,6 +2,11 @@
 
 (in-package :ars-magna.world)
 
+(export '(map-flags map-parameters map-substances map-substance-types map-places map-directions
+          map-place-types map-least-parameter map-greatest-parameter map-enclosed map-things
+          map-resident map-attribute-names map-package map-replaced map-form map-index point-index
+          +wall+ +obsmove+ +obsview+ +occupied+ +opaque+ cell *maps* map-clause-kinds))
+
 ;;; A map is built once (see defmap.lisp) and shared, without locks, by all worlds made of it.
 ;;; Cell (X, Y) covers [X, X+1) x [Y, Y+1) and has the index X + Y * width. Outside the map
 ;;; everything is solid. Manual 2.1 and 5.1.

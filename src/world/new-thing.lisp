@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(destroyed-thing))
+
 (defun resolve-position (position)
   "Return the world, :FLOOR and the coordinates for POSITION, a list (map x y)."
   (destructuring-bind (map x y) position

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(place-type-index))
+
 ;;; Place types rank by when they were first defined, unless they say :BEFORE: a cell that could
 ;;; be of several is of the first. Redefining a type keeps its rank and changes the type itself:
 ;;; probability, directions and drawing hold at once, which cells are of it holds for maps built

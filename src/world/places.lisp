@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(place make-place))
+
 ;;; Types are tried in the order of their ranks, cells row by row; a cell stays what it first
 ;;; became. Only empty cells become places. Patterns no larger than 3 x 3 are looked up in a
 ;;; table by the code of the neighbourhood, see match-forms.lisp.

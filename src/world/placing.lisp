@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(place-thing tell-if-in-wall))
+
 ;;; Invariants: a thing on the floor is in the list of exactly the cell that holds its position;
 ;;; a thing in something is in exactly its contents; a cell's flags say what lies there.
 ;;; Everything that moves a thing goes through PLACE-THING.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(make-world reset-world doubt-idle-kickers recipe make-recipe))
+
 ;;; A recipe is fixed when it is written: a prototype's attributes and contents are copied then,
 ;;; so that a world made of it later does not depend on what became of the prototype. Contents
 ;;; are made before their container, each with the next serial number of the world; prototypes

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(map-resident-world))
+
 ;;; A map has one resident world, made when first asked for: the one that top-level code works
 ;;; in. Headless simulations bind *WORLD* to worlds of their own.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(first-time-p said-p note-looked-after looked-after-p warn-once doubt-angle))
+
 ;;; What is allowed, but most likely not what the user wanted, is said once: further warnings about
 ;;; the same name would only hide others. Saved runs know a world's slots by name: NOTED-NAMES has
 ;;; all that has been said, though it began with names of attributes.

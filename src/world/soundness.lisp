@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(check-world world-invariant-violations))
+
 (defun check-cell (index stock met)
   "Signal CONTRADICTION unless what lies in the cell INDEX of STOCK are things that none of the tags
 in MET, which they are added to, stand for."

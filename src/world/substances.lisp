@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(substance substance-value-type substance-value-parameter))
+
 ;;; A substance has a type, a symbol, and a parameter, a number, as when a camera views it
 ;;; (manual 2.1). Walls give both. The value of a thing's :substance is a number (the
 ;;; parameter), a symbol (the type, its parameter as defined here) or a list of both.

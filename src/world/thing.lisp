@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(thing thing-holders-text value-like note-unknown-substance))
+
 ;;; The attributes of a thing are an object descriptor (manual 3.3): a list of lists (key
 ;;; value), replaced and never altered in place. Those that physics needs are cached in typed
 ;;; slots. A thing without a world is a prototype. Manual 3.3 and 5.3.

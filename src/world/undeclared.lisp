@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.world)
 
+(export '(note-strange-name warn-of-slips))
+
 ;;; Things may have attributes that no DEFATTRIBUTE declares, and specifications may ask for them.
 ;;; A name that looks like a declared one is remarked on where a thing is defined; one that no
 ;;; thing of the world has, where it is asked for, once in a run.

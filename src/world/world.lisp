@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.world)
 
+(export '(world-writer world world-flags do-cell world-rank-count thing-of-rank world-timeline
+          world-dice-set world-move-watchers world-settled-p do-things world-live-count
+          world-kicker-generation))
+
 ;;; A world is made fresh from its map's recipe. Nothing in it depends on anything but the map
 ;;; and the seed. Serial numbers count from 1 in order of creation, so that things in order of
 ;;; creation are things in order of serial number.

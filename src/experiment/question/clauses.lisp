@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(doubt-nested-run))
+
 (defparameter *clauses*
   '((:robots "(:robots name...), robots of one map")
     (:parameters "(:parameters (parameter form)...)")

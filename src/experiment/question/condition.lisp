@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(condition-name))
+
 ;;; What varies is a factor: a parameter, a variable of the experiment's forms, the thinking mode,
 ;;; or the robots, and with them the world. A condition gives each factor a value. Conditions are
 ;;; all combinations of the factors' values, or a list of named cases, or each case with each

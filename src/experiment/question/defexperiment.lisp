@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(experiment-from))
+
 ;;; Expanding.
 
 (defun value-form (name form)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(experiment-package experiment-limit experiment-documentation trial-seed))
+
 (defstruct (experiment (:constructor %make-experiment (name)) (:copier nil))
   "A question: what is done in a trial, under which conditions, and what is measured."
   (name nil :type symbol)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(number-in))
+
 ;;; Whatever reads the table, R, pandas or sqlite, must take a number for a number. So floats have
 ;;; no exponent marker of Lisp's, ratios become floats, truth is TRUE or FALSE, and lists are JSON.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(run-again call-aside))
+
 ;;; Workers run trials unseen, in threads of their own. Here a trial is run where people see what it
 ;;; says and can stop it between two ticks. It goes the same way, as it finds what it would find in
 ;;; a worker: values as they are at top level, where this thread has others bound. Whoever looks at

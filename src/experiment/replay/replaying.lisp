@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(trial-words *trial-replayed* await-time row-of-trial row-differences measured))
+
 ;;; How time passes: at the gate, between two ticks.
 
 (defun await-time (due simulation)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(call-on-page))
+
 (defconstant +page-width+ 100
   "How many characters a line has at most, unless a window is narrower.")
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(run-guarded))
+
 ;;; A worker's thread may be ended in three ways: by the trial itself, which is that trial's error;
 ;;; when the run is stopped; and when this Lisp is left. In the last two nothing is held up.
 

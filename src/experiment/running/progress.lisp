@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(trial-under-way))
+
 ;;; On a terminal there is one line that changes; elsewhere a line now and then.
 
 (defstruct (progress (:constructor make-progress

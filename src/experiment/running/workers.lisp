@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(call-by-workers))
+
 (addition processors)
 (defun processors ()
   "Return how many processors this machine lets us use, 1 if that cannot be told."

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(form-text))
+
 ;;; It is for people, and nothing is read back but the parts of the fingerprints, to say which of
 ;;; them have changed, and until when trials were added.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(ensure-store-directory))
+
 ;;; rows.csv has a row for each trial and nothing that differs from run to run; series.csv, if the
 ;;; experiment has :each-tick, lines for each tick of each trial; machine.csv says how long each
 ;;; trial took, and where; experiment.txt how to repeat it all. One process at a time writes there:

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(experiment-file))
+
 ;;; None of it decides a trial, so it is in no fingerprint.
 
 (defun version-of-system (name)

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(shard-directory directories-with-rows count-rows trials-in-shard-p missing-shards
+          check-same-code))
+
 ;;; Shard I of N keeps its table in a directory shard-I-of-N below that of the whole, where all of
 ;;; them are put together. What there is of any of them counts as there.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(settle-fingerprints prepare-condition))
+
 ;;; The parts of a fingerprint are lists (kind name number): the experiment's own text, the values
 ;;; of the condition, the simulator, what the journal of such a run would have, and what the forms
 ;;; can reach. Rows whose fingerprints are equal come from the same function of the seed, as far as

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(call-until-error))
+
 (defun call-form (function condition)
   "Call FUNCTION, of a form of the experiment, with the values that CONDITION has for variables."
   (apply (the function function) (condition-arguments condition)))

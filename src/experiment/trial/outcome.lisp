@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(result-trial result-seed result-outcome result-reason result-ticks result-digest
+          result-error))
+
 ;;; An outcome is "success", "failure", "limit" (no more ticks were left), "error" (the trial's
 ;;; own code broke off) or "timeout" (it took too long by the clock). A failure has a reason, a word
 ;;; or two that others may share.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(run-trial call-in-silence))
+
 ;;; A trial is a function of the code, its condition and its seed. So it begins with the manual's
 ;;; parameters but where the experiment says otherwise, with Lisp's own dice made from the seed for
 ;;; code that rolls them, and with settings of the reader and printer that do not depend on where it
