@@ -394,8 +394,7 @@ describes a slot."
 
 (test marks.export
   (let ((symbol (intern "NEWLY-MARKED" :ars-magna.tests)) (marks base::*marks*))
-    (unwind-protect (let ((base:*marking-p* t))
-                      (eval `(base:addition ,symbol))
-                      (is (member symbol (external-symbols (find-package :ars-magna.tests)))))
+    (unwind-protect (progn (let ((base:*marking-p* t)) (eval `(base:addition ,symbol)))
+                           (is (member symbol (external-symbols (find-package :ars-magna.tests)))))
       (setf base::*marks* marks)
       (unintern symbol :ars-magna.tests))))
