@@ -166,6 +166,20 @@
                   (run:run-ticks 9)))
               "paint-over failed: none of its methods is for"))))
 
+(test handlers.of-errors-are-told-to-take-no-fail
+  (is-true (has-words-p (rover-writes ()
+                          (driver:run-plan (plan-of (rpl:handle-failure ((error () (return 1)))
+                                                      (rpl:fail :class :lost)))))
+                        "a clause is for error, which is for errors of Lisp" "write :lost or T")))
+
+(test plans.that-fail-live-are-told-to-programs
+  (live (simulation)
+    (driver:run-plan (plan-of (rpl:fail :class :lost)))
+    (is-true (some (lambda (message)
+                     (and (eq t (base::message-notable-p message))
+                          (has-words-p (base:message-text message) "The second value of RUN-PLAN")))
+                   (base:take-messages)))))
+
 (test handlers.with-other-endings-are-told-of
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (rpl:handle-failure ((:stucked () (return 1)))
@@ -186,8 +200,10 @@ the kicker IN-USE, after the definitions FORMS; in the second run nothing is new
 
 (test kickers.on-no-thing-are-told-once
   (destructuring-bind (first second)
-      (told-of-run '(world:defkicker in-use (thing) () nil) '(world:defkicker spare (thing) () nil))
-    (is-true (has-words-p first "The kicker spare is on no thing" "(set-kicker THING 'spare)"))
+      (told-of-run '(world:defkicker in-use (thing) () nil)
+                   '(world:defkicker left-over (thing) () nil))
+    (is-true (has-words-p first "The kicker left-over is on no thing"
+                          "(set-kicker THING 'left-over)"))
     (is (= 1 (count #\Newline first)))
     (is (string= "" second)))
   (is (equal '("" "")
@@ -209,6 +225,32 @@ the kicker IN-USE, after the definitions FORMS; in the second run nothing is new
                (error-output (eval '(run:with-simulation (farmer) (run:run-ticks 3)))))))
       (is-true (has-words-p (told nil) "The kicker prowl-about is on no thing"))
       (is (string= "" (told "(defun prowl (cat) (world:set-kicker cat 'prowl-about))"))))))
+
+(test kickers.whose-tests-ask-for-what-nothing-has-are-told
+  (flet ((told (test)
+           (first (told-of-run `(world:defkicker in-use (thing) (:test ,test) nil)))))
+    (is-true (has-words-p (told '(world:get-attribute thing :hungry))
+                          "The :test of the kicker in-use was never true" ":hungry"))
+    (dolist (test '((not (world:get-attribute thing :hungry))
+                    (eql 9 (world:get-attribute thing :level))
+                    (world:get-attribute thing :closed)))
+      (is (string= "" (told test))))))
+
+(test kickers.that-functions-put-on-things-are-quiet
+  (is (equal '("" "")
+             (told-of-run '(world:defkicker in-use (thing) () (world:set-kicker thing 'hatched))
+                          '(world:defkicker hatched (thing) () nil)))))
+
+(test kickers.on-no-thing-are-told-live
+  (with-own-definitions
+    (eval '(world:defkicker live-spare (thing) () nil))
+    (live (simulation)
+      (command:robot-turn fitter 1/2 nil)
+      (is-true (await (lambda () (plusp (run:simulation-tick simulation)))))
+      (run:stop-simulator simulation)
+      (is-true (some (lambda (message)
+                       (has-words-p (base:message-text message) "The kicker live-spare"))
+                     (base:take-messages))))))
 
 (test attributes.misspelt-in-equal-clauses-have-lines-of-their-own
   (with-own-definitions

@@ -286,6 +286,27 @@
   (is-true (has-words-p (told-of-experiment t ''(driver:run-plan 'only-waits 5))
                         ":run" "is data" "Write the form alone")))
 
+(test experiments.tell-of-plans-that-failed-on-the-way
+  (flet ((told (run)
+           (with-own-definitions
+             (eval `(experiment:defexperiment idle (:robots rover) (:run ,@run)))
+             (with-output-to-string (*standard-output*)
+               (experiment:print-results (experiment:run-experiment 'idle :trials 1))))))
+    (let ((fails '(driver:run-plan (plan-of (rpl:fail :class :bad)))))
+      (is-true (has-words-p (told `(,fails (run:run-ticks 5))) "failed (Plan failure :BAD)"
+                            ":run went on"))
+      (is-true (has-words-p (told `((if ,fails :ok nil))) ":run went on"))
+      (is (not (search "went on" (told `(,fails)))))
+      (is (not (search "went on" (told '((driver:run-plan 'only-waits) t))))))))
+
+(test experiments.warn-of-quoted-functions
+  (is-true (has-words-p (told-of-experiment ''turn-it) "Write the form alone: (turn-it)"))
+  (is-true (has-words-p (warning-about '(experiment:defexperiment idle (:robots rover) (:run t)
+                                         (:measure (x 'robot:robot-x))))
+                        "measure x is quoted" "robot-x ...)")))
+
+(defun turn-it () t)
+
 (test experiments.take-no-failure-for-a-success
   (with-own-definitions
     (eval '(experiment:defexperiment idle (:robots rover)

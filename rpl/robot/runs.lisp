@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(ensure-interface begin-in note-robot-commanded pass-until how-over plan-ending-p))
+(export '(*failed-plans* ensure-interface begin-in note-robot-commanded pass-until how-over
+          plan-ending-p))
 
 (addition *plan-limit*)
 (defparameter *plan-limit* 100000
@@ -186,13 +187,17 @@ but somebody outside can let plans go on, say so, once."
   (loop for tasks = (interface-awaited interface)
         until (swap-if (interface-awaited interface) tasks (remove task tasks :test #'eq))))
 
+(defvar *failed-plans* :unbound
+  "The tasks of plans that RUN-PLAN ran and that failed, the latest first, where a trial binds it.")
+
 ;; A failure is true, so a program that only asks whether there is a value takes it for success.
 (defun tell-of-failure (interface task)
-  "Say once for each plan of a headless run that TASK, which RUN-PLAN ran for a program, failed."
+  "Say once for each plan of a run that TASK, which RUN-PLAN ran for a program, failed."
   (let ((simulation (interface-simulation interface)))
+    (when (listp *failed-plans*) (push task *failed-plans*))
     (unless (or *asker*
                 (typep (task-result task) 'lisp-failure) ; an error is reported anyway
-                (live-p simulation)
+                (message-queue-listener (simulation-messages simulation))
                 (not (eq :report (message-queue-error-policy (simulation-messages simulation)))))
       (warn-once (list :failed (task-label task)) (simulation-world simulation)
                  (format nil "The plan ~A failed: ~A~@[; ~A~]. The second value of RUN-PLAN says ~

@@ -84,10 +84,23 @@ second value; NIL if there is none."
           for type = (find-if (lambda (type) (slip-for-p type class)) (clause-types form))
           when type return (values type class))))
 
+(defun clause-for-errors (failure)
+  "Return what a clause around FAILURE is for if that is for errors of Lisp and FAILURE is none."
+  (unless (typep failure 'lisp-failure)
+    (loop for form in (failure-plan-backtrace failure)
+          thereis (find-if (lambda (type)
+                             (and type (find-class type nil) (subtypep type 'error)))
+                           (clause-types form)))))
+
 (defun missed-text (failure)
-  "Return in words that a clause around FAILURE is not for its class, but like it; or NIL."
+  "Return in words that a clause around FAILURE is not for its class, but like it, or only for
+errors of Lisp; or NIL."
   (multiple-value-bind (type class) (missed-clause failure)
-    (and type (format nil "a clause is for ~(~S~), but the class is ~(~S~)" type class))))
+    (let ((error-type (clause-for-errors failure)))
+      (cond (type (format nil "a clause is for ~(~S~), but the class is ~(~S~)" type class))
+            (error-type
+             (format nil "a clause is for ~(~S~), which is for errors of Lisp, and no FAIL; write ~
+                          ~(~S~) or T" error-type (or (failure-class failure) t)))))))
 
 (defun write-failure-report (failure stream)
   (format stream "~A~%  at tick ~D in ~A~%  task: ~A~%"

@@ -161,7 +161,9 @@ LAMBDA-LIST, or which BODY makes nothing of, signals MALFORMED-DEFINITION."
   "Return in a list the form whose value is meant where FORM, a test, is quoted or a function; NIL
 if it is neither."
   (typecase form
-    ((cons (eql quote) (cons (not null) null)) (list (second form)))
+    ((cons (eql quote) (cons (not null) null))
+     (let ((data (second form)))
+       (list (if (and (symbolp data) (fboundp data) (not (boundp data))) (list data) data))))
     ((cons (eql function) (cons symbol null)) (list (list (second form))))
     ((cons (eql function) (cons cons null)) (test-meant (second form)))
     ((cons symbol (cons list))

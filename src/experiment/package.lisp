@@ -24,4 +24,5 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl.fluents #:*realm* #:fork-realm #:fluent-p #:fluent-text)
-  (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans* #:stranded-plan-text))
+  (:import-from :ars-magna.rpl-robot #:*failed-plans* #:*plan-limit*
+                #:*trace-plans* #:stranded-plan-text))

@@ -366,5 +366,9 @@ MISUSE if the robot no longer fits into its map. See reading 238."
   "Stop the live SIMULATION, which may be given as one of its robots, after its current tick. What
 is under way stays pending. If SIMULATION was rewound, stop what goes on in its place. Return
 nothing. See reading 89."
-  (stop-clock (simulation-meant simulation 'stop-simulator))
+  (let ((simulation (simulation-meant simulation 'stop-simulator)))
+    (stop-clock simulation)
+    (when (plusp (simulation-tick simulation))
+      (let ((*message-queue* (simulation-messages simulation)))
+        (doubt-idle-kickers (simulation-world simulation)))))
   (values))

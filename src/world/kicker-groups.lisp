@@ -106,10 +106,16 @@
 
 ;;; Running.
 
+(declaim (inline test-holds-p))
+(defun test-holds-p (kicker test thing)
+  "Return what TEST, that of KICKER, says of THING, and note it."
+  (cond ((funcall (the function test) thing) (setf (kicker-held kicker) t))
+        ((null (kicker-held kicker)) (setf (kicker-held kicker) :no) nil)))
+
 (defun run-member (kicker thing)
   "Run the body of KICKER for THING, unless its test says no."
   (let ((test (kicker-test kicker)))
-    (when (or (null test) (funcall (the function test) thing))
+    (when (or (null test) (test-holds-p kicker test thing))
       (funcall (the function (kicker-body kicker)) thing))))
 
 (defun run-again (origin)

@@ -14,6 +14,10 @@
   (prob 1d0 :type (double-float 0d0 1d0))
   (test nil :type (or null function))
   (body (constantly nil) :type function)
+  ;; The attributes that its test asks for, and what came of that: NIL if it was not evaluated, :NO
+  ;; if it was never true.
+  (asked '() :type list)
+  (held nil :type (member nil :no t))
   ;; True once it has been on a thing, or a run has ended without it; see DOUBT-IDLE-KICKERS.
   (known-p nil :type boolean))
 (addition kicker-p kicker-name kicker-prob)
@@ -84,11 +88,12 @@
         (kicker-body kicker) body)
   kicker)
 
-(defun define-kicker (name &key (prob 1) test (body (constantly nil)))
+(defun define-kicker (name &key (prob 1) test (body (constantly nil)) asked)
   "Define or redefine the kicker NAME; what DEFKICKER expands to. TEST and BODY are functions of
-a thing. Return the kicker."
+a thing; ASKED lists attributes that TEST asks for. Return the kicker."
   (let ((new (fill-kicker (make-kicker name) (title "defkicker" name) prob test body))
         (old (definition-to-replace name *kickers*)))
+    (setf (kicker-asked new) asked)
     (when old
       (incf *kicker-generation*)
       (setf (kicker-known-p new) (kicker-known-p old)))
@@ -112,6 +117,16 @@ a thing. Return the kicker."
                (thing-function (list (getf options :test))))
       :body ,(thing-function body))))
 
+(defun attributes-asked-in (test)
+  "Return the keywords that TEST, a form, gives GET-ATTRIBUTE."
+  (let ((keys '()))
+    (map-calls (lambda (call)
+                 (when (and (typep call '(cons symbol (cons t (cons keyword null))))
+                            (same-name-p 'get-attribute (first call)))
+                   (pushnew (third call) keys)))
+               test)
+    keys))
+
 (public defkicker)
 (define-user-macro defkicker (&whole form name lambda-list &optional options
                      &body body &environment environment)
@@ -130,5 +145,6 @@ Signals MALFORMED-DEFINITION. Return the name."
        (unless (and (proper-list-p lambda-list) (= 1 (length lambda-list)))
          (reject-clause definition lambda-list "a list of one variable"))
        (values `((define-kicker ',name
-                   ,@(kicker-functions definition (first lambda-list) options body)))
+                   ,@(kicker-functions definition (first lambda-list) options body)
+                   :asked ',(attributes-asked-in (getf options :test))))
                (variable-forms name))))))

@@ -335,10 +335,13 @@ CLAUSES vary, and what the clause KEY names."
 
 (defun doubt-quoted-measure (definition part)
   "Warn if the form in PART, (name form), is quoted: the measure is that form then."
-  (when (typep (second part) '(cons (eql quote) (cons cons null)))
-    (let ((*print-case* :downcase) (*print-pretty* nil))
-      (doubt-definition "~A: the measure ~(~A~) is quoted, and so no value. Write the form alone: ~
-                         ~S." definition (first part) (second (second part))))))
+  (let ((name (quoted-name (second part))))
+    (when (or (typep (second part) '(cons (eql quote) (cons cons null)))
+              (and name (fboundp name)))
+      (let ((*print-case* :downcase) (*print-pretty* nil))
+        (doubt-definition "~A: the measure ~(~A~) is quoted, and so no value. Write the form ~
+                           alone: ~:[~S~;(~S ...)~]."
+                          definition (first part) name (or name (second (second part))))))))
 
 (defun check-whole (definition name clauses)
   "Signal MALFORMED-DEFINITION unless CLAUSES make an experiment."

@@ -164,15 +164,28 @@ end, or that no tick has passed; VALUES are those of :run."
                    (or (stranded-plan-text) (unfinished-text values) (no-ticks-text)))))
     (when text (add-error result text))))
 
+(defun note-plans-passed-over (result values)
+  "Enter into RESULT, if it is a success, which plan failed though VALUES, those of :run, do not say
+so: its failure is true, and may have been taken for a success."
+  (let ((failed (remove (first values) *failed-plans* :key #'task-result)))
+    (when (and failed (success-p (result-outcome result)))
+      (add-error result
+                 (format nil "The plan ~A failed (~A), and :run went on. The second value of ~
+                              RUN-PLAN says how a plan ended; the first is the failure, which is ~
+                              true."
+                         (task-label (first (last failed)))
+                         (failure-text (task-result (first (last failed)))))))))
+
 (defun conduct (experiment result)
   "Do in the current simulation what EXPERIMENT says, and enter into RESULT what comes of it."
   (let* ((condition (result-condition result))
-         (*trial-values* '())
+         (*trial-values* '()) (*failed-plans* '())
          (values (run-noting-failures experiment condition result)))
     (multiple-value-bind (outcome reason) (outcome-so-far experiment values)
       (setf (values (result-outcome result) (result-reason result))
             (decide experiment condition outcome reason))
       (add-error result (error-in-plan values))
+      (note-plans-passed-over result values)
       (note-unfinished result values)
       (note-series result)
       (measure experiment result))))
