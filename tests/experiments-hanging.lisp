@@ -74,3 +74,19 @@
       (is (search "trial 3 of all, seed 1003, has been under way for 60 s" (told 10 20 60)))
       (is (null (told 10 200 60)))
       (is (null (told 10 20 5))))))
+
+;;; Functions that trials put in the place of others.
+
+(defun often-replaced () -1)
+
+(test functions.that-trials-replace-are-noticed
+  (let ((before #'often-replaced))
+    (unwind-protect
+         (is-true (has-words-p (refusal-of-trials
+                                1 '(progn (often-replaced)
+                                    (setf (symbol-function 'often-replaced)
+                                          (let ((k (random 9))) (lambda () k)))
+                                    t))
+                               "often-replaced"))
+      (setf (symbol-function 'often-replaced) before)))
+  (is (null (refusal-of-trials 1 '(eql -1 (often-replaced))))))
