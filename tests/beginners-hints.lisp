@@ -150,6 +150,22 @@
     (dolist (form '(#'arrived-here (rider-of) (next-one) (arrived-here 1) nil))
       (is (string= "" (told form))))))
 
+(test commands.whose-values-are-used-are-warned-of
+  (flet ((told (form) (warning-about `(lambda () (run:with-simulation (rover) ,form)))))
+    (dolist (form '((let ((v (command:robot-turn rover 1))) (length v))
+                    (if (command:robot-turn rover 1) 1 2)
+                    (progn (dolist (x (command:camera-view (robot:robot-camera rover 0))) x))))
+      (is-true (has-words-p (told form) "returns nothing: it only begins the command")))
+    (dolist (form '((progn (command:robot-turn rover 1) (run:run-ticks 3))
+                    (let ((v 3)) (command:robot-turn rover v))))
+      (is (string= "" (told form))))))
+
+(test rpl-init-robot.in-a-plan-says-that-it-ends-that
+  (is-true (has-words-p (rover-writes ()
+                          (driver:run-plan (plan-of (driver:rpl-init-robot rover)
+                                                    (rpl:wait-time 3))))
+                        "ends the plan" "Call it before the plan, not in it")))
+
 (test manipulations.say-that-no-method-is-for-the-things
   (with-own-definitions
     (eval '(command:defmanipulation paint-over (pot - ((:kind :pot)) :by hand) () t))

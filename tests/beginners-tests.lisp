@@ -299,6 +299,15 @@
       (is (not (search "went on" (told `(,fails)))))
       (is (not (search "went on" (told '((driver:run-plan 'only-waits) t))))))))
 
+(test experiments.tell-of-successes-without-ticks
+  (with-own-definitions
+    (eval '(experiment:defexperiment idle (:robots rover) (:run (command:robot-turn rover 1 nil))
+            (:success (zerop (run:simulation-tick)))))
+    (is-true (has-words-p (with-output-to-string (*standard-output*)
+                            (experiment:print-results
+                             (experiment:run-experiment 'idle :trials 1)))
+                          "No ticks have passed in the trial" "robot-turn"))))
+
 (test experiments.warn-of-quoted-functions
   (is-true (has-words-p (told-of-experiment ''turn-it) "Write the form alone: (turn-it)"))
   (is-true (has-words-p (warning-about '(experiment:defexperiment idle (:robots rover) (:run t)

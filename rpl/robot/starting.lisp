@@ -60,18 +60,21 @@ simulation inside of a live one has only inherited is left alone."
       (and (live-p simulation) (live-p (interface-simulation interface)))))
 
 (defun tell-of-ended (interface robot)
-  "Say once if plans of INTERFACE end, as plans are to drive ROBOT, another one of the same run."
-  (let ((tasks (remove-if #'task-over-p (tasks-of interface))) (before (interface-robot interface)))
+  "Say once if plans of INTERFACE end, as plans are to drive ROBOT, another one of the same run, or
+as one of them says so itself."
+  (let* ((tasks (remove-if #'task-over-p (tasks-of interface))) (before (interface-robot interface))
+         (same-p (eq robot before)))
     (when (and tasks
                (interface-valid-p interface)
-               (not (eq robot before))
+               (or (not same-p) (participant-around-p interface))
                (eq (interface-simulation interface) (robot-simulation robot)))
       (warn-once (list :ended-by (robot-name before) (robot-name robot))
                  (robot-world robot)
-                 (format nil "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A, as plans drive ~
-                              one robot at a time. Let them end first, as (run-plan ...) does, ~
-                              or drive one of the robots by commands and continuations."
-                         robot (length tasks) (mapcar #'task-label tasks) before)))))
+                 (format nil "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A~:[, as plans ~
+                              drive one robot at a time. Let them end first, as (run-plan ...) ~
+                              does, or drive one of the robots by commands and continuations~;. ~
+                              Call it before the plan, not in it~]."
+                         robot (length tasks) (mapcar #'task-label tasks) before same-p)))))
 
 ;; What is bound to *TRACE-PLANS* around a doing is gone when that is done again.
 (defun do-traced (traced-p function &rest arguments)

@@ -333,6 +333,7 @@ bring about."
   (let* ((form-p (robots-form-p robots environment))
          (robots (if form-p robots (unquoted robots)))
          (variables (if form-p '() (variables-among robots))))
+    (doubt-values-of-commands body)
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))
                              ,@body)

@@ -159,9 +159,10 @@ say how a plan went is no success if a plan that was begun waits for what can ne
 
 (defun note-unfinished (result values)
   "Enter into RESULT, unless it is a success, which plan that was begun waits in vain, or did not
-end, or that no tick has passed; VALUES are those of :run."
-  (let ((text (and (not (success-p (result-outcome result)))
-                   (or (stranded-plan-text) (unfinished-text values) (no-ticks-text)))))
+end; or, in any case, that no tick has passed for what was asked for. VALUES are those of :run."
+  (let ((text (or (and (not (success-p (result-outcome result)))
+                       (or (stranded-plan-text) (unfinished-text values)))
+                  (no-ticks-text))))
     (when text (add-error result text))))
 
 (defun note-plans-passed-over (result values)
