@@ -90,3 +90,12 @@
                                "often-replaced"))
       (setf (symbol-function 'often-replaced) before)))
   (is (null (refusal-of-trials 1 '(eql -1 (often-replaced))))))
+
+(let ((kept nil))
+  (defun kept-here (value) (or kept (setf kept value)))
+  (defun forget-kept () (setf kept nil)))
+
+(test functions.that-keep-what-trials-roll-are-noticed
+  (forget-kept)
+  (is-true (has-words-p (refusal-of-trials 1 '(kept-here (random 9.0))) "kept-here"))
+  (is (null (refusal-of-trials 1 '(kept-here (random 9.0)))) "what it has now, it has for all"))

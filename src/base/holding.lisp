@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.base)
 
-(export '(holds-p))
+(export '(holds-p closed-over))
 
 ;;; For messages that name where something was found. What belongs to a run, such as tasks and
 ;;; robots, is not looked into: from there one gets everywhere.
@@ -35,3 +35,9 @@
                (unless (or (typep each '(or symbol number character)) (gethash each seen))
                  (setf (gethash each seen) t
                        work (append (contents-of each) work)))))))
+
+(defun closed-over (function)
+  "Return a list of what FUNCTION, if it is a closure, has closed over: of variables, their values."
+  (when (closure-p function)
+    (loop for value in (closure-values function)
+          collect (if (and (cell-p value) (not (exit-cell-p value))) (cell-value value) value))))

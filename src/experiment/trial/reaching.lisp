@@ -53,18 +53,14 @@ variables; such lists for what variables hold weakly."
         (note-file file written reach)
         (note-part :typed (safe-text name) (typed-number function) reach))))
 
-(defun plain-value-p (value)
-  (typep value '(or number string symbol character)))
-
-(defun note-replacement (function name reach)
-  "Note FUNCTION if it is called NAME and was not defined so, but put there, as by a trial: the file
-that it is from does not say which it is."
-  (let ((own-name (nth-value 2 (function-lambda-expression function))))
-    (unless (or (typep function 'generic-function) (eq name own-name))
-      (note-part :function (qualified name)
-                 (data-number (and (closure-p function)
-                                   (remove-if-not #'plain-value-p (closure-values function))))
-                 reach))))
+(defun note-function (function name reach)
+  "Note FUNCTION, which is called NAME, if its file does not say all: it was not defined so, but put
+there, as by a trial, or it has closed over something."
+  (let ((own-name (nth-value 2 (function-lambda-expression function)))
+        (values (closed-over function)))
+    (unless (or (typep function 'generic-function)
+                (and (eq name own-name) (null values)))
+      (note-part :function (qualified name) (data-number values) reach))))
 
 (defun has-global-value-p (symbol)
   (ignore-errors (global-value symbol) t))
@@ -137,7 +133,7 @@ empty table count as no data, since they often stand where a table or structure 
     (cond ((special-operator-p symbol))
           ((macro-function symbol) (visit-function (macro-function symbol) symbol reach))
           ((and (fboundp symbol) (notany #'procedure-p (mapcar #'entry-object entries)))
-           (note-replacement (fdefinition symbol) symbol reach)
+           (note-function (fdefinition symbol) symbol reach)
            (visit-function (fdefinition symbol) symbol reach)))
     (dolist (method (methods-on-class symbol)) (visit-function (method-code method) symbol reach))
     (loop for (file written) in (files-besides-functions symbol)
