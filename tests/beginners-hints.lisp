@@ -196,6 +196,13 @@
                           (has-words-p (base:message-text message) "The second value of RUN-PLAN")))
                    (base:take-messages)))))
 
+(test handlers.of-condition-types-as-keywords-are-told-of
+  (is-true (has-words-p (rover-writes ()
+                          (driver:run-plan
+                           (plan-of (rpl:handle-failure ((:deadline-missed () (return 1)))
+                                      (rpl:with-deadline (3) (rpl:wait-time 9))))))
+                        "a clause is for :deadline-missed, but the class is" "deadline-missed")))
+
 (test handlers.with-other-endings-are-told-of
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (rpl:handle-failure ((:stucked () (return 1)))

@@ -64,16 +64,19 @@
              append (remove-if-not #'symbolp (ensure-list type)))))
 
 (defun slip-for-p (type class)
-  "True if TYPE, a symbol that is not called like CLASS, may be meant for it: they differ in more
-than in digits, perhaps by an ending as in STUCK and STUCKED."
+  "True if TYPE, a symbol that does not stand for CLASS, may be meant for it: they differ in more
+than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keyword."
   (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
          (ending-p (short long)
            (and (<= 4 (length short))
                 (<= (length long) (+ 3 (length short)))
                 (starts-with-subseq short long :test #'char-equal))))
     (let ((own (letters type)) (other (letters class)))
-      (and (string-not-equal own other)
-           (or (resembles-p type class) (ending-p own other) (ending-p other own))))))
+      (if (string-equal type class)
+          ;; A keyword does not mean a condition type.
+          (not (eq (keywordp type) (keywordp class)))
+          (and (string-not-equal own other)
+               (or (resembles-p type class) (ending-p own other) (ending-p other own)))))))
 
 (defun missed-clause (failure)
   "Return what a clause around FAILURE is for that was most likely meant for its class, which is the
