@@ -69,7 +69,7 @@
                  (:file "world") (:file "saying") (:file "reading-attributes") (:file "access")
                  (:file "kickers") (:file "reading-ahead") (:file "gaps") (:file "kicker-groups")
                  (:file "attaching") (:file "failing-kickers") (:file "placing") (:file "setting-attributes")
-                 (:file "recipes") (:file "undeclared") (:file "forking")
+                 (:file "recipes") (:file "idle-kickers") (:file "undeclared") (:file "forking")
                  (:file "residents") (:file "new-thing") (:file "kicking")
                  (:file "map-things") (:file "defmap")
                  (:file "soundness") (:file "facts")))

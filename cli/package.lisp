@@ -21,19 +21,17 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:stream-read-char-no-hang #:stream-listen #:stream-clear-input)
   (:import-from :ars-magna.rpl
                 #:task-p #:task-name #:task-parent #:task-serial #:task-state #:task-result
-                #:task-over-p
-                #:task-children #:task-awaits #:plan-failure #:failure-class #:failure-data
+                #:task-over-p #:plan-failure #:failure-class #:failure-data
                 #:report-failure #:*plan-end-hooks* #:plan-deadlocked-p #:post-call
                 #:stop-plan
                 #:find-procedure #:all-procedures #:called-procedures #:procedure-name
-                #:procedure-lambda-list #:task-runner #:print-tasks #:task-numbered
+                #:procedure-lambda-list #:print-tasks #:task-numbered
                 #:task-label #:all-tasks #:step-task #:start-trace #:stop-trace
                 #:plan-break-p #:why)
   (:import-from :ars-magna.rpl.tasks
                 #:task-label #:call-with-care #:misfit #:shape-of #:shape-text
                 #:waiting-parts #:text-of-waits #:advice-on-stillness)
-  (:import-from :ars-magna.rpl-robot
-                #:rpl-init-robot #:rpl-robot #:rpl-runner
+  (:import-from :ars-magna.rpl-robot #:rpl-runner
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use #:*robot-to-drive* #:note-robot-commanded)
   (:import-from :ars-magna.rpl-robot #:*trace-plans*)

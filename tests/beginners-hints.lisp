@@ -153,6 +153,7 @@
 (test commands.whose-values-are-used-are-warned-of
   (flet ((told (form) (warning-about `(lambda () (run:with-simulation (rover) ,form)))))
     (dolist (form '((let ((v (command:robot-turn rover 1))) (length v))
+                    (case (command:robot-turn rover 1) (1 2))
                     (if (command:robot-turn rover 1) 1 2)
                     (progn (dolist (x (command:camera-view (robot:robot-camera rover 0))) x))))
       (is-true (has-words-p (told form) "returns nothing: it only begins the command")))

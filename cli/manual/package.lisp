@@ -8,7 +8,7 @@ reference of what is defined in this Lisp.")
   (:import-from :ars-magna.world
                 #:attribute-name #:attribute-kind #:attribute-domain #:attribute-success
                 #:attribute-base #:attribute-max-mult #:attribute-noticed #:attribute-supporters
-                #:substance-name #:substance-parameter #:all-place-types #:place-type-name
+                #:substance-parameter
                 #:place-type-rank #:place-type-confusion #:place-type-invisible-p
                 #:kicker-prob #:map-width #:map-height #:world-map #:map-name)
   (:import-from :ars-magna.robot
@@ -20,7 +20,7 @@ reference of what is defined in this Lisp.")
                 #:spec-name #:spec-type #:spec-text #:error-code-keyword #:error-code-text
                 #:error-code-meaning #:error-code-remedy
                 #:manipulation-name #:manipulation-methods #:method-shape)
-  (:import-from :ars-magna.rpl #:all-constructs #:find-procedure #:procedure-lambda-list)
+  (:import-from :ars-magna.rpl #:all-constructs #:procedure-lambda-list)
   (:import-from :ars-magna.rpl-robot #:all-fluent-variables)
   (:import-from :ars-magna.experiment #:experiment-documentation)
   (:import-from :ars-magna.cli

@@ -12,10 +12,9 @@
 
 (defun tests-in (form)
   "Return the tests that FORM, a call in a plan's text, makes of values."
-  (cond ((not (proper-list-p form)) '())
-        ((operator-in-p form '("IF" "WHEN" "UNLESS")) (list (second form)))
-        ((operator-in-p form '("COND")) (mapcar #'first (remove-if #'atom (rest form))))
-        ((operator-in-p form '("LOOP" "N-TIMES")) (tests-in-loop form))))
+  (if (and (operator-in-p form '("LOOP" "N-TIMES")) (proper-list-p form))
+      (tests-in-loop form)
+      (tested-in form)))
 
 ;;; Pulses take no time: between two waits nobody finds them true.
 
@@ -67,27 +66,22 @@
 
 ;;; Commands return nothing.
 
-(defun values-used-in (form)
+(defun values-used-in-plan (form)
   "Return the forms whose values FORM, a call in a plan's text, uses."
   (let ((name (first form)))
     (cond ((not (and (symbolp name) (proper-list-p form))) '())
-          ((operator-in-p form '("LET" "LET*"))
-           (loop for binding in (and (proper-list-p (second form)) (second form))
-                 when (typep binding '(cons t (cons t null))) collect (second binding)))
-          ((operator-in-p form '("SETQ" "SETF"))
-           (loop for (nil value) on (rest form) by #'cddr collect value))
-          ((operator-in-p form '("CASE" "ECASE" "WAIT-FOR" "WHENEVER" "WAIT-UNTIL"))
-           (list (second form)))
+          ((operator-in-p form '("WAIT-FOR" "WHENEVER" "WAIT-UNTIL")) (list (second form)))
           ((operator-in-p form '("OUT")) (rest form))
           ((and (fboundp name) (not (macro-function name)) (not (special-operator-p name)))
            (rest form))
-          (t (tests-in form)))))
+          (t (append (values-used-in form)
+                     (and (operator-in-p form '("LOOP" "N-TIMES")) (tests-in-loop form)))))))
 
 (defun command-used (form)
   "Return the call of a command whose value FORM, a call in a plan's text, uses; or NIL."
   (find-if (lambda (used)
              (and (consp used) (proper-list-p used) (plan-function-p (first used))))
-           (values-used-in form)))
+           (values-used-in-plan form)))
 
 (defun doubt-command-used (form)
   "Warn if FORM, a call in a plan's text, uses the value of one of the robot's commands."

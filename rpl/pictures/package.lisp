@@ -13,7 +13,7 @@ canvas.")
                 #:image-of-tasks #:task-image #:task-image-serial #:task-image-depth
                 #:task-image-look #:task-image-state #:task-image-name #:task-image-form
                 #:task-image-calls
-                #:task-image-awaits #:task-image-since #:task-image-path #:task-image-parts
+                #:task-image-awaits #:task-image-since #:task-image-parts
                 #:task-image-folded-p #:tree-image-tick #:tree-image-rows #:tree-image-plans
                 #:tree-image-tasks)
   (:import-from :ars-magna.rpl-robot #:call-with-plans-in-use)

@@ -5,7 +5,7 @@
 that a robot believes in, and choosing by that.")
   (:use :cl :ars-magna.base :ars-magna.rpl.language :ars-magna.rpl-robot)
   (:import-from :ars-magna.statistics #:wilson-interval)
-  (:import-from :ars-magna.world #:*world* #:map-name #:world-map)
+  (:import-from :ars-magna.world #:*world*)
   (:import-from :ars-magna.time #:*simulation* #:current-simulation #:secluded)
   (:import-from :ars-magna.robot #:robot-name)
   (:import-from :ars-magna.run #:simulation-messages
@@ -15,11 +15,10 @@ that a robot believes in, and choosing by that.")
   (:import-from :ars-magna.rpl
                 #:*break-on-plan-failures* #:*runaway-limit* #:*step-plans* #:+parked+ #:enter
                 #:environment
-                #:awaited-text #:count-steps #:check-arguments #:failure-class #:failure-of
-                #:failure-text
+                #:awaited-text #:count-steps #:check-arguments #:failure-class
                 #:find-procedure
                 #:fluent-value #:whole-form-text #:frame #:frame-up #:lisp-failure
-                #:lisp-failure-condition #:node #:park
+                #:lisp-failure-condition #:park
                 #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity

@@ -31,7 +31,7 @@
                 #:fork-simulation #:refuse-fork
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
                 #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*
-                #:counterpart-here #:counterpart #:latest #:let-fork-be-kept #:note-doing
+                #:counterpart-here #:latest #:let-fork-be-kept #:note-doing
                 #:simulation-past #:simulation-journal #:remark #:unremark)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:declare-pulse
@@ -53,10 +53,10 @@
                 #:fluent-text #:note-twin #:has-twin-p #:twin-text #:pulse-of-command
                 #:last-command #:last-pulse #:endless-advice
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:operator-called-p
-                #:task-awaiting #:task-since
+                #:task-awaiting
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure
-                #:plan-trace #:write-trace #:valve #:make-valve #:valve-losers #:note-command
+                #:plan-trace #:valve #:make-valve #:valve-losers #:note-command
                 #:with-answer #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks*
                 #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p

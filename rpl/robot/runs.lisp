@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*failed-plans* ensure-interface begin-in note-robot-commanded pass-until how-over
+(export '(*plan-failed* ensure-interface begin-in note-robot-commanded pass-until how-over
           plan-ending-p))
 
 (addition *plan-limit*)
@@ -187,14 +187,14 @@ but somebody outside can let plans go on, say so, once."
   (loop for tasks = (interface-awaited interface)
         until (swap-if (interface-awaited interface) tasks (remove task tasks :test #'eq))))
 
-(defvar *failed-plans* :unbound
-  "The tasks of plans that RUN-PLAN ran and that failed, the latest first, where a trial binds it.")
+(defvar *plan-failed* (constantly nil)
+  "A function of the task of a plan that RUN-PLAN ran and that failed; a trial binds it.")
 
 ;; A failure is true, so a program that only asks whether there is a value takes it for success.
 (defun tell-of-failure (interface task)
   "Say once for each plan of a run that TASK, which RUN-PLAN ran for a program, failed."
   (let ((simulation (interface-simulation interface)))
-    (when (listp *failed-plans*) (push task *failed-plans*))
+    (funcall *plan-failed* task)
     (unless (or *asker*
                 (typep (task-result task) 'lisp-failure) ; an error is reported anyway
                 (message-queue-listener (simulation-messages simulation))

@@ -5,7 +5,7 @@
 bordeaux-threads, closer-mop and SBCL's documented packages so that no other layer has to.")
   (:use :cl :ars-magna.host)
   (:import-from :alexandria
-                #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
+                #:clamp #:ensure-list #:once-only #:parse-body #:removef
                 #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
                 #:read-file-into-string #:starts-with-subseq #:ends-with
                 #:ends-with-subseq #:define-constant #:proper-list-p

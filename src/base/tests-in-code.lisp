@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.base)
 
-(export '(*test-doubt* map-calls map-comparisons code-doubt))
+(export '(*test-doubt* map-calls map-comparisons tested-in values-used-in code-doubt))
 
 ;; The layer that knows fluents sets it.
 (defvar *test-doubt* (constantly nil)
@@ -58,6 +58,33 @@ that compares them."
                (multiple-value-bind (words subject) (compared-words call)
                  (dolist (word words) (funcall function subject word call))))
              form))
+
+;;; Where values are used.
+
+(defun lisp-call-p (form &rest names)
+  "True if FORM is a proper list that calls an operator, of no user's, that has one of NAMES."
+  (and (typep form '(cons symbol))
+       (proper-list-p form)
+       (not (users-symbol-p (first form)))
+       (member (first form) names :test #'string=)
+       t))
+
+(defun tested-in (form)
+  "Return the tests in FORM, a call, if that is a condition."
+  (cond ((lisp-call-p form "IF" "WHEN" "UNLESS") (list (second form)))
+        ((lisp-call-p form "COND") (mapcar #'first (remove-if #'atom (rest form))))))
+
+(defun values-used-in (form)
+  "Return the forms whose values FORM, a call, binds, stores or tests."
+  (cond ((lisp-call-p form "LET" "LET*")
+         (loop for binding in (and (proper-list-p (second form)) (second form))
+               when (typep binding '(cons t (cons t null))) collect (second binding)))
+        ((lisp-call-p form "SETQ" "SETF") (loop for (nil value) on (rest form) by #'cddr
+                                             collect value))
+        ((lisp-call-p form "DOLIST") (and (typep (second form) '(cons t (cons t)))
+                                       (list (second (second form)))))
+        ((lisp-call-p form "CASE" "ECASE") (list (second form)))
+        (t (tested-in form))))
 
 ;;; Error codes of commands.
 

@@ -23,8 +23,7 @@ McCLIM's symbols are written with their packages. Manual B.")
   (:import-from :ars-magna.faces #:editor-server)
   (:import-from :ars-magna.rpl-pictures
                 #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-page #:make-page
-                #:page-start #:page-end #:scale-for #:tick-at)
+                #:scale-for #:tick-at)
   (:import-from :ars-magna.cli
-                #:fundamental-character-output-stream #:fundamental-character-input-stream
-                #:stream-line-column #:stream-write-char #:stream-write-string
-                #:stream-read-char #:stream-read-line #:stream-unread-char))
+                #:fundamental-character-output-stream
+                #:stream-line-column #:stream-write-char #:stream-write-string))

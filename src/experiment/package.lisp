@@ -11,12 +11,11 @@ on with, on as many cores and machines as there are. Names lparallel.")
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history
                 #:open-display #:*display-opener*)
-  (:import-from :ars-magna.world #:map-width #:map-height #:world-dice-set)
+  (:import-from :ars-magna.world #:world-dice-set)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
                 #:custody-questions #:timeline-phase
                 #:seconds-now #:check-rate #:thinking-mode-p #:thinking-modes-text)
-  (:import-from :ars-magna.robot
-                #:robot-x #:robot-y #:find-blueprint #:all-blueprints #:blueprint-name
+  (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name
                 #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
                 #:find-procedure #:procedure #:procedure-p #:procedure-name #:procedure-source
@@ -24,5 +23,5 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl.fluents #:*realm* #:fork-realm #:fluent-p #:fluent-text)
-  (:import-from :ars-magna.rpl-robot #:*failed-plans* #:*plan-limit*
+  (:import-from :ars-magna.rpl-robot #:*plan-failed* #:*plan-limit*
                 #:*trace-plans* #:stranded-plan-text))

@@ -6,7 +6,7 @@ PGM or PNG: read as maps, written from maps, and the way between their metres an
 chipz.")
   (:use :cl :ars-magna.base)
   (:shadowing-import-from :ars-magna.world #:map)
-  (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-frame
+  (:import-from :ars-magna.world #:map-width #:map-height #:map-flags #:map-frame
                 #:map-substances #:map-substance-types #:map-parameters #:+wall+ #:find-map
                 #:defmap #:*substances* #:find-substance #:substance-name #:substance-parameter
                 #:bricks))

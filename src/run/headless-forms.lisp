@@ -18,24 +18,13 @@ or list of names."
                  (or (some #'consp (rest form))
                      (known-function-p head environment)))))))
 
-(defun value-used (form)
-  "Return the form in FORM, a call, whose value it uses, if that is the call of a command."
-  (flet ((command-p (form) (and (typep form '(cons symbol)) (get (first form) 'command-shape))))
-    (case (first form)
-      ((let let*) (loop for binding in (and (proper-list-p (second form)) (second form))
-                        when (and (typep binding '(cons t (cons t null)))
-                                  (command-p (second binding)))
-                          return (second binding)))
-      ((setf setq) (and (command-p (first (last form))) (first (last form))))
-      ((if when unless length first not) (and (command-p (second form)) (second form)))
-      (dolist (and (typep (second form) '(cons t (cons t)))
-                   (command-p (second (second form)))
-                   (second (second form)))))))
-
 (defun doubt-values-of-commands (body)
   "Warn of each place in BODY, that of a WITH-SIMULATION, that uses the value of a command."
   (map-calls (lambda (form)
-               (let ((call (value-used form)))
+               (let ((call (find-if (lambda (used)
+                                      (and (typep used '(cons symbol))
+                                           (get (first used) 'command-shape)))
+                                    (values-used-in form))))
                  (when call
                    (doubt-definition "~(~A~) returns nothing: it only begins the command. What ~
                                       comes of that is told to its continuation, when ticks have ~

@@ -109,8 +109,10 @@
 (declaim (inline test-holds-p))
 (defun test-holds-p (kicker test thing)
   "Return what TEST, that of KICKER, says of THING, and note it."
-  (cond ((funcall (the function test) thing) (setf (kicker-held kicker) t))
-        ((null (kicker-held kicker)) (setf (kicker-held kicker) :no) nil)))
+  (cond ((funcall (the function test) thing)
+         (or (eq t (kicker-held kicker)) (setf (kicker-held kicker) t)))
+        ;; Another thread may find it true in this moment.
+        ((null (kicker-held kicker)) (compare-and-swap (kicker-held kicker) nil :no) nil)))
 
 (defun run-member (kicker thing)
   "Run the body of KICKER for THING, unless its test says no."

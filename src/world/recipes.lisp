@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(make-world reset-world doubt-idle-kickers recipe make-recipe))
+(export '(make-world reset-world recipe make-recipe))
 
 ;;; A recipe is fixed when it is written: a prototype's attributes and contents are copied then,
 ;;; so that a world made of it later does not depend on what became of the prototype. Contents
@@ -78,70 +78,6 @@ NIL (reading 63)."
    (loop for recipe in recipes
          append (mapcar #'first (recipe-attributes recipe))
          append (attribute-names (recipe-contents recipe)))))
-
-;;; Kickers that nothing has.
-
-(defun in-recipe-p (kicker recipes)
-  "True if RECIPES, or those in them, put KICKER on things."
-  (loop for recipe in recipes
-        thereis (or (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil)))
-                    (in-recipe-p kicker (recipe-contents recipe)))))
-
-(defun code-names-p (name package)
-  "True if the code of a function whose name is in PACKAGE, or of another kicker, has NAME, that of
-a kicker, in it."
-  (flet ((names-it-p (function) (member name (code-references function))))
-    (or (loop for kicker in (all-kickers)
-                thereis (and (not (eq name (kicker-name kicker)))
-                             (names-it-p (kicker-body kicker))))
-        (and package
-             (do-symbols (symbol package)
-               (when (and (users-symbol-p symbol) (fboundp symbol)
-                          (not (macro-function symbol))
-                          (names-it-p (fdefinition symbol)))
-                 (return t)))))))
-
-(defun perhaps-used-p (entry world)
-  "True if a program may put the kicker of ENTRY on things of WORLD: a function names it, or it is
-from another file than the map, or named there more than once."
-  (let ((name (entry-name entry)) (file (source-file (entry-source entry)))
-        (map-entry (lookup-entry (map-name (world-map world)) *maps*)))
-    (if file
-        (not (and map-entry
-                  (equal file (source-file (entry-source map-entry)))
-                  (eql 1 (count-in-file (name-string name) file))))
-        (code-names-p name (symbol-package name)))))
-
-(defun doubt-unused-kicker (entry world)
-  "Say if the kicker of ENTRY is new, no program seems to use it, and nothing in WORLD has it, nor
-will by any map."
-  (let ((kicker (entry-object entry)))
-    (unless (or (shiftf (kicker-known-p kicker) t)
-                (perhaps-used-p entry world)
-                (some (lambda (map) (in-recipe-p kicker (map-things map))) (all-maps)))
-      (warn-once (list :kicker (kicker-name kicker)) world
-                 (format nil "The kicker ~(~A~) is on no thing, so it never ran. Put it on one: ~
-                              (obj (NAME :kickers (~:*~(~A~))) ...) in the map, or ~
-                              (set-kicker THING '~:*~(~A~))."
-                         (kicker-name kicker))))))
-
-(defun doubt-untrue-kicker (kicker world)
-  "Say if the test of KICKER, on a thing of WORLD, was never true, and asks for what nothing has."
-  (let ((key (and (eq :no (kicker-held kicker))
-                  (find-if-not (lambda (key) (or (attribute-of key) (carried-p key world)))
-                               (kicker-asked kicker)))))
-    (when key
-      (warn-once (list :kicker (kicker-name kicker)) world
-                 (format nil "The :test of the kicker ~(~A~) was never true. It asks for ~(~S~), ~
-                              which no thing here has, nor is it declared."
-                         (kicker-name kicker) key)))))
-
-(defun doubt-idle-kickers (world)
-  "Say, when a run in WORLD ends, which kickers were most likely meant to do something in it, and
-cannot."
-  (dolist (entry (registry-entries *kickers*))
-    (doubt-unused-kicker entry world)
-    (doubt-untrue-kicker (entry-object entry) world)))
 
 ;;; Worlds.
 

@@ -165,28 +165,29 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
                   (no-ticks-text))))
     (when text (add-error result text))))
 
-(defun note-plans-passed-over (result values)
-  "Enter into RESULT, if it is a success, which plan failed though VALUES, those of :run, do not say
-so: its failure is true, and may have been taken for a success."
-  (let ((failed (remove (first values) *failed-plans* :key #'task-result)))
-    (when (and failed (success-p (result-outcome result)))
+(defun note-plans-passed-over (result values failed)
+  "Enter into RESULT, if it is a success, which of the tasks FAILED failed though VALUES, those of
+:run, do not say so: its failure is true, and may have been taken for a success."
+  (let ((task (find (first values) failed :key #'task-result :test-not #'eq)))
+    (when (and task (success-p (result-outcome result)))
       (add-error result
                  (format nil "The plan ~A failed (~A), and :run went on. The second value of ~
                               RUN-PLAN says how a plan ended; the first is the failure, which is ~
                               true."
-                         (task-label (first (last failed)))
-                         (failure-text (task-result (first (last failed)))))))))
+                         (task-label task) (failure-text (task-result task)))))))
 
 (defun conduct (experiment result)
   "Do in the current simulation what EXPERIMENT says, and enter into RESULT what comes of it."
   (let* ((condition (result-condition result))
-         (*trial-values* '()) (*failed-plans* '())
-         (values (run-noting-failures experiment condition result)))
+         (*trial-values* '())
+         (failed '())
+         (values (let ((*plan-failed* (lambda (task) (push task failed))))
+                   (run-noting-failures experiment condition result))))
     (multiple-value-bind (outcome reason) (outcome-so-far experiment values)
       (setf (values (result-outcome result) (result-reason result))
             (decide experiment condition outcome reason))
       (add-error result (error-in-plan values))
-      (note-plans-passed-over result values)
+      (note-plans-passed-over result values (reverse failed))
       (note-unfinished result values)
       (note-series result)
       (measure experiment result))))
