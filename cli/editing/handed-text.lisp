@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(make-handed-text press-key typed-ahead take-waiting))
+(export '(make-handed-text press-key typed-ahead))
 
 ;;; A window hands over keys, and shows the line on a console of its own. All else is as at a
 ;;; terminal: what keys do, the history, Tab. What the terminal does meanwhile is not touched.

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(take-waiting))
+
 ;;; A terminal that obeys nothing, such as a buffer of Emacs, edits lines itself.
 
 (defun obeying-terminal-p (stream)

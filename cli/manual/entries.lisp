@@ -19,8 +19,7 @@ it is, FILE where it is defined."
 
 (document-functions
   entry-name "Return what the entry is about, as people write it."
-  entry-chapter "Return the key of the chapter that the entry is in."
-  entry-symbol "Return the symbol that the entry is about, or NIL if it is about none.")
+  entry-chapter "Return the key of the chapter that the entry is in.")
 
 (defparameter *chapters*
   '((:commands "Commands" "What robots, cameras, hands and storage bins can be told to do.")

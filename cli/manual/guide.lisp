@@ -12,10 +12,6 @@ HTML of its Markdown, its headings with anchors."
   (title "" :type string :read-only t)
   (tokens '() :type list :read-only t))
 
-(document-functions
-  page-source "Return the name in the project of the Markdown that the page is made of."
-  page-file "Return the name of the page's HTML file.")
-
 (defparameter *known-pages*
   '(("README.md" "introduction.html" "Introduction" :learning)
     ("worlds/tutorial/README.md" "tutorial.html" "Tutorial" :learning)

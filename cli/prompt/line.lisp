@@ -32,10 +32,7 @@ characters up to the next blank: :TOKEN, or what they stand for, such as :FILE (
 (document-functions
   line-name "Return what the line command is called, in upper case."
   line-parameters "Return the list of the line command's arguments."
-  line-sentence "Return the sentence that says what the line command does."
-  line-full-name "Return the full name of the function that the line command stands for, or NIL."
   line-family "Return where HELP lists the line command, a keyword."
-  line-details "Return the lines that HELP adds about the line command, a list."
   line-action "Return the function of the session and the arguments that does it.")
 
 (defmethod print-object ((line line) stream)

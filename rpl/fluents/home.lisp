@@ -121,11 +121,6 @@ or else NIL. An interrupt may come at any point."
   (and (or (home-outbox home) (home-inbox home)) t))
 
 (document-functions
-  home-on-post "Return the function that is called after each post, in the posting thread."
-  make-backlog "Return an empty backlog, which grows as needed."
-  home-attended-p "Return the function that says whether a thread will hear what is posted."
   home-born "Return a number that is greater for homes that were made later. Can be set."
   home-closed-p "True if the home hears nothing any more. Can be set."
-  home-on-change "Return the function that is told of changes, or NIL. Can be set."
-  home-wrapper "Return the function that is given what is posted, or NIL. Can be set."
-  home-backlog "Return the derived fluents that are still to be computed.")
+  home-on-change "Return the function that is told of changes, or NIL. Can be set.")

@@ -2,8 +2,6 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(scope))
-
 ;;; A local function whose body waits becomes a procedure of its own, which only plans can call;
 ;;; others are Lisp functions, kept in an environment. One that may wait (see SUSPENSION) becomes a
 ;;; procedure unless its name is also used as #'name.

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.language)
 
 (export '(inner-scope scope scope-blocks scope-retry single-scope variable-scope scope-environment
-          scope-variables))
+          scope-variables scope))
 
 ;;; Variables that a plan binds live in environments, vectors linked by element 0. A leaf is a Lisp
 ;;; function of the environment at its place; within it each visible variable is a symbol macro for

@@ -20,7 +20,6 @@
   (folded-p nil :type boolean :read-only t))
 
 (document-functions
-  fold-mark-p "True of marks that fold the parts of tasks away."
   fold-mark-serial "Return the number of the task whose parts a mark folds away.")
 
 (defmethod subject-title ((mark fold-mark))

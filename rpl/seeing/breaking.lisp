@@ -21,8 +21,7 @@ step."))
   (typep object 'plan-break))
 
 (document-functions
-  plan-break-task "Return the task that stopped."
-  plan-break-frame "Return the frame of the task that it stopped at.")
+  plan-break-task "Return the task that stopped.")
 
 (defparameter *longest-stack* 12 "How many expressions of a plan a break shows at most.")
 

@@ -38,7 +38,6 @@ parts, PLANS how many plans there are, TASKS how many tasks in all."
   (tasks 0 :type fixnum :read-only t))
 
 (document-functions
-  task-image-p "True of images of tasks."
   task-image-serial "Return the number of the task."
   task-image-depth "Return of how many tasks the task is part."
   task-image-look "Return how the task is, as a keyword: :running, :waiting, :blocked, :cleaning,
@@ -53,7 +52,6 @@ first; of many the innermost."
   task-image-path "Return the labels of the tasks from the top of the plan to the task."
   task-image-parts "Return how many tasks the task consists of."
   task-image-folded-p "True if the parts of the task are folded away."
-  tree-image-p "True of images of trees of tasks."
   tree-image-tick "Return the tick of the image."
   tree-image-rows "Return the images of the tasks to be seen, each before its parts."
   tree-image-plans "Return how many plans are under way."

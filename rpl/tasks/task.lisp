@@ -113,7 +113,6 @@ what it waits for before it starts, VARIABLES what it has set."
  task-timer "Return the timer that ends the task's wait at the latest, or NIL."
  task-cleaning "Return the frames of the task that clean up, innermost first."
  task-uncounted-p "True if the task's steps are not charged for, as what it does has a price."
- task-blocked "Return by how many the task is blocked now."
  task-status-fluent "Return the fluent that follows the task's status, or NIL: see TASK-STATUS."
  task-older "Return the part of the same task that started before the task, or NIL."
  task-newest-child "Return that part of the task which started last of those not over, or NIL.")

@@ -50,7 +50,6 @@ more), :block or :unblock; :set or :pulse (a fluent), :command or :answer."
   trace-entry-value "Return what a task succeeded with; the value that a fluent was given; the error
 code of an answer; for a command the expressions under way, a list for the task and each that it is
 part of; the number of the task that a task is part of when it starts."
-  issue-p "True of records that a command was issued."
   issue-name "Return the plan function by which a command was issued."
   issue-arguments "Return the list of what it was called with."
   issue-task "Return the number of the task that issued the command."

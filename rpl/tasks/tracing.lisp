@@ -116,10 +116,8 @@ error code ERROR; note that in the trace."
 
 (document-functions
   runner-trace "Return the trace of the plan runner as it is kept, or NIL: see PLAN-TRACE."
-  runner-current "Return the task of the plan runner that runs, or ran last."
   runner-stepper "Return the function, of task and frame, that is called before each step, or NIL."
   frame-p "True of frames."
   frame-node "Return the node that the frame runs."
   node-names "Return the names of the variables that the node sees: a list for each level."
-  task-node "Return the node that the task was started to run."
   task-doomed "True if the task is to evaporate.")

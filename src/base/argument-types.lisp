@@ -3,8 +3,7 @@
 (in-package :ars-magna.base)
 
 (export '(define-argument-type argument-type-text argument-of-type-p find-argument-type
-          argument-type-like trouble-with perhaps-degrees-p degrees-advice check-of-type
-          find-operator))
+          argument-type-like trouble-with perhaps-degrees-p degrees-advice check-of-type))
 
 (defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
                           (:copier nil))

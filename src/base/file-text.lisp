@@ -14,7 +14,6 @@
   (:documentation "A file that is to be read as text has a line that is no text in UTF-8."))
 
 (document-functions
-  illegible-file-name "Return the path of the file that an ILLEGIBLE-FILE is about."
   illegible-file-line "Return the number of the first line that is no text in UTF-8.")
 
 (defun file-text (path)

@@ -61,8 +61,7 @@
   kind-slot-writer "Return the function of a value and an object that puts the value into the slot."
   kind-p "True of kinds."
   kind-name "Return the name of the kind, the type of its objects."
-  kind-slots "Return a list of what is known of the slots of the kind, inherited ones first."
-  kind-parent "Return the kind that the kind includes, or NIL.")
+  kind-slots "Return a list of what is known of the slots of the kind, inherited ones first.")
 
 (defmethod print-object ((kind object-kind) stream)
   (print-unreadable-object (kind stream :type t) (princ (kind-name kind) stream)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.base)
 
-(export '(operator-name operator-function define-operator check-operands))
+(export '(operator-name operator-function define-operator check-operands find-operator))
 
 ;;; An operator says what its arguments are, and how it is done again when a journal is replayed.
 ;;; Nothing else is ever called because a journal says so.
@@ -17,7 +17,6 @@ arguments or NIL; FUNCTION, of the arguments, asks it again."
   (function nil :type function :read-only t))
 
 (document-functions
-  operator-types "Return the names of the types of the operator's arguments."
   operator-name "Return the name of the operator, a symbol."
   operator-function "Return the function of the operator's arguments that asks it again.")
 

@@ -18,7 +18,7 @@
 
 (defvar *last-element* '("" 0 0 nil)
   "A list of text, start and number of which ELEMENT-BOUNDS was asked last, and where that began:
-elements of long lists are asked for one after the other.")
+elements of long lists are asked for one after the other. Replaced, never altered.")
 
 (defun element-bounds (text start number)
   "Return where in TEXT the element NUMBER, from 0, of the list that begins at START begins and

@@ -50,7 +50,6 @@ name, DOCUMENTATION what its author says there of what is defined."
   entry-name "Return the symbol that is defined."
   entry-object "Return what the name of the entry means."
   entry-source "Return the source of the entry's definition; see sources.lisp."
-  entry-documentation "Return what the author of the definition says of what it defines, or NIL."
   entry-digest "Return a number for the form of the entry's definition, or NIL."
   registry-entries "Return what is known of the definitions in REGISTRY, in order."
   registry-objects "Return what REGISTRY has, in order of definition; do not alter it.")

@@ -170,7 +170,8 @@ first, and its number."
   (and found (same-words-p found form)))
 
 (defvar *last-place* '(())
-  "A cons of what FORMS-BETWEEN returned and its tail that begins with what was found there last.")
+  "A cons of what FORMS-BETWEEN returned and its tail that begins with what was found there last. It
+is replaced, never altered: any thread may ask.")
 
 (defun form-position (text form start end)
   "Return where FORM, a list, stands in TEXT between START and END, or NIL. What is asked for one

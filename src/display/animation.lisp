@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(thing-image-thing *frame-hook* shown-end))
+(export '(*frame-hook* shown-end))
 
 ;;; An animated SVG draws the terrain once, and then the movers of each frame in a group that is
 ;;; visible in its turn. Programs that do not animate show the first frame. A page for browsers can

@@ -2,10 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(thing-image-attributes robot-image-angle robot-image-cameras robot-image-hands
-          robot-image-bins camera-image-track hand-image-contents hand-image-location
-          bin-image-closed-p bin-image-contents designator-image-number
-          designator-image-denotation snapshot-content display-content))
+(export '(snapshot-content display-content))
 
 ;;; Contents of one display that are EQUAL look the same. Images are made anew for each snapshot, so
 ;;; they are taken apart; things, maps and vectors of images stand for themselves.

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(draw-framed with-map-svg snapshot-part))
+(export '(draw-framed with-map-svg))
 
 ;;; The parts. The origin is that of the map.
 

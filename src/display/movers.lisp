@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(thing-image-x thing-image-y draw-ring robot-radius half-width))
+(export '(draw-ring robot-radius half-width))
 
 ;;; Things.
 

@@ -6,7 +6,11 @@
           snapshot-robots snapshot-robot thing-image robot-image robot-image-name robot-image-x
           robot-image-y robot-image-designators thing-image-location camera-image
           camera-image-index hand-image hand-image-index bin-image bin-image-index
-          designator-image in-part shown-part))
+          designator-image in-part shown-part thing-image-thing thing-image-attributes
+          robot-image-angle robot-image-cameras robot-image-hands robot-image-bins
+          camera-image-track hand-image-contents hand-image-location bin-image-closed-p
+          bin-image-contents designator-image-number designator-image-denotation snapshot-part
+          thing-image-x thing-image-y))
 
 ;;; A snapshot is made where the world stands still, and never changes; whoever draws, in whatever
 ;;; thread, draws from one. An image is what it knows of a thing, a robot or a part. The image of a

@@ -3,7 +3,8 @@
 (in-package :ars-magna.robot)
 
 (export '(all-blueprints blueprint-x blueprint-y blueprint blueprint-name blueprint-map
-          blueprint-angle blueprint-cameras blueprint-hands blueprint-bins blueprint-parts))
+          blueprint-angle blueprint-cameras blueprint-hands blueprint-bins blueprint-parts
+          *robots* find-blueprint))
 
 ;;; A blueprint is fixed once DEFROBOT has read it; any number of robots can be made by it, each in
 ;;; a world of its own.
@@ -22,7 +23,6 @@
   (parts '() :type list :read-only t))
 
 (document-functions
-  blueprint-p "True of what DEFROBOT said of a robot."
   blueprint-name "Return the name of the robot."
   blueprint-map "Return the name of the map that the robot starts in."
   blueprint-x "Return the x coordinate where the robot starts, in metres."

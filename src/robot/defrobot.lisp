@@ -2,8 +2,6 @@
 
 (in-package :ars-magna.robot)
 
-(export '(*robots*))
-
 (defun parse-camera (specification reject)
   (unless (and (listp specification) (= (length specification) 2)
                (finite-p (first specification)) (< 0 (first specification) (+ 2pi 1d-9))

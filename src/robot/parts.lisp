@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(robot-blueprint robot-retired robot-enders find-blueprint robot-drove-tick robot-failure
+(export '(robot-blueprint robot-retired robot-enders robot-drove-tick robot-failure
           robot-designators robot-resources robot-mind mind-p mind-robot parts-of-kind
           robot-ended-tracks part camera-last-view-tick camera-tracking unsettle hand-way-in
           ensure-timeline robot-placements robot-put-x robot-put-y robot-moved robot-turned-low

@@ -27,7 +27,6 @@ repeats the run up to there.")
   (full-p nil :type boolean))
 (addition journal-p journal-header journal-length journal-end)
 (document-functions
-  make-journal "Return an empty journal that begins with HEADER."
   journal-p "True of journals."
   journal-header "Return the plist with which the run began: map, robots, seed, parameters, and what
 the definitions were that decide it."

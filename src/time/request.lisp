@@ -19,9 +19,6 @@
   (:memory
    (asker nil t "a note of who asked for it")))
 
-(document-functions
-  make-request "Return a request for the operator called OPERATOR with the list ARGUMENTS.")
-
 (defgeneric perform (request timeline)
   (:documentation
    "Carry REQUEST out, at the start of a tick of TIMELINE, or when that ends for good. Called by

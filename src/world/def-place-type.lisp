@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(define-place-type *place-types*))
+(export '(define-place-type))
 
 ;;; The form is checked when it is expanded, the values of its options when it is evaluated; then
 ;;; its code is tried on small maps.

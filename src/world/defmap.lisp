@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(*substances* define-map))
+(export '(define-map))
 
 ;;; Clauses are carried out, one after another, when the form is evaluated: what is wrong with one
 ;;; is MALFORMED-DEFINITION, with restarts for it. When it is expanded they are only looked through

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(place-type-index))
+(export '(place-type-index *place-types*))
 
 ;;; Place types rank by when they were first defined, unless they say :BEFORE: a cell that could
 ;;; be of several is of the first. Redefining a type keeps its rank and changes the type itself:

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(substance substance-value-type substance-value-parameter))
+(export '(substance substance-value-type substance-value-parameter *substances*))
 
 ;;; A substance has a type, a symbol, and a parameter, a number, as when a camera views it
 ;;; (manual 2.1). Walls give both. The value of a thing's :substance is a number (the

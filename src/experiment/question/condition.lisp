@@ -39,8 +39,7 @@
   (weak-parts (make-hash-table :test 'equal) :type hash-table))
 
 (document-functions
-  condition-name "Return what the condition is called, a string."
-  condition-parameters "Return a vector of the values of all parameters, in their order.")
+  condition-name "Return what the condition is called, a string.")
 
 (defmethod print-object ((condition trial-condition) stream)
   (print-unreadable-object (condition stream)
