@@ -97,5 +97,6 @@
 
 (test functions.that-keep-what-trials-roll-are-noticed
   (forget-kept)
-  (is-true (has-words-p (refusal-of-trials 1 '(kept-here (random 9.0))) "kept-here"))
+  (is-true (has-words-p (refusal-of-trials 1 '(kept-here (random 9.0)))
+                        "kept-here" "in a variable, which each trial binds"))
   (is (null (refusal-of-trials 1 '(kept-here (random 9.0)))) "what it has now, it has for all"))

@@ -105,13 +105,21 @@ least one is tried, and others as long as less than SECONDS have passed."
                                                     directory))
                                   directory)))
 
+(defun shared-function-advice (before now)
+  "Return what to do if trials changed a function or what it has closed over, or NIL."
+  (let ((name (second (find :function (parts-changed before now) :key #'first))))
+    (and name
+         (format nil "If trials replace ~A, or leave something in it for others, keep that in a ~
+                      variable, which each trial binds." (without-package name)))))
+
 (defun reject-changed (before now condition directory)
   "Signal MISUSE: the parts BEFORE of what decides the rows of CONDITION in DIRECTORY are NOW
 others."
   (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
                ~A~] may be of either. ~@[~A ~]~@(~A~)."
               (changed-names before now) (and *directory-given-p* (native-name directory))
-              (shared-variable-advice before now condition)
+              (or (shared-variable-advice before now condition)
+                  (shared-function-advice before now))
               (way-to-begin-again)))
 
 (defun call-noting-refusal (function directory)
