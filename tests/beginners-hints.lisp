@@ -226,7 +226,7 @@ the kicker IN-USE, after the definitions FORMS; in the second run nothing is new
   (destructuring-bind (first second)
       (told-of-run '(world:defkicker in-use (thing) () nil)
                    '(world:defkicker left-over (thing) () nil))
-    (is-true (has-words-p first "The kicker left-over is on no thing"
+    (is-true (has-words-p first "No thing has the kicker left-over"
                           "(set-kicker THING 'left-over)"))
     (is (= 1 (count #\Newline first)))
     (is (string= "" second)))
@@ -247,7 +247,7 @@ the kicker IN-USE, after the definitions FORMS; in the second run nothing is new
 ~@[~A~]~%" more) path)
                (load path)
                (error-output (eval '(run:with-simulation (farmer) (run:run-ticks 3)))))))
-      (is-true (has-words-p (told nil) "The kicker prowl-about is on no thing"))
+      (is-true (has-words-p (told nil) "No thing has the kicker prowl-about"))
       (is (string= "" (told "(defun prowl (cat) (world:set-kicker cat 'prowl-about))"))))))
 
 (test kickers.whose-tests-ask-for-what-nothing-has-are-told
@@ -273,7 +273,7 @@ the kicker IN-USE, after the definitions FORMS; in the second run nothing is new
       (is-true (await (lambda () (plusp (run:simulation-tick simulation)))))
       (run:stop-simulator simulation)
       (is-true (some (lambda (message)
-                       (has-words-p (base:message-text message) "The kicker live-spare"))
+                       (has-words-p (base:message-text message) "the kicker live-spare"))
                      (base:take-messages))))))
 
 (test attributes.misspelt-in-equal-clauses-have-lines-of-their-own

@@ -28,7 +28,7 @@
 (defun attach-kicker (thing kicker)
   "Put KICKER on THING instead of any other of its name. Return the attachment."
   (detach-kicker thing (kicker-name kicker))
-  (setf (kicker-known-p kicker) t)
+  (setf (kicker-checked-p kicker) t)
   (let ((attachment (make-attachment kicker thing)))
     (setf (thing-kickers thing) (append (thing-kickers thing) (list attachment)))
     (when (and (thing-world thing) (thing-alive-p thing))

@@ -1,12 +1,11 @@
-;;;; idle-kickers.lisp -- kickers that do nothing, as their author should be told.
+;;;; idle-kickers.lisp -- warnings about kickers that can never run.
 
 (in-package :ars-magna.world)
 
 (export '(doubt-idle-kickers))
 
-;;; What is known of a kicker besides its definition is noted in it by all threads that run worlds:
-;;; each note is a single slot, which only becomes truer, so that the worst is a hint that comes
-;;; twice.
+;;; All threads that run worlds share kickers. The slots CHECKED-P and TEST-OUTCOME change in one
+;;; direction only, by single writes, so a race can at most repeat a warning.
 
 (defun in-recipe-p (kicker recipes)
   "True if RECIPES, or those in them, put KICKER on things."
@@ -43,25 +42,25 @@ from another file than the map, or named there more than once."
   "Say if the kicker of ENTRY is new, no program seems to use it, and nothing in WORLD has it, nor
 will by any map."
   (let ((kicker (entry-object entry)))
-    (unless (or (shiftf (kicker-known-p kicker) t)
+    (unless (or (shiftf (kicker-checked-p kicker) t)
                 (perhaps-used-p entry world)
                 (some (lambda (map) (in-recipe-p kicker (map-things map))) (all-maps)))
       (warn-once (list :kicker (kicker-name kicker)) world
-                 (format nil "The kicker ~(~A~) is on no thing, so it never ran. Put it on one: ~
+                 (format nil "No thing has the kicker ~(~A~), so it never ran. Attach it: ~
                               (obj (NAME :kickers (~:*~(~A~))) ...) in the map, or ~
                               (set-kicker THING '~:*~(~A~))."
                          (kicker-name kicker))))))
 
 (defun doubt-untrue-kicker (kicker world)
   "Say if KICKER is on a thing of WORLD, and its test was never true and asks for what nothing has."
-  (let ((key (and (eq :no (kicker-held kicker))
+  (let ((key (and (eq :no (kicker-test-outcome kicker))
                   (some-kicker (lambda (each) (eq each kicker)) world)
                   (find-if-not (lambda (key) (or (attribute-of key) (carried-p key world)))
-                               (kicker-asked kicker)))))
+                               (kicker-test-attributes kicker)))))
     (when key
       (warn-once (list :kicker (kicker-name kicker)) world
-                 (format nil "The :test of the kicker ~(~A~) was never true. It asks for ~(~S~), ~
-                              which no thing here has, nor is it declared."
+                 (format nil "The :test of the kicker ~(~A~) was never true. It reads ~(~S~), ~
+                              which no thing here has and no DEFATTRIBUTE declares."
                          (kicker-name kicker) key)))))
 
 (defun doubt-idle-kickers (world)

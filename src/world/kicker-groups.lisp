@@ -110,9 +110,11 @@
 (defun test-holds-p (kicker test thing)
   "Return what TEST, that of KICKER, says of THING, and note it."
   (cond ((funcall (the function test) thing)
-         (or (eq t (kicker-held kicker)) (setf (kicker-held kicker) t)))
+         (or (eq t (kicker-test-outcome kicker)) (setf (kicker-test-outcome kicker) t)))
         ;; Another thread may find it true in this moment.
-        ((null (kicker-held kicker)) (compare-and-swap (kicker-held kicker) nil :no) nil)))
+        ((null (kicker-test-outcome kicker))
+         (compare-and-swap (kicker-test-outcome kicker) nil :no)
+         nil)))
 
 (defun run-member (kicker thing)
   "Run the body of KICKER for THING, unless its test says no."

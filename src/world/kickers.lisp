@@ -14,12 +14,12 @@
   (prob 1d0 :type (double-float 0d0 1d0))
   (test nil :type (or null function))
   (body (constantly nil) :type function)
-  ;; The attributes that its test asks for, and what came of that: NIL if it was not evaluated, :NO
-  ;; if it was never true.
-  (asked '() :type list)
-  (held nil :type (member nil :no t))
-  ;; True once it has been on a thing, or a run has ended without it; see DOUBT-IDLE-KICKERS.
-  (known-p nil :type boolean))
+  ;; The attributes that the test reads. The outcome is NIL before the first test, :NO while all
+  ;; tests were false, T after a true one.
+  (test-attributes '() :type list)
+  (test-outcome nil :type (member nil :no t))
+  ;; True after the first attachment, or the first run that ended without one.
+  (checked-p nil :type boolean))
 (addition kicker-p kicker-name kicker-prob)
 (document-functions
  kicker-p "True of a kicker."
@@ -88,15 +88,15 @@
         (kicker-body kicker) body)
   kicker)
 
-(defun define-kicker (name &key (prob 1) test (body (constantly nil)) asked)
+(defun define-kicker (name &key (prob 1) test (body (constantly nil)) test-attributes)
   "Define or redefine the kicker NAME; what DEFKICKER expands to. TEST and BODY are functions of
-a thing; ASKED lists attributes that TEST asks for. Return the kicker."
+a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker."
   (let ((new (fill-kicker (make-kicker name) (title "defkicker" name) prob test body))
         (old (definition-to-replace name *kickers*)))
-    (setf (kicker-asked new) asked)
+    (setf (kicker-test-attributes new) test-attributes)
     (when old
       (incf *kicker-generation*)
-      (setf (kicker-known-p new) (kicker-known-p old)))
+      (setf (kicker-checked-p new) (kicker-checked-p old)))
     (register *kickers* name (if old (become old new) new) :variable t)))
 
 (defun kicker-functions (definition variable options body)
@@ -117,7 +117,7 @@ a thing; ASKED lists attributes that TEST asks for. Return the kicker."
                (thing-function (list (getf options :test))))
       :body ,(thing-function body))))
 
-(defun attributes-asked-in (test)
+(defun attributes-read-in (test)
   "Return the keywords that TEST, a form, gives GET-ATTRIBUTE."
   (let ((keys '()))
     (map-calls (lambda (call)
@@ -146,5 +146,5 @@ Signals MALFORMED-DEFINITION. Return the name."
          (reject-clause definition lambda-list "a list of one variable"))
        (values `((define-kicker ',name
                    ,@(kicker-functions definition (first lambda-list) options body)
-                   :asked ',(attributes-asked-in (getf options :test))))
+                   :test-attributes ',(attributes-read-in (getf options :test))))
                (variable-forms name))))))
