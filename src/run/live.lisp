@@ -368,7 +368,9 @@ is under way stays pending. If SIMULATION was rewound, stop what goes on in its 
 nothing. See reading 89."
   (let ((simulation (simulation-meant simulation 'stop-simulator)))
     (stop-clock simulation)
-    (when (plusp (simulation-tick simulation))
-      (let ((*message-queue* (simulation-messages simulation)))
-        (doubt-idle-kickers (simulation-world simulation)))))
+    ;; Somebody may have started it again.
+    (asking (simulation)
+      (when (plusp (simulation-tick simulation))
+        (let ((*message-queue* (simulation-messages simulation)))
+          (doubt-idle-kickers (simulation-world simulation))))))
   (values))
