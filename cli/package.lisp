@@ -3,16 +3,10 @@
 (ars-magna.host:define-package :ars-magna.cli
   (:documentation "Arguments of ./cli/ars-magna, the prompt, the line commands. The only code that
 ends the Lisp that it runs in. Manual 3.7, A and E.")
-  (:use :cl :ars-magna.base :ars-magna.world :ars-magna.time :ars-magna.robot
-        :ars-magna.run
-        :ars-magna.command :ars-magna.display)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.world :ars-magna.time :ars-magna.robot :ars-magna.run :ars-magna.command
+        :ars-magna.display)
   (:shadowing-import-from :ars-magna.world #:map)
-  (:import-from :ars-magna.host
-                #:octet-input #:text-output #:descriptor-stream #:input-within-p
-                #:user-interrupt #:signal-user-interrupt #:call-on-interrupt
-                #:call-on-continuing
-                #:die-of-interrupts #:die-of-termination
-                #:rows-and-columns #:char-width #:disabled-hook-p)
   (:import-from :trivial-gray-streams
                 #:fundamental-character-output-stream #:fundamental-character-input-stream
                 #:stream-line-column #:stream-write-char #:stream-write-string

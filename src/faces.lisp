@@ -2,7 +2,7 @@
 
 (defpackage :ars-magna.faces
   (:documentation "Gathers the layers' symbols into the three packages that the manual knows.")
-  (:use :cl :ars-magna.base)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:export #:cli #:define-user-package #:join-editors #:inspect-in-editor #:editor-server))
 
 (in-package :ars-magna.faces)

@@ -62,7 +62,7 @@
   (loop for (number text) in '((0 "0.0") (-0d0 "-0.0") (-1d-5 "-1.0e-5") (1/100000 "1.0e-5")
                                (4.9d-5 "4.9e-5") (5d-5 "0.0001") (1d-4 "0.0001") (23.2 "23.2")
                                (-3 "-3.0"))
-        do (is (string= text (base::coordinate-text number)))))
+        do (is (string= text (basics::coordinate-text number)))))
 
 (test errors.show-control-characters
   "What a terminal would obey, of a file or typed. Tabs and line ends stay."

@@ -165,8 +165,8 @@
 
 (test compilation-units.are-not-told-of-in-our-threads-when-lisp-is-left
   (flet ((told-p (left-p leaving-p own-p)
-           (let ((base::*leaving-p* leaving-p) (base::*own-thread-p* own-p) (told nil))
-             (base::tell-of-unit (lambda (left-p) (declare (ignore left-p)) (setf told t)) left-p)
+           (let ((host::*leaving-p* leaving-p) (host::*own-thread-p* own-p) (told nil))
+             (host::tell-of-unit (lambda (left-p) (declare (ignore left-p)) (setf told t)) left-p)
              told)))
     (is-true (told-p t nil t))
     (is-true (told-p t t nil))
@@ -174,7 +174,7 @@
     (is (not (told-p t t t)))))
 
 (test functions.that-the-prompt-calls-otherwise-are-named
-  (is-true (has-words-p (base::function-slip-text 'hand-grasp) "write ars:hand-grasp-desig"))
+  (is-true (has-words-p (definitions::function-slip-text 'hand-grasp) "write ars:hand-grasp-desig"))
   (is-true (has-words-p (funcall language:*advice-on-call* 'rpl-hand-grasp)
                         "plans call it rpl-hand-grasp-desig"))
   (is (null (funcall language:*advice-on-call* 'driver:rpl-robot-turn))))

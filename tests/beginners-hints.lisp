@@ -34,7 +34,8 @@
 
 (test names.of-plans-without-a-quote-are-hinted-at
   (is-true (has-words-p (hint-to-variable 'turn-once) "It is the name of a plan: 'turn-once."))
-  (is-true (has-words-p (base::lisp-error-text (make-condition 'unbound-variable :name 'turn-once))
+  (is-true (has-words-p (basics::lisp-error-text
+                         (make-condition 'unbound-variable :name 'turn-once))
                         "has no value. It is the name of a plan: 'turn-once.")))
 
 (test syntax.of-nisp-is-hinted-at
@@ -193,7 +194,7 @@
   (live (simulation)
     (driver:run-plan (plan-of (rpl:fail :class :lost)))
     (is-true (some (lambda (message)
-                     (and (eq t (base::message-notable-p message))
+                     (and (eq t (definitions::message-notable-p message))
                           (has-words-p (base:message-text message) "The second value of RUN-PLAN")))
                    (base:take-messages)))))
 

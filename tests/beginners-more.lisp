@@ -154,7 +154,7 @@
                (rpl:fluent-text (rpl:fl-apply 'not (list (rpl:create-fluent nil)))))))
 
 (test variables.without-a-value-name-the-nearest
-  (flet ((text (name) (base::lisp-error-text (make-condition 'unbound-variable :name name))))
+  (flet ((text (name) (basics::lisp-error-text (make-condition 'unbound-variable :name name))))
     (is-true (has-words-p (text (intern "ROBOT-STOPED*" :ars-user))
                           "ROBOT-STOPED* has no value. Did you mean robot-stopped*?"))
     (is (not (search "Did you" (text (intern "NOTHING-LIKE-IT" :ars-user)))))
@@ -200,7 +200,8 @@
 
 (test macros.with-rest-and-keys-name-the-nearest-keyword
   (is (string= "there is no keyword :robot; did you mean :robots?"
-               (base::misfit-text '(form &rest options &key robots seed) '(x :robot rover)))))
+               (definitions::misfit-text '(form &rest options &key robots seed)
+                                         '(x :robot rover)))))
 
 ;;; Robots of the top level, named in threads of a WITH-SIMULATION.
 

@@ -21,7 +21,7 @@
                           "give a continuation" "(continuation (err &rest results) ...)"))))
 
 (test variables.called-like-an-error-code-are-told-of-the-colon
-  (flet ((text (name) (base::lisp-error-text (make-condition 'unbound-variable :name name))))
+  (flet ((text (name) (basics::lisp-error-text (make-condition 'unbound-variable :name name))))
     (is-true (has-words-p (text (intern "ROBOT-BLOCKED" :ars-user)) "Did you mean :robot-blocked?"))
     (is (not (search "Did you" (text (intern "NOT-A-CODE-OF-OURS" :ars-user)))))))
 

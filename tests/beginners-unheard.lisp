@@ -94,7 +94,7 @@
                    ~{(obj t~D (0.5 0.5) ((:size 1)))~%~})~%"
               (loop for i below 60 collect i))
       :close-stream
-      (is (> 5 (calls-of 'base::look-for-definitions
+      (is (> 5 (calls-of 'definitions::look-for-definitions
                          (lambda ()
                            (handler-bind ((warning (lambda (warning)
                                                      (incf told)

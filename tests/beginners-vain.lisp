@@ -231,7 +231,7 @@
     (driver:run-plan (plan-of (driver:rpl-robot-goto-designator 0)
                               (rpl:wait-for driver:robot-stopped*)))
     (let ((warning (find :warning (base:take-messages) :key #'base:message-kind)))
-      (is (eq t (base::message-notable-p warning)))
+      (is (eq t (definitions::message-notable-p warning)))
       (is-true (has-words-p (base:message-text warning) "ended with :not-tracking")))))
 
 (test plans.that-look-at-how-a-command-ended-are-not-told

@@ -16,7 +16,8 @@
     (base:one-line (get-output-stream-string out))))
 
 (test messages.that-repeat-are-told-less-and-less-often
-  (let ((told (make-hash-table :test 'equal)) (message (base::make-message :error '("again"))))
+  (let ((told (make-hash-table :test 'equal))
+        (message (definitions::make-message :error '("again"))))
     (is (equal '(1 2 3 10 100 1000)
                (loop for count from 1 to 1001
                      unless (cli::repeated-often-p message told) collect count)))))
@@ -57,7 +58,8 @@
 (test echo.is-pointed-to-once-where-plans-give-many-commands
   (let ((session (cli:make-session :input (make-instance 'cli::typed-text :by-hand-p t
                                                          :octets (make-string-input-stream ""))))
-        (messages (let ((base:*message-queue* (base:make-message-queue)) (base::*told-of* "a plan"))
+        (messages (let ((base:*message-queue* (base:make-message-queue))
+                        (definitions::*told-of* "a plan"))
                     (loop repeat 30 do (base:message-set "Camera 0 turned"))
                     (base:take-messages))))
     (flet ((text () (first (cli::texts-about session messages)))

@@ -231,7 +231,7 @@
       (flet ((action (character)
                (window::own-action
                 (make-instance 'clim:key-press-event
-                               :sheet pane :key-name (base::make-keyword (string character))
+                               :sheet pane :key-name (base:make-keyword (string character))
                                :key-character character :x 0 :y 0
                                :modifier-state clim:+control-key+))))
         (is (eq #'window::copy-text (action #\C)))

@@ -138,7 +138,7 @@ KEYS have been pressed at Robot>."
   "Return a function that shows messages on a console."
   (lambda (console)
     (cli::write-messages (loop for (kind text) on kinds-and-texts by #'cddr
-                               collect (base::make-message kind (list text)))
+                               collect (definitions::make-message kind (list text)))
                          (cli::%make-session :console console))
     (finish-output console)))
 

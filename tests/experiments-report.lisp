@@ -9,7 +9,7 @@
 
 (defun report-line (factors measures texts trial row)
   (destructuring-bind (outcome &key (reason "") (ticks 100) values (error "")) row
-    (base::one-line
+    (basics::one-line
      (experiment::csv-line
       (append (list "made-up" "A1" (format nil "~{~A~^ ~}"
                                            (or (mapcar (lambda (factor text)

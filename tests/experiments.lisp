@@ -37,7 +37,7 @@
      (is-true condition "~S" ',clauses)
      (when condition
        (is (equal (princ-to-string ',clause)
-                  (princ-to-string (base::malformed-definition-clause condition)))))))
+                  (princ-to-string (basics::malformed-definition-clause condition)))))))
 
 (test definition.shows-the-clause-that-is-wrong
   (rejected-clause (:robots nobody) (:robots nobody) (:run t))

@@ -11,7 +11,7 @@
 
 (defparameter *everybodys*
   '(number character symbol string package pathname class generic-function method
-    base::object-kind base:message sb-thread:thread sb-thread:mutex
+    definitions::object-kind base:message sb-thread:thread sb-thread:mutex
     world:map world::recipe world:kicker world::substance world::attribute world:place-type
     world::place world::rule ars-magna.ways:terrain
     robot::blueprint command:command command::manipulation
@@ -32,7 +32,7 @@
   "Return the names of the slots of OBJECT in which nothing is ever altered; kinds say so of them."
   (let ((kind (base:kind-of object)))
     (typecase object
-      (base:message-queue '(base::newest-first base::seen))
+      (base:message-queue '(definitions::newest-first definitions::seen))
       (run:journal '(run::newest-first run::header))
       (tasks::node '(tasks::form tasks::names tasks::states))
       (tasks::procedure '(tasks::lambda-list tasks::source))
@@ -64,10 +64,10 @@
                (loop for index below (array-total-size object)
                      collect (cons index (row-major-aref object index)))
                '()))
-    (function (loop for value in (base::closure-values object) collect (cons :closed value)))
+    (function (loop for value in (host::closure-values object) collect (cons :closed value)))
     ((or structure-object standard-object condition) (slots-in object))
-    (t (if (base::cell-p object)
-           (list (cons :variable (base::cell-value object)))
+    (t (if (host::value-cell-p object)
+           (list (cons :variable (host::cell-value object)))
            '()))))
 
 (defun survey (&rest roots)

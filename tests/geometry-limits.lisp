@@ -25,7 +25,7 @@
                                        (geo:interval-overlap-width 1 a))
         do (handler-case (progn (apply function operands) (fail "~A has a result" function))
              (base:wrong-argument (condition)
-               (is (eq function (base::wrong-argument-operator condition)))))))
+               (is (eq function (basics::wrong-argument-operator condition)))))))
 
 (test boxes.are-changed-whole-or-not-at-all
   (flet ((left-p (function &rest arguments)

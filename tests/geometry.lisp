@@ -36,7 +36,7 @@
   "Claim that FORM signals WRONG-ARGUMENT in the name of OPERATOR."
   `(handler-case (progn ,form (fail "~S was accepted" ',form))
      (base:wrong-argument (condition)
-       (is (eq ',operator (slot-value condition 'base::operator)) "~A" condition))))
+       (is (eq ',operator (slot-value condition 'basics::operator)) "~A" condition))))
 
 ;;; Making and reading.
 

@@ -84,7 +84,7 @@ what went wrong after it."
 
 (defun sample-argument (type)
   "Return a good argument of TYPE, for a command of COUNTER."
-  (ecase (base::make-keyword (symbol-name type))
+  (ecase (base:make-keyword (symbol-name type))
     (:robot counter)
     (:camera (robot:robot-camera counter 0))
     (:hand (robot:robot-hand counter 0))
@@ -152,7 +152,7 @@ what went wrong after it."
 
 (test numbers.parameters-set-by-setf-are-checked-by-with-simulation
   (dolist (parameter (base:all-parameters))
-    (let ((symbol (base::parameter-symbol parameter)))
+    (let ((symbol (definitions::parameter-symbol parameter)))
       (progv (list symbol) (list *no-number*)
         (signals base:wrong-argument (run:with-simulation (counter)))))))
 

@@ -16,7 +16,7 @@
 
 (defun settable-variables ()
   "Return the variables that others than their own layer may set, and those that a run binds."
-  (append '(base::*noise-before-cleaning* cli::*prompt-robot* cli::*aliases*)
+  (append '(definitions::*noise-before-cleaning* cli::*prompt-robot* cli::*aliases*)
           run:*simulation-variables*
           (loop for package in (layers)
                 append (loop for symbol being the external-symbols of package

@@ -202,11 +202,11 @@
   (let ((forms '((a) ((a)) (a nil) (nil a) ((a nil)) (a . b) (a b) "a" a #\a 97 (97) 1 1.0 1d0 1/2
                  .5 .5d0 "A" () (()) (quote a) (function a) `(a ,b) `(a b) 18446744073709551616 0)))
     (is (= (length forms)
-           (length (remove-duplicates (mapcar #'base::form-digest forms)))))
-    (is (= (base::form-digest '(let ((#1=#:g1 1) (#2=#:g2 2)) (+ #1# #2#)))
-           (base::form-digest '(let ((#3=#:g7 1) (#4=#:g8 2)) (+ #3# #4#)))))
-    (is (/= (base::form-digest '(let ((#5=#:g1 1) (#6=#:g2 2)) (+ #5# #6#)))
-            (base::form-digest '(let ((#7=#:g7 1) (#8=#:g8 2)) (+ #8# #7#)))))))
+           (length (remove-duplicates (mapcar #'definitions::form-digest forms)))))
+    (is (= (definitions::form-digest '(let ((#1=#:g1 1) (#2=#:g2 2)) (+ #1# #2#)))
+           (definitions::form-digest '(let ((#3=#:g7 1) (#4=#:g8 2)) (+ #3# #4#)))))
+    (is (/= (definitions::form-digest '(let ((#5=#:g1 1) (#6=#:g2 2)) (+ #5# #6#)))
+            (definitions::form-digest '(let ((#7=#:g7 1) (#8=#:g8 2)) (+ #8# #7#)))))))
 
 ;;; Live.
 

@@ -128,6 +128,6 @@
            (is (not (search "{1" (error-text-of form))) "an address is another each time"))
   (is (string= "this what cannot be printed (speechless: This cannot be printed) here"
                (base:message-text
-                (base::make-message :message (list "this " (make-speechless) " here")))))
+                (definitions::make-message :message (list "this " (make-speechless) " here")))))
   (is-true (tells-p "The gripper said... (half-said, whose report fails: no number 7)"
                     (rpl:interp-lambda () (error 'half-said)))))

@@ -66,7 +66,7 @@
   (dolist (seed '(0 1 -1 4 123456789012345678901234567890))
     (let* ((state (base:seeded-lisps-dice seed))
            (copy (make-random-state state))
-           (short (ldb (byte 32 0) (base::mix-word (ldb (byte 64 0) seed))))
+           (short (ldb (byte 32 0) (basics::mix-word (ldb (byte 64 0) seed))))
            (numbers (numbers-of (sb-ext:seed-random-state short))))
       (is (equal numbers (numbers-of state)))
       (is (equal numbers (numbers-of copy)))

@@ -149,7 +149,7 @@
     (is (null (message-texts)))))
 
 (defun all-definitions ()
-  (mapcar #'base::registry-entries base::*registries*))
+  (mapcar #'definitions::registry-entries definitions::*registries*))
 
 (test listings.leave-nothing-behind
   (let ((kept (all-definitions)))

@@ -96,7 +96,7 @@
   (handler-case (with-only (command::*manipulations*)
                   (eval `(command:defmanipulation try ,parameters ,options nil))
                   :nothing)
-    (base:malformed-definition (trouble) (base::malformed-definition-clause trouble))))
+    (base:malformed-definition (trouble) (basics::malformed-definition-clause trouble))))
 
 (test defmanipulation.shows-the-clause-that-is-wrong
   (is (eq :nothing (what-is-wrong '(a - ((:size 3)) :by hand - hand count - integer more))))

@@ -150,7 +150,7 @@
 (test slots.unknown-ones-are-named-with-those-there-are
   (handler-case (nisp-value "(lambda (p) !>p.z)" (geo:make-pt 1 2))
     (base:unknown-name (condition)
-      (is (equal '("X" "Y") (slot-value condition 'base::known)))
+      (is (equal '("X" "Y") (slot-value condition 'basics::known)))
       (is (search "slot of a PT" (princ-to-string condition))))
     (:no-error (value) (fail "returned ~S" value)))
   (signals base:unknown-name (nisp:slot-ref 7 'x))

@@ -176,8 +176,9 @@ far these have come to the east."
 (test debugger.retry-calls-the-same-again
   (with-shrew ()
     (let ((calls 0))
-      (with-debugger (condition) (invoke-restart (find 'base::retry (compute-restarts condition)
-                                                       :key #'restart-name :test #'string=))
+      (with-debugger (condition)
+                     (invoke-restart (find 'definitions::retry (compute-restarts condition)
+                                           :key #'restart-name :test #'string=))
         (turn-and shrew (lambda () (when (< (incf calls) 3) (error "not yet"))))
         (run:run-ticks 20)
         (is (= 3 calls))

@@ -8,9 +8,9 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
 (in-package :ars-magna.tests)
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
-  (loop for (nickname layer) in '((:host "HOST") (:base "BASE")
-                                  (:geo "GEOMETRY") (:stats "STATISTICS")
-                                  (:nisp "NISP")
+  (loop for (nickname layer) in '((:host "HOST") (:base "BASE") (:basics "BASICS")
+                                  (:definitions "DEFINITIONS") (:copying "COPYING")
+                                  (:geo "GEOMETRY") (:stats "STATISTICS") (:nisp "NISP")
                                   (:world "WORLD") (:ways "WAYS") (:floors "FLOORS") (:time "TIME")
                                   (:robot "ROBOT")
                                   (:command "COMMAND") (:run "RUN") (:rpl "RPL")

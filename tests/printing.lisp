@@ -85,13 +85,13 @@
 
 (test printing.what-is-said-is-the-same
   (flet ((text-of (control &rest arguments)
-           (base::text-of-condition (apply #'make-condition 'simple-error
+           (basics::text-of-condition (apply #'make-condition 'simple-error
                                            (list :format-control control
                                                  :format-arguments arguments)))))
     (writes-the-same-p
      (lambda ()
        (list (text-of "~A ~S of ~A" 17 'red '(1 2 3))
-             (base:message-text (base::make-message :message
+             (base:message-text (definitions::make-message :message
                                                     (list (base:phrase "at ~A ~A" 17 'red))))
              (base:safe-text 17)
              (tasks:shape-text '(a &optional b))

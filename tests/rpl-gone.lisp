@@ -11,7 +11,7 @@
 (defun failure-told-p ()
   "True if a failed plan is reported in the current queue."
   (find-if (lambda (message) (search "No robot to drive" (base:message-text message)))
-           (base::message-queue-newest-first base:*message-queue*)))
+           (definitions::message-queue-newest-first base:*message-queue*)))
 
 (test gone.a-plan-that-drives-on-ends-without-a-word
   (call-resident

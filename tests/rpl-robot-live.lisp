@@ -263,7 +263,7 @@ tick."
 (defun queued-text-p (text)
   "True if a message that is queued contains TEXT; none is taken."
   (some (lambda (message) (search text (base:message-text message)))
-        (base::message-queue-newest-first base:*message-queue*)))
+        (definitions::message-queue-newest-first base:*message-queue*)))
 
 (test live.a-plan-that-never-waits-deafens-nobody
   (with-quick-watch ()

@@ -239,7 +239,7 @@ shown at once."
 (test messages.of-interrupts-wait-for-the-queue
   "What interrupts a thread that queues a message, and queues one too, comes after it."
   (let ((base:*message-queue* (base:make-message-queue)))
-    (base::with-queue (base:*message-queue*)
+    (definitions::with-queue (base:*message-queue*)
       (base:interrupt-thread (base:current-thread) (lambda () (base:message-set "later"))))
     (is-true (has-words-p (displayed) "later"))))
 

@@ -72,7 +72,7 @@ output."
   (live (simulation)
     (driver:begin-plan 'forlorn)
     (let ((message (await (lambda () (first (base:take-messages))))))
-      (is (eq t (base::message-notable-p message)))
+      (is (eq t (definitions::message-notable-p message)))
       (is-true (has-words-p (base:message-text message)
                             "the plan forlorn waits for camera-moved* 0, robot-stopped*"
                             "give one before you wait")))))

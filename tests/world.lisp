@@ -17,12 +17,12 @@
 (defmacro with-only ((registry &rest names) &body body)
   "Run BODY where REGISTRY knows what is called NAMES, forms, and nothing else."
   `(base:with-own-definitions ()
-     (base::set-entries
+     (definitions::set-entries
       ,registry
       (remove-if-not (lambda (definition)
                        (member (base:entry-name definition) (list ,@names)
                                :test #'base:same-name-p))
-                     (base::registry-entries ,registry)))
+                     (definitions::registry-entries ,registry)))
      ,@body))
 
 (defun map-of (width height &rest clauses)

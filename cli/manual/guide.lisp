@@ -23,8 +23,8 @@ HTML of its Markdown, its headings with anchors."
      :examples)
     ("cli/lines/README.md" "prompt-examples.html" "The prompt by example" :examples)
     ("src/command/README.md" "command-examples.html" "Commands by example" :examples)
-    ("src/base/README.md" "parameter-examples.html" "Parameters, chance and mistakes by example"
-     :examples)
+    ("src/definitions/README.md" "parameter-examples.html"
+     "Parameters, chance and mistakes by example" :examples)
     ("src/world/README.md" "world-examples.html" "Maps, places and things by example" :examples)
     ("src/robot/README.md" "robot-examples.html" "Robots and their parts by example" :examples)
     ("src/run/README.md" "run-examples.html" "Runs by example" :examples)

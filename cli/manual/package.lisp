@@ -3,7 +3,7 @@
 (ars-magna.host:define-package :ars-magna.manual
   (:documentation "Writes the manual: its guide is made of the folders' README.md files, its
 reference of what is defined in this Lisp.")
-  (:use :cl :ars-magna.base)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadow #:entry-name)                        ; an entry here is of the reference
   (:import-from :ars-magna.world
                 #:attribute-name #:attribute-kind #:attribute-domain #:attribute-success

@@ -40,7 +40,7 @@ lines; or NIL."
   (when (line-name-p form)
     (reject-line "~A is a command of the prompt. ~A" form (script-text path))))
 
-(defun form-start (text start)
+(defun start-of-form (text start)
   "Return where, from START, the next form in TEXT begins; its length if there is none."
   (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
         for end = (and (< position (length text)) (skip-comment text position))
@@ -51,7 +51,7 @@ lines; or NIL."
 (defun first-form-of (path)
   "Return the first form in the file PATH; NIL if there is none that can be read."
   (ignore-errors (let ((text (file-text path)) (*read-eval* nil))
-                   (values (read-from-string text t nil :start (form-start text 0))))))
+                   (values (read-from-string text t nil :start (start-of-form text 0))))))
 
 (defun only-defines-p (path)
   "True if the file PATH defines a robot, and has nothing but definitions."

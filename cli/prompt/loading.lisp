@@ -51,7 +51,7 @@ where the form begins, if it does not end."
          (file (native-name path))
          (*package* *package*) (*readtable* *readtable*)
          (*load-pathname* path) (*load-truename* (truename path)))
-    (loop for position = (form-start text (min (grown-position stream) (length text)))
+    (loop for position = (start-of-form text (min (grown-position stream) (length text)))
           while (< position (length text))
           do (setf (grown-position stream) position)
              (let ((form (read-placing stream file)))

@@ -3,5 +3,5 @@
 (ars-magna.host:define-package :ars-magna.rpl.constructs
   (:documentation "The constructs of RPL (manual, appendices C and D). Each is one form,
 DEFINE-CONSTRUCT, which also exports its name.")
-  (:use :cl :ars-magna.base :ars-magna.rpl.fluents :ars-magna.rpl.tasks
-        :ars-magna.rpl.language))
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.rpl.fluents :ars-magna.rpl.tasks :ars-magna.rpl.language))

@@ -11,5 +11,5 @@ operators of Common Lisp mean these without further ado.")
 (ars-magna.host:define-package :ars-magna.rpl.fluents
   (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows
 no plan.")
-  (:use :cl :ars-magna.base)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:local-nicknames (:lifted :ars-magna.rpl.lifted)))

@@ -97,7 +97,7 @@ why, and what to write; or NIL.")
 (defun look-at-call (form)
   "Warn if the call FORM is not right, as far as anybody knows now."
   (let ((name (first form)))
-    (cond ((procedure-name-p name) (check-fit form (declared-lambda-list name)))
+    (cond ((procedure-name-p name) (check-fit form (known-lambda-list name)))
           ((macro-function name)
            (warn-of-call #'warn-of-definition form "~(~A~) is a macro that is defined only later."
                          name))

@@ -3,7 +3,8 @@
 (ars-magna.host:define-package :ars-magna.rpl.language
   (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros;
 DEFINE-CONSTRUCT adds to it.")
-  (:use :cl :ars-magna.base :ars-magna.rpl.fluents :ars-magna.rpl.tasks)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.rpl.fluents :ars-magna.rpl.tasks)
   (:import-from :ars-magna.nisp
                 #:untyped-bindings #:untyped-lambda-list #:lambda-list-variables
                 #:matchvar-p #:matchvar-name)

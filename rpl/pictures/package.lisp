@@ -3,7 +3,8 @@
 (ars-magna.host:define-package :ars-magna.rpl-pictures
   (:documentation "Pictures of plans that run or have run: joins the plan language with the
 canvas.")
-  (:use :cl :ars-magna.base :ars-magna.canvas)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.canvas)
   (:import-from :ars-magna.rpl
                 #:bar #:bar-call-p #:bar-commands #:bar-depth #:bar-end #:bar-failure #:bar-form
                 #:bar-label #:bar-name #:whole-bar-label

@@ -3,7 +3,8 @@
 (ars-magna.host:define-package :ars-magna.rpl-projecting
   (:documentation "Projecting plans: what may become of them, in forks of their run or in a world
 that a robot believes in, and choosing by that.")
-  (:use :cl :ars-magna.base :ars-magna.rpl.language :ars-magna.rpl-robot)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.rpl.language :ars-magna.rpl-robot)
   (:import-from :ars-magna.statistics #:wilson-interval)
   (:import-from :ars-magna.world #:*world*)
   (:import-from :ars-magna.time #:*simulation* #:current-simulation #:secluded)

@@ -2,7 +2,8 @@
 
 (ars-magna.host:define-package :ars-magna.rpl-robot
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
-  (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world
                 #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p
                 #:some-kicker #:kicker-test #:kicker-body

@@ -4,4 +4,5 @@
   (:documentation "Plans are cooperative tasks of one thread. A task runs nodes, a plan's
 expressions, as a chain of frames on the heap; a runner lets tasks react. Knows neither the text of
 plans nor a simulator.")
-  (:use :cl :ars-magna.base :ars-magna.rpl.fluents))
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.rpl.fluents))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(entry-for declared-names declared-lambda-list reject-lisp-call procedures-to-offer
+(export '(entry-for declared-names known-lambda-list reject-lisp-call procedures-to-offer
           anonymous-procedure declare-procedure defined-p ensure-procedure enter-plan
           install-procedure make-procedure procedure procedure-body procedure-entry
           check-arguments procedure-name-p))
@@ -141,7 +141,7 @@ LAMBDA-LIST."
        (let ((procedure (gethash name *cells*)))
          (or (null procedure) (null (procedure-entry procedure)) (defined-p procedure)))))
 
-(defun declared-lambda-list (name)
+(defun known-lambda-list (name)
   "Return the lambda list of the plan procedure that NAME is known to name."
   (first (gethash name *declared-procedures*)))
 

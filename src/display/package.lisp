@@ -2,8 +2,9 @@
 
 (ars-magna.host:define-package :ars-magna.display
   (:documentation "Pictures of a robot in its world: what is drawn, on whatever canvas. Manual B.")
-  (:use :cl :ars-magna.base :ars-magna.geometry :ars-magna.world :ars-magna.time
-        :ars-magna.robot :ars-magna.run :ars-magna.canvas)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.geometry :ars-magna.world :ars-magna.time :ars-magna.robot :ars-magna.run
+        :ars-magna.canvas)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.command #:under-way-text #:interruption-text #:last-failure

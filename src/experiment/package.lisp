@@ -3,7 +3,8 @@
 (ars-magna.host:define-package :ars-magna.experiment
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
 on with, on as many cores and machines as there are. Names lparallel.")
-  (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots
                 #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
                 #:save-chart #:power-of-ten)

@@ -4,7 +4,7 @@
   (:nicknames :ars-fiveam)
   (:documentation "Checks for suites of tests written with FiveAM, which hold plans, programs and
 experiments to their rates of success. Use it beside FIVEAM.")
-  (:use :cl :ars-magna.base)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :fiveam #:pass #:fail)
   (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval)
   (:import-from :ars-magna.run #:variables-among)

@@ -4,7 +4,7 @@
   (:documentation "Occupancy grids as ROS's map_server keeps them, a flat YAML file and an image,
 PGM or PNG: read as maps, written from maps, and the way between their metres and our cells. Names
 chipz.")
-  (:use :cl :ars-magna.base)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.world #:map-width #:map-height #:map-flags #:map-frame
                 #:map-substances #:map-substance-types #:map-parameters #:+wall+ #:find-map

@@ -3,5 +3,5 @@
 (ars-magna.host:define-package :ars-magna.geometry
   (:documentation "Points, intervals and point intervals with their arithmetic, and angles.
 Shadows EQUAL, which compares these by value.")
-  (:use :cl :ars-magna.base)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadow #:equal))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.host)
 
-(export '(closure-p closure-values copy-closure replace-closure-values cell-p cell-value
-          exit-cell-p make-cell))
+(export '(closure-p closure-values copy-closure replace-closure-values value-cell-p cell-value
+          exit-cell-p make-value-cell))
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
@@ -58,8 +58,8 @@
             (funcall function (interpreted-environment closure))))
   closure)
 
-(declaim (inline cell-p))
-(defun cell-p (object)
+(declaim (inline value-cell-p))
+(defun value-cell-p (object)
   "True if OBJECT is the cell of a variable."
   (and (internal (:sb-kernel #:%other-pointer-p) object)
        (= (internal-value :sb-vm #:value-cell-widetag)
@@ -77,6 +77,6 @@
 holds a place on the stack, which looks like an integer that nobody would use."
   (typep (cell-value cell) '(integer #.(ash #x700000000000 -1) #.(ash #x7FFFFFFFFFFF -1))))
 
-(defun make-cell (value)
+(defun make-value-cell (value)
   "Return a new cell for a variable with VALUE."
   (internal (:sb-kernel #:make-value-cell) value))

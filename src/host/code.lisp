@@ -1,9 +1,10 @@
-;;;; code.lisp -- what compiled code refers to.
+;;;; code.lisp -- what compiled code refers to, and which file it is from.
 
 (in-package :ars-magna.host)
 
 (export '(code-constants constant-meant method-code declared-lambda-list same-code-p
-          structure-reader-p source-at))
+          structure-reader-p source-at code-references lambda-list-of callable-with-p
+          function-file files-besides-functions call-as-from-file tell-sources))
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. Since 2.4.10, the names of called functions are no
 ;;; constants of code: it calls them through a linkage table. The names of macros, constants and
@@ -92,3 +93,99 @@ the names of functions that it calls and of what it was made of."
   "Return, as SB-INTROSPECT has it, that something is defined by OPERATOR in PATH at POSITION."
   (internal (:sb-introspect #:make-definition-source)
             :pathname path :character-offset position :description (list operator)))
+
+(defun code-references (function)
+  "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
+symbols, other functions, and whatever else stands in its code or was closed over. In it are no
+numbers."
+  (remove-if
+   (lambda (object) (typep object '(or number character string bit-vector null)))
+   (if (typep function 'generic-function)
+       (mapcar #'method-code (methods-of-generic function))
+       (append (mapcar #'constant-meant (code-constants function))
+               (when (closure-p function) (closure-values function))))))
+
+(defun lambda-list-of (name)
+  "Return the lambda list of the function or macro called NAME, a symbol, or of a function itself."
+  (sb-introspect:function-lambda-list name))
+
+(defun callable-with-p (function count)
+  "True if FUNCTION, or the one so called, can be called with COUNT arguments, as far as is known."
+  (multiple-value-bind (list unknown-p) (lambda-list-of function)
+    (or unknown-p
+        (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list list)
+          (and (<= (length required) count)
+               (or rest-p keys (<= count (+ (length required) (length optional)))))))))
+
+;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
+;;; said.
+
+(defvar *dates-of-files* (make-hash-table :test 'equal :synchronized t)
+  "When files were written whose forms have been evaluated one by one, by what they are called.")
+
+(defun date-of-file (name)
+  "Return when the file called NAME was written when its forms were evaluated one by one, or NIL."
+  (gethash name *dates-of-files*))
+
+(defun evaluated-file-p (namestring)
+  "True if NAMESTRING, one of Lisp's or NIL, is of a file whose forms have been evaluated."
+  (and namestring
+       (not (many-files-p namestring))
+       (date-of-file (native-name namestring))))
+
+(defun call-as-from-file (function path)
+  "Call FUNCTION, which evaluates forms that have been read from the file PATH: the functions that
+come of it are from there."
+  (let ((name (native-name path)) (errors *error-output*))
+    (setf (gethash name *dates-of-files*) (file-write-date path))
+    ;; What a unit says of itself at its end, that it was left, is no news to whoever leaves it.
+    (let ((*error-output* (make-broadcast-stream)))
+      ;; SBCL makes a pathname of it, as Lisp reads one.
+      (with-compilation-unit (:source-namestring (namestring path))
+        (let ((*error-output* errors)) (funcall function))))))
+
+(defun file-of-source (source)
+  "Return which file SOURCE, what SBCL knows of a definition, is from, as the system calls it, and
+the time at which that was written by then; NIL if it was typed."
+  (let ((path (and source (sb-introspect:definition-source-pathname source))))
+    (and path
+         (let ((name (native-name (translate-logical-pathname path))))
+           (values name (or (sb-introspect:definition-source-file-write-date source)
+                            (date-of-file name)))))))
+
+(defun function-file (function)
+  "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
+that was written by then; NIL if it was typed."
+  (file-of-source (ignore-errors (sb-introspect:find-definition-source function))))
+
+(defparameter *kinds-besides-functions*
+  '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class :structure
+    :condition)
+  "As what a symbol may be defined that is no function, by the names that SBCL has for that.")
+
+(defun files-besides-functions (symbol)
+  "Return lists (file written), as FUNCTION-FILE returns them, of definitions of SYMBOL as anything
+but a function."
+  (loop for kind in *kinds-besides-functions*
+        append (loop for source in (ignore-errors
+                                    (sb-introspect:find-definition-sources-by-name symbol kind))
+                     for file = (multiple-value-list (file-of-source source))
+                     when (first file) collect file)))
+
+;;; Editors ask Lisp where a name is defined, as a function, a variable and so on. What only we know
+;;; the place of is told with the declarations of that name, as nothing else is free for it.
+
+(defun source-of-place (place)
+  "Return, as SBCL has it, that something is defined at PLACE, a list (file position operator)."
+  (destructuring-bind (file position operator) place
+    (source-at (uiop:parse-native-namestring file) position operator)))
+
+(defun tell-sources (function)
+  "Let whoever asks where a symbol is defined be told also what FUNCTION of that returns, lists
+\(file position operator)."
+  (wrap-function 'sb-introspect:find-definition-sources-by-name
+                 (lambda (original name type)
+                   (append (funcall original name type)
+                           (and (eq type :declaration) (symbolp name)
+                                (loop for place in (funcall function name)
+                                      collect (source-of-place place)))))))

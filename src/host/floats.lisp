@@ -1,8 +1,9 @@
-;;;; floats.lisp -- floats from and to their bits.
+;;;; floats.lisp -- which numbers are finite, and floats as their bits.
 
 (in-package :ars-magna.host)
 
-(export '(double-high-bits double-bits make-double make-single))
+(export '(double-high-bits double-bits make-double make-single finite-p positive-infinity-p
+          double-to-bits bits-to-double finite-double-p))
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
@@ -26,3 +27,43 @@
   "Return the single-float whose bits are BITS, a signed integer of 32 bits."
   (declare (type (signed-byte 32) bits))
   (internal (:sb-kernel #:make-single-float) bits))
+
+;;; The library ieee-floats reckons the bits from sign, exponent and fraction. That conses and
+;;; takes three times as long, which digests would feel, and it does not know the infinities.
+
+;;; What is no number must not even be compared with one: that is an arithmetic error.
+
+(declaim (inline finite-double-p finite-p))
+(defun finite-double-p (number)
+  "True unless NUMBER, a double-float, is infinite or no number."
+  (declare (type double-float number))
+  (/= #x7FF00000 (logand #x7FF00000 (double-high-bits number))))
+
+(defun other-finite-p (object)
+  (typecase object
+    (float (not (or (sb-ext:float-infinity-p object) (sb-ext:float-nan-p object))))
+    (real (<= (abs object) most-positive-double-float))))
+
+(defun finite-p (object)
+  "True of real numbers that are, or could be made, finite floats: not of the infinities, what is no
+number, and integers and ratios that are too large."
+  (if (typep object 'double-float)
+      (finite-double-p object)
+      (other-finite-p object)))
+
+(defun positive-infinity-p (object)
+  "True of the floats that are positive infinity."
+  (and (floatp object) (sb-ext:float-infinity-p object) (plusp object)))
+
+(declaim (inline double-to-bits bits-to-double))
+(defun double-to-bits (number)
+  "Return the 64 bits of NUMBER, a double-float, as an integer that is not negative."
+  (declare (type double-float number))
+  (ldb (byte 64 0) (double-bits number)))
+
+(defun bits-to-double (bits)
+  "Return the double-float with BITS, an integer of 64 bits: DOUBLE-TO-BITS undone."
+  (declare (type (unsigned-byte 64) bits))
+  (let ((high (ldb (byte 32 32) bits)))
+    (make-double (- (logxor high (ash 1 31)) (ash 1 31))
+                 (ldb (byte 32 0) bits))))

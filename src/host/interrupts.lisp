@@ -3,7 +3,7 @@
 (in-package :ars-magna.host)
 
 (export '(deferring-interrupts allowing-interrupts waiting held-off-p protecting-strictly
-          call-allowing-interrupts call-holding-interrupts call-open-to-interrupts with-deadline
+          call-allowing-interrupts call-holding-interrupts call-open-to-interrupts waiting-at-most
           deadline-passed))
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
@@ -83,16 +83,6 @@ and CLEANUP, nor in that."
      (unwind-protect (internal (:sb-sys #:with-local-interrupts) ,form)
        ,@cleanup)))
 
-;;; A deadline, unlike a time limit, interrupts only where a thread waits.
-
-(deftype deadline-passed ()
-  "The condition that a thread still waits for a stream, lock or other thread at its deadline."
-  (internal-name :sb-sys '#:deadline-timeout))
-
-(defmacro with-deadline ((seconds) &body body)
-  "Run BODY. Signals DEADLINE-PASSED if it waits for something when SECONDS have passed."
-  `(internal (:sb-sys #:with-deadline) (:seconds ,seconds) ,@body))
-
 ;;; Interrupts held off for functions, strictly: what is called in between cannot let any in.
 
 (defvar *open-to-interrupts* #'funcall
@@ -112,3 +102,13 @@ and CLEANUP, nor in that."
 (defun call-open-to-interrupts (function)
   "Call FUNCTION, in which this thread takes interrupts, those too that wait."
   (funcall *open-to-interrupts* function))
+
+;;; A deadline, unlike a time limit, interrupts only where a thread waits.
+
+(deftype deadline-passed ()
+  "The condition that a thread still waits for a stream, lock or other thread at its deadline."
+  (internal-name :sb-sys '#:deadline-timeout))
+
+(defmacro waiting-at-most ((seconds) &body body)
+  "Run BODY; signal DEADLINE-PASSED where it still waits for something after SECONDS."
+  `(internal (:sb-sys #:with-deadline) (:seconds ,seconds) ,@body))

@@ -1,9 +1,19 @@
 ;;;; package.lisp -- the host layer: everything of SBCL that its manual does not document.
 
 (defpackage :ars-magna.host
-  (:documentation "What the simulator needs of SBCL beyond its documented packages, one idea per
-file. No other folder names such parts of SBCL.")
-  (:use :cl))
+  (:documentation "What the simulator needs of SBCL and of libraries beyond Common Lisp, one
+idea per file: threads, files, the compiler. No other folder names what SBCL does not document.")
+  (:use :cl)
+  (:import-from :alexandria
+                #:clamp #:ensure-list #:once-only #:parse-body #:removef
+                #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
+                #:read-file-into-string #:starts-with-subseq #:ends-with
+                #:ends-with-subseq #:define-constant #:proper-list-p
+                #:parse-ordinary-lambda-list #:simple-style-warning)
+  (:export #:clamp #:ensure-list #:once-only #:parse-body #:removef #:with-gensyms #:symbolicate
+           #:make-keyword #:hash-table-values #:read-file-into-string #:starts-with-subseq
+           #:ends-with #:ends-with-subseq #:define-constant #:proper-list-p
+           #:parse-ordinary-lambda-list #:simple-style-warning))
 
 (in-package :ars-magna.host)
 

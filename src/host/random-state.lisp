@@ -2,19 +2,19 @@
 
 (in-package :ars-magna.host)
 
-(export '(words words-of-state fill-words wrap-renewal))
+(export '(random-words words-of-state fill-words wrap-renewal))
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. In all of them a random state is 627 words of the
 ;;; Mersenne Twister MT19937: two constants, the place of the next word, and 624 words.
 
-(deftype words ()
+(deftype random-words ()
   "What is in a random state."
   '(simple-array (unsigned-byte 32) (627)))
 
 (declaim (inline words-of-state fill-words))
 (defun words-of-state (state)
   "Return the words of the random state STATE, not a copy."
-  (the words (internal (:sb-kernel #:random-state-state) state)))
+  (the random-words (internal (:sb-kernel #:random-state-state) state)))
 
 (defun fill-words (seed words)
   "Seed WORDS, of a random state, by SEED, an integer of 32 bits."

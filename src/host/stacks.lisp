@@ -1,8 +1,8 @@
-;;;; stacks.lisp -- a thread's stack after it has overflowed.
+;;;; stacks.lisp -- a thread's stack or the memory, after it has overflowed.
 
 (in-package :ars-magna.host)
 
-(export '(restore-stack))
+(export '(restore-stack regain-room stack-full-p))
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
@@ -22,3 +22,15 @@
                     0)
           0))
   (values))
+
+(defun stack-full-p (condition)
+  "True if CONDITION, a STORAGE-CONDITION, is that a stack has overflowed."
+  (search "STACK" (string (type-of condition))))
+
+(defun regain-room (condition)
+  "Make room again for what comes next, after what CONDITION came up in has been left: if it is that
+there was no room on the stack, or for objects."
+  (when (typep condition 'storage-condition)
+    (if (stack-full-p condition)
+        (restore-stack)
+        (give-memory-back))))

@@ -8,7 +8,7 @@
   (:documentation "Nisp's typed forms, slot access, matching and reader syntax, and the registries
 of types and slots that other layers fill. Shadows LET, LOOP and IF by forms that understand
 everything the Common Lisp ones do; its own code is written with them.")
-  (:use :cl :ars-magna.base)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadow #:let #:loop #:if)
   (:import-from :named-readtables #:in-readtable #:find-readtable #:make-readtable
                 #:readtable-name)

@@ -3,5 +3,6 @@
 (ars-magna.host:define-package :ars-magna.plots
   (:documentation "Charts of numbers and words on our own canvas, to be saved as SVG or PNG. Knows
 no experiment and no robot. Each chart is a function that returns an SVG document as a string.")
-  (:use :cl :ars-magna.base :ars-magna.canvas)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.canvas)
   (:import-from :ars-magna.display #:picture-kind #:save-svg))

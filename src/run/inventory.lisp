@@ -68,11 +68,6 @@ if it is to have one."
         (cond ((array-has-fill-pointer-p array) :growing)
               ((adjustable-array-p array) :adjustable))))
 
-(defun our-own-p (type)
-  "True if the structures called TYPE are the simulator's own."
-  (let ((package (symbol-package type)))
-    (and package (starts-with-subseq "ARS-MAGNA." (package-name package)))))
-
 (defun savable-type-p (type)
   "True if structures called TYPE, a symbol, can be saved by what is in their slots."
   (or (kind-called type)

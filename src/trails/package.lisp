@@ -2,7 +2,8 @@
 
 (ars-magna.host:define-package :ars-magna.trails
   (:documentation "The ways of robots over their map. Knows neither experiments nor plans.")
-  (:use :cl :ars-magna.base :ars-magna.canvas)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
+        :ars-magna.canvas)
   (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.run
                 #:simulation-robots #:simulation-tick #:call-with-replay #:replaying

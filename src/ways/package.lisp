@@ -4,7 +4,7 @@
   (:documentation "Ways through a map, at any angle: away from walls where there is room, round what
 was found barred, planned anew at little cost. Field D* of Ferguson and Stentz (2006). Knows walls
 and places, and neither robots nor things.")
-  (:use :cl :ars-magna.base)
+  (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :ars-magna.geometry #:pt #:pt-p #:make-pt #:pt-x #:pt-y)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags

@@ -41,7 +41,7 @@ is written, in a map if MAP-P."
     (format nil "~(~A~) has ~(~S~) among its attributes, where it does nothing; write ~@?"
             thing-name option (if map-p in-map on-the-fly) (string-downcase thing-name))))
 
-(defun slip-text (thing-name slip &optional map-p)
+(defun text-of-slip (thing-name slip &optional map-p)
   (destructuring-bind (name like) slip
     (if like
         (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
@@ -54,12 +54,12 @@ map's."
   (dolist (slip (slips-in descriptor))
     (warn-of-definition "~A~@[ (~A)~]: ~A" definition
                         (clause-place (or clause (assoc (first slip) descriptor)))
-                        (slip-text name slip clause))))
+                        (text-of-slip name slip clause))))
 
 (defun note-slips (name descriptor world)
   "Warn, once, of what may be slips in DESCRIPTOR of the thing NAME, made on the fly in WORLD."
   (dolist (slip (slips-in descriptor))
-    (warn-once (first slip) world (slip-text name slip))))
+    (warn-once (first slip) world (text-of-slip name slip))))
 
 (defun strange-name-text (key)
   "Return in words that nothing has the attribute KEY, and what may be meant."

@@ -58,7 +58,7 @@ text and of what stands for it."
 (defun await-quiet (terminal)
   "Wait until nothing has been written on the screen for *GRACE* seconds."
   (handler-case
-      (loop (host:with-deadline (*grace*) (await-news terminal)))
+      (loop (host:waiting-at-most (*grace*) (await-news terminal)))
     (host:deadline-passed () nil)))
 
 (defun await-screen (name terminal)

@@ -169,7 +169,7 @@ sign that something hangs, so the screen is asked once more at the end."
                                   (multiple-value-list (cursor terminal))
                                   (terminal-row terminal)))))
     (or (handler-case
-            (host:with-deadline (*longest-wait*)
+            (host:waiting-at-most (*longest-wait*)
               (loop thereis (funcall function terminal)
                     do (await-news terminal)))
           (host:deadline-passed () (funcall function terminal)))

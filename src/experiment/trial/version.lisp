@@ -4,9 +4,9 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *deciding-folders*
-    '("src/base/" "src/geometry/" "src/nisp/" "src/world/" "src/time/" "src/robot/"
-      "src/command/" "src/run/" "rpl/fluents/" "rpl/tasks/" "rpl/language/" "rpl/constructs/"
-      "rpl/robot/")
+    '("src/host/" "src/basics/" "src/definitions/" "src/copying/" "src/geometry/"
+      "src/nisp/" "src/world/" "src/time/" "src/robot/" "src/command/" "src/run/"
+      "rpl/fluents/" "rpl/tasks/" "rpl/language/" "rpl/constructs/" "rpl/robot/")
     "The folders of the simulator whose code decides what becomes of a run.")
 
   (defun digest-of-folders (root)

@@ -1,0 +1,165 @@
+;;;; conditions.lisp -- what goes wrong when the simulator is misused.
+
+(in-package :ars-magna.basics)
+
+(export '(check-argument reject-argument malformed-definition-expected malformed-definition-place
+          malformed-definition-clause warn-of-definition doubt-definition reject-name plain-name
+          reject-use outlived reject-outlived names-to-show malformed-definition-definition))
+
+;;; A misused library signals one of these. A robot that fails in a task does not: it
+;;; reports an error code through its command's continuation (manual 3.1.1).
+;;;
+;;; Who shows a report may have circles marked. What is in it is abridged and has none, but may have
+;;; a text twice, which is to stand there twice.
+
+(addition ars-magna-error)
+(define-condition ars-magna-error (error)
+  ()
+  (:documentation "The root of every error that ARS MAGNA signals."))
+
+(defmethod print-object :around ((condition ars-magna-error) stream)
+  "Let nothing that a terminal obeys come to STREAM; what a report that fails has written comes."
+  (if *print-escape*
+      (call-next-method)
+      (let ((out (make-string-output-stream)))
+        (unwind-protect (call-next-method condition out)
+          (write-string (visible (get-output-stream-string out)) stream)))))
+
+(addition wrong-argument)
+(define-condition wrong-argument (ars-magna-error)
+  ((operator :initarg :operator :reader wrong-argument-operator)
+   (name     :initarg :name     :reader wrong-argument-name)
+   (value    :initarg :value    :reader wrong-argument-value)
+   (expected :initarg :expected :reader wrong-argument-expected))
+  (:report (lambda (condition stream)
+             (let ((*print-circle* nil))
+               (format stream "~(~A~): ~(~A~) is ~S; give ~A"
+                       (wrong-argument-operator condition)
+                       (wrong-argument-name condition)
+                       (let ((value (wrong-argument-value condition)))
+                         (if (pathnamep value) (shown-name value) (abridged value)))
+                       (sentence (wrong-argument-expected condition))))))
+  (:documentation "A function was called with an argument that it cannot use."))
+
+(defun reject-argument (operator name value expected)
+  "Signal WRONG-ARGUMENT."
+  (error 'wrong-argument :operator operator :name name :value value :expected expected))
+
+(defmacro check-argument (operator place test expected)
+  "Signal WRONG-ARGUMENT unless TEST holds; EXPECTED says in words what PLACE should be."
+  `(unless ,test (reject-argument ',operator ',place ,place ,expected)))
+
+(addition malformed-definition)
+(define-condition malformed-definition (ars-magna-error)
+  ((definition :initarg :definition :reader malformed-definition-definition)
+   (clause     :initarg :clause     :reader malformed-definition-clause)
+   (expected   :initarg :expected   :reader malformed-definition-expected)
+   (place      :initarg :place      :initform nil :reader malformed-definition-place))
+  (:report (lambda (condition stream)
+             (let ((*print-case* :downcase) (*print-circle* nil)
+                   (clause (malformed-definition-clause condition)))
+               (format stream "~A~@[ (~A)~]: ~:[nothing, or NIL, is where there should be ~*~;~
+                               cannot use the clause~%  ~S;~%expected ~]~A"
+                       (malformed-definition-definition condition)
+                       (malformed-definition-place condition)
+                       clause
+                       (abridged clause)
+                       (sentence (malformed-definition-expected condition))))))
+  (:documentation "A defining form (DEFMAP, DEFROBOT ...) has a clause that makes no sense."))
+
+(setf (documentation 'malformed-definition-definition 'function)
+      "Return what was being defined, in words or as read."
+      (documentation 'malformed-definition-place 'function)
+      "Return the file and line of what makes no sense, a string, or NIL if it was typed."
+      (documentation 'malformed-definition-clause 'function)
+      "Return the clause that makes no sense, as read; NIL where something is missing."
+      (documentation 'malformed-definition-expected 'function)
+      "Return in words what should be there instead.")
+
+(addition definition-warning definition-warning-text)
+(define-condition definition-warning (warning)
+  ((text :initarg :text :reader definition-warning-text))
+  (:report (lambda (condition stream)
+             (write-string (definition-warning-text condition) stream)))
+  (:documentation "A definition can be used, but does perhaps not say what its author meant."))
+
+(setf (documentation 'definition-warning-text 'function)
+      "Return what a DEFINITION-WARNING says, a string.")
+
+(define-condition definition-doubt (definition-warning style-warning)
+  ()
+  (:documentation "A definition needs what there is not yet, or has what it does not need; in a file
+that is compiled, which must not fail for that."))
+
+(defun text-for-author (control arguments)
+  (printing-words ()
+    (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
+
+(defun warn-of-definition (control &rest arguments)
+  "Signal a DEFINITION-WARNING with a text formatted from CONTROL and ARGUMENTS."
+  (warn 'definition-warning :text (text-for-author control arguments)))
+
+(defun doubt-definition (control &rest arguments)
+  "Do as WARN-OF-DEFINITION. The definition may be what its author meant: so in a file that is
+compiled the warning is a STYLE-WARNING. Scripts, which do not show these, are not compiled."
+  (warn (if *compile-file-truename* 'definition-doubt 'definition-warning)
+        :text (text-for-author control arguments)))
+
+(defun plain-name (name)
+  "Return NAME as people write it: a symbol in lower case, without its package."
+  (if (symbolp name) (string-downcase name) name))
+
+(defun names-to-show (names)
+  "Return NAMES as people write them, the first dozen of them if there are more."
+  (let ((more (- (length names) 12)))
+    (append (mapcar #'plain-name (subseq names 0 (min 12 (length names))))
+            (when (plusp more) (list (format nil "and ~D more" more))))))
+
+(addition unknown-name)
+(define-condition unknown-name (ars-magna-error)
+  ((kind    :initarg :kind    :reader unknown-name-kind)
+   (name    :initarg :name    :reader unknown-name-name)
+   (nearest :initarg :nearest :initform nil :reader unknown-name-nearest)
+   (known   :initarg :known   :initform '() :reader unknown-name-known)
+   (remedy  :initarg :remedy  :initform nil :reader unknown-name-remedy))
+  (:report (lambda (condition stream)
+             (with-accessors ((kind unknown-name-kind) (name unknown-name-name)
+                              (nearest unknown-name-nearest) (known unknown-name-known)
+                              (remedy unknown-name-remedy))
+                 condition
+               (let ((*print-circle* nil))
+                 (format stream "There is no ~A called ~A.~@[ Did you mean ~A?~]~
+                                 ~@[ Known: ~{~A~^, ~}.~]~@[ ~A~]"
+                         kind
+                         (if (symbolp name)
+                             (abridged-text (plain-name name))
+                             (prin1-to-string (abridged name)))
+                         (and nearest (plain-name nearest))
+                         (names-to-show known)
+                         remedy)))))
+  (:documentation "A name was given that nothing of that kind has."))
+
+(defun reject-name (kind name known &optional (meant known))
+  "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME. One of the
+names MEANT could be meant."
+  (error 'unknown-name :kind kind :name name :known known
+                       :nearest (and (typep name '(or symbol string))
+                                     (nearest-name name meant))))
+
+(addition misuse)
+(define-condition misuse (ars-magna-error)
+  ((text :initarg :text :reader misuse-text))
+  (:report (lambda (condition stream) (write-string (misuse-text condition) stream)))
+  (:documentation "An operation was asked for at a moment or in a state that forbids it."))
+
+(define-condition outlived (misuse)
+  ()
+  (:documentation "Something was asked of a run that is over, as by a program that was told so."))
+
+(defun reject-outlived (control &rest arguments)
+  "Signal OUTLIVED, a MISUSE, with a text formatted from CONTROL and ARGUMENTS."
+  (error 'outlived :text (printing-words () (apply #'format nil control arguments))))
+
+(defun reject-use (control &rest arguments)
+  "Signal MISUSE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
+  (error 'misuse :text (printing-words () (apply #'format nil control arguments))))

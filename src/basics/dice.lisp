@@ -1,0 +1,139 @@
+;;;; dice.lisp -- all chance in the simulator comes from here.
+
+(in-package :ars-magna.basics)
+
+(export '(dice make-dice copy-dice dice-state text-word))
+
+;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the
+;;; same numbers on every machine and every release of the compiler. A simulation owns one
+;;; stream per purpose, so that an extra look does not change how a box moves.
+
+(deftype word () '(unsigned-byte 64))
+
+(define-constant +golden-gamma+ #x9E3779B97F4A7C15)
+
+(declaim (inline mix-word))
+(defun mix-word (word)
+  "Return WORD with its bits well mixed."
+  (declare (type word word))
+  (let* ((word (ldb (byte 64 0) (* (logxor word (ash word -30)) #xBF58476D1CE4E5B9)))
+         (word (ldb (byte 64 0) (* (logxor word (ash word -27)) #x94D049BB133111EB))))
+    (declare (type word word))
+    (logxor word (ash word -31))))
+
+(declaim (inline %make-dice dice-state (setf dice-state) copy-dice))
+(defstruct (dice (:constructor %make-dice (state)) (:copier nil))
+  "A stream of chance. Two dice in the same state roll the same numbers for ever."
+  (state 0 :type word))
+(declaim-final dice)
+(setf (documentation 'dice-state 'function)
+      "Return the state of the dice, an integer of 64 bits.")
+
+(defun copy-dice (dice)
+  "Return new dice that will roll what DICE would."
+  (%make-dice (dice-state dice)))
+
+(declaim (inline characters-word))
+(defun characters-word (string code)
+  "Return a 64-bit word for the characters of STRING, each by what the function CODE returns of it
+(FNV-1a)."
+  (let ((word #xCBF29CE484222325))
+    (declare (type word word))
+    (flet ((add (char)
+             (setf word (ldb (byte 64 0) (* (logxor word (funcall code char)) #x100000001B3)))))
+      (declare (inline add))
+      ;; The first two are how Lisp keeps names.
+      (typecase string
+        (simple-base-string (loop for char across string do (add char)))
+        ((simple-array character (*)) (loop for char across string do (add char)))
+        (t (loop for char across string do (add char))))
+      word)))
+
+(defun text-word (text)
+  "Return a 64-bit word that depends on the characters of TEXT, a string designator, only."
+  (declare #.*hot*)
+  (characters-word (string text) #'char-code))
+
+(declaim (inline upper-code))
+(defun upper-code (char)
+  "Return the code of CHAR in upper case."
+  (let ((code (char-code char)))
+    ;; CHAR-UPCASE, which need not be asked of most, takes its time.
+    (cond ((<= (char-code #\a) code (char-code #\z)) (- code 32))
+          ((< code 128) code)
+          (t (char-code (char-upcase char))))))
+
+(defun name-word (name)
+  "Return a 64-bit word that depends on what NAME, a string designator, is called in upper case."
+  (declare #.*hot*)
+  (characters-word (string name) #'upper-code))
+
+(defun make-dice (seed &optional (purpose ""))
+  "Return dice for PURPOSE (a string designator) that depend on it and on the integer SEED only."
+  (check-argument make-dice seed (integerp seed) "an integer")
+  (%make-dice (mix-word (logxor (mix-word (ldb (byte 64 0) seed)) (text-word purpose)))))
+
+(declaim (inline roll-word roll chance roll-between roll-within))
+(defun roll-word (dice)
+  (declare (type dice dice))
+  (let ((state (ldb (byte 64 0) (+ (dice-state dice) +golden-gamma+))))
+    (setf (dice-state dice) state)
+    (mix-word state)))
+
+(addition roll)
+(defun roll (dice)
+  "Return a double-float uniform in [0, 1)."
+  (* (the double-float (float (ash (roll-word dice) -11) 1d0)) #.(power-of-two -53)))
+
+(addition chance)
+(defun chance (probability dice)
+  "True with PROBABILITY. Certain outcomes (0 or less, 1 or more) roll nothing. Signals
+WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
+  (check-argument chance probability (quantity-p probability) "a probability, from 0 to 1")
+  (let ((probability (double probability)))
+    (cond ((<= probability 0d0) nil)
+          ((>= probability 1d0) t)
+          (t (< (roll dice) probability)))))
+
+(addition roll-between)
+(defun roll-between (low high dice)
+  "Return a double-float uniform in [LOW, HIGH). Signals WRONG-ARGUMENT unless both are numbers from
+-1e15 to 1e15."
+  (check-argument roll-between low (quantity-p low) "a number from -1e15 to 1e15")
+  (check-argument roll-between high (quantity-p high) "a number from -1e15 to 1e15")
+  (let ((low (double low)) (high (double high)))
+    (+ low (* (roll dice) (- high low)))))
+
+(addition roll-within)
+(defun roll-within (range dice)
+  "Return a double-float uniform in [-RANGE, RANGE); 0 if RANGE is 0. Signals WRONG-ARGUMENT unless
+that is a number from -1e15 to 1e15."
+  (check-argument roll-within range (quantity-p range) "a number from -1e15 to 1e15")
+  (let ((range (double range)))
+    (if (zerop range) 0d0 (roll-between (- range) range dice))))
+
+(addition roll-index)
+(defun roll-index (count dice)
+  "Return an integer uniform in [0, COUNT). Signals WRONG-ARGUMENT unless COUNT is an integer from 1
+to 2^53, where double-floats begin to leave some out."
+  (check-argument roll-index count (whole-p count 1 #.(expt 2 53)) "an integer from 1 to 2^53")
+  (values (floor (* (roll dice) count))))
+
+(addition roll-element)
+(defun roll-element (sequence dice)
+  "Return an element of SEQUENCE, each as likely as another. Signals WRONG-ARGUMENT if it has none."
+  (check-argument roll-element sequence (and (typep sequence 'sequence) (plusp (length sequence)))
+                  "a sequence that is not empty")
+  (elt sequence (roll-index (length sequence) dice)))
+
+(addition roll-gaussian)
+(defun roll-gaussian (mean deviation dice)
+  "Return a normally distributed double-float. A DEVIATION of 0 returns MEAN and rolls nothing.
+Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15."
+  (check-argument roll-gaussian mean (quantity-p mean) "a number from -1e15 to 1e15")
+  (check-argument roll-gaussian deviation (quantity-p deviation) "a number from -1e15 to 1e15")
+  (if (zerop deviation)
+      (double mean)
+      (let ((radius (sqrt (the (double-float 0d0) (* -2d0 (logarithm (- 1d0 (roll dice)))))))
+            (angle (* 2d0 pi (roll dice))))
+        (+ (double mean) (* (double deviation) radius (cosine angle))))))

@@ -1,0 +1,129 @@
+;;;; fixed-point.lisp -- the constants and tables of elementary functions, computed from integers.
+
+(in-package :ars-magna.basics)
+
+;;; A fixed-point number is an integer that counts units of 2^-PLACES. Integer arithmetic gives the
+;;; same results on every machine. Nothing here runs after the simulator is loaded, but for angles
+;;; beyond a million radians.
+
+(defvar *places* 256 "How many binary places fixed-point numbers have.")
+
+(defun fixed (number)
+  "Return the rational NUMBER as a fixed-point number."
+  (values (round (ash (numerator number) *places*) (denominator number))))
+
+(defun fixed-times (a b)
+  (ash (* a b) (- *places*)))
+
+(declaim (inline power-of-two))
+(defun power-of-two (exponent)
+  "Return 2^EXPONENT, a double-float; EXPONENT is from -1022 to 1023."
+  (declare (type (integer -1022 1023) exponent))
+  (bits-to-double (ash (+ exponent 1023) 52)))
+
+(defun nearest-double (fixed &optional (bits 53))
+  "Return the double-float with BITS significant bits, 53 at most, that is nearest to FIXED."
+  (let* ((shift (max 0 (- (integer-length (abs fixed)) bits)))
+         (digits (round fixed (ash 1 shift))))
+    (* (coerce digits 'double-float) (power-of-two (- shift *places*)))))
+
+(defun double-parts (fixed &rest bits)
+  "Return a list of double-floats whose sum is FIXED: one for each of BITS, with that many
+significant bits, and one for what remains."
+  (if (null bits)
+      (list (nearest-double fixed))
+      (let ((head (nearest-double fixed (first bits))))
+        (cons head (apply #'double-parts (- fixed (fixed (rational head))) (rest bits))))))
+
+(defun doubles-table (count row)
+  "Return a vector of the double-floats in the lists that the function ROW returns for 0, 1, 2 ...
+below COUNT."
+  (coerce (loop for k below count append (funcall row k)) '(simple-array double-float (*))))
+
+;;; Power series. Each is summed until its terms are less than one unit.
+
+(defun sum-series (first next)
+  "Return the sum of FIRST and all later terms. The function NEXT returns the term with the index K
+from the term before and K, which is 1, 2, 3 ..."
+  (loop for k from 1
+        for term = first then (funcall next term (1- k))
+        until (zerop term)
+        sum term))
+
+(defun sum-odd-powers (x sign)
+  "Return X + SIGN X^3/3 + X^5/5 + SIGN X^7/7 ... for the rational X."
+  (let ((factor (* sign (fixed (* x x)))) (power (fixed x)))
+    (sum-series power (lambda (term k)
+                        (declare (ignore term))
+                        (setf power (fixed-times power factor))
+                        (round power (1+ (* 2 k)))))))
+
+(defun fixed-exponential (x)
+  "Return e^X for a fixed-point X near 0."
+  (sum-series (fixed 1) (lambda (term k) (round (fixed-times term x) k))))
+
+(defun fixed-arctangent (x)
+  "Return the arctangent of the rational X, from 0 to 1/2."
+  (sum-odd-powers x -1))
+
+(defun fixed-logarithm (x)
+  "Return the natural logarithm of the rational X, from 1/2 to 2."
+  (* 2 (sum-odd-powers (/ (1- x) (1+ x)) 1)))
+
+(defun sum-alternating (x power)
+  "Return the cosine of the rational X if POWER is 0, and its sine if POWER is 1."
+  (let ((square (fixed (* x x))))
+    (sum-series (if (zerop power) (fixed 1) (fixed x))
+                (lambda (term k)
+                  (let ((n (+ power (* 2 k))))
+                    (- (round (fixed-times term square) (* n (1- n)))))))))
+
+(defun fixed-cosine (x) (sum-alternating x 0))
+(defun fixed-sine (x) (sum-alternating x 1))
+
+(defun fixed-pi ()
+  "Return pi, by Machin's formula of 1706."
+  (* 4 (- (* 4 (fixed-arctangent 1/5)) (fixed-arctangent 1/239))))
+
+;;; The rows of the tables, lists of double-floats.
+
+(defun sine-row (k)
+  "Return the sine and the cosine of K/128, each in two parts."
+  (append (double-parts (fixed-sine (/ k 128)) 53)
+          (double-parts (fixed-cosine (/ k 128)) 53)))
+
+(defun power-row (k)
+  "Return 2^(K/128), and the rounding error of that as a share of it."
+  (let ((parts (double-parts (fixed-exponential (round (* k (fixed-logarithm 2)) 128)) 53)))
+    (list (first parts) (/ (second parts) (first parts)))))
+
+(defconstant +least-mantissa+ #x3FE6000000000000
+  "The bits of 0.6875. Mantissas are taken from there to 1.375, so that 2^K is 1 around 1.")
+
+(defun row-center (row)
+  "Return the middle of the mantissas for which ROW of +LOGARITHMS+ is."
+  (flet ((bound (row) (rational (bits-to-double (+ +least-mantissa+ (ash row 45))))))
+    (/ (+ (bound row) (bound (1+ row))) 2)))
+
+(defun logarithm-row (row)
+  "Return the numbers in ROW of +LOGARITHMS+, a list."
+  ;; Around 1, which rows 79 and 80 share, R is to be exact.
+  (let* ((c (if (<= 79 row 80) 1 (/ (round 512 (row-center row)) 512)))
+         (logarithm (- (fixed-logarithm c)))
+         (head (* (round logarithm (ash 1 (- *places* 42))) (ash 1 (- *places* 42)))))
+    (list (coerce c 'double-float) (nearest-double head) (nearest-double (- logarithm head)))))
+
+(defun arctangent-row (k)
+  "Return the numbers in a row of +ARCTANGENTS+, a list."
+  (let* ((x (/ k 256)) (divisor (1+ (* x x)))
+         (value (if (<= k 128)
+                    (fixed-arctangent x)
+                    (- (ash (fixed-pi) -2) (fixed-arctangent (/ (- 256 k) (+ 256 k)))))))
+    (append (double-parts value 53)
+            ;; The series of 1 / (1 + X^2), integrated.
+            (loop repeat 6
+                  for n from 1
+                  for before = 0 then last
+                  for last = 0 then term
+                  for term = (/ divisor) then (/ (- (+ (* 2 x last) before)) divisor)
+                  collect (nearest-double (fixed (/ term n)))))))

@@ -1,0 +1,180 @@
+;;;; telling.lisp -- what goes wrong, in words of bounded length.
+
+(in-package :ars-magna.basics)
+
+(export '(format-briefly report-briefly own-text our-text report-anyhow of-lines-typed-p
+          reading-trouble text-of-condition one-line-text point-in-text hundredths editors-output
+          cause-of-reading-trouble cause-of-reading-trouble))
+
+;;; A condition may have to report a list without an end, or an object that cannot be printed.
+
+(defmacro printing-briefly (() &body body)
+  "Run BODY, which makes text for people. Of what is deep, long or circular, only a part is shown."
+  `(printing-words ()
+     (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
+       ,@body)))
+
+(defun format-briefly (destination control &rest arguments)
+  "Do as FORMAT does. Of ARGUMENTS that are deep, long or circular, only a part is shown."
+  (printing-briefly () (apply #'format destination control arguments)))
+
+(defun report-briefly (condition)
+  "Return what CONDITION, or another object, says of itself, as FORMAT-BRIEFLY would. It may be in
+the midst of being printed, and is no circle for that: so it is not printed as a part."
+  (with-output-to-string (out)
+    (printing-briefly () (let ((*print-escape* nil)) (print-object condition out)))))
+
+;;; Conditions.
+
+(defun storage-text (condition)
+  "Return what CONDITION, that there is no room for something, means to a user."
+  (if (stack-full-p condition)
+      (format nil "The stack has overflowed: functions call each other too deeply, or lists stand ~
+                   too deeply in lists. Mend what has no end.")
+      "There is not enough memory for that. Ask for less at a time."))
+
+(defun reader-p (condition)
+  "True if CONDITION is that a text, typed or of a program's, cannot be read as Lisp."
+  (or (typep condition 'reader-error)
+      (and (typep condition 'end-of-file)
+           (not (typep (stream-error-stream condition) 'file-stream)))))
+
+(defun cause-of-reading-trouble (condition)
+  "Return CONDITION, or if that only says where it came up, as LOAD's does, what it says that of."
+  (let ((cause (encapsulated-condition condition)))
+    (if cause (cause-of-reading-trouble cause) condition)))
+
+(defun naming-remedy (text)
+  "Return what can be done about what TEXT says of a name that cannot be read; NIL of other texts."
+  (cond ((or (search "not found in the" text) (search "Package" text))
+         "Perhaps it is misspelt, or what defines it has not been loaded")
+        ((search "is not external" text)
+         "With two colons it can be read, if you mean what is that package's own")))
+
+(defun reading-trouble (condition)
+  "Return why a text cannot be read, for which CONDITION came up. What Lisp says of that names
+streams that no user knows."
+  (let* ((cause (cause-of-reading-trouble condition))
+         (text (if (typep cause 'simple-condition)
+                   (format-briefly nil "~?" (simple-condition-format-control cause)
+                                   (simple-condition-format-arguments cause))
+                   "it ends too early; is a parenthesis or quote missing?")))
+    (if (starts-with-subseq "failed to build" text)
+        "a number is too large, too small, or divided by 0"
+        (format nil "~A~@[. ~A~]" (string-right-trim "." text) (naming-remedy text)))))
+
+(defgeneric of-lines-typed-p (stream)
+  (:documentation "True if STREAM reads the lines that a user types or pipes in.")
+  (:method (stream)
+    (declare (ignore stream))
+    nil))
+
+(defun input-ended-p (condition)
+  "True if CONDITION is that no more lines are typed."
+  (and (typep condition 'end-of-file) (of-lines-typed-p (stream-error-stream condition))))
+
+(defun own-text (condition)
+  "Return what CONDITION says of itself, as much of it as can be printed; or what another object
+does, an empty text if it cannot."
+  (handler-case (without-reference (report-briefly condition))
+    ((or error storage-condition) ()
+      ;; Nothing at all may be left that can be printed.
+      (or (and (typep condition 'condition) (ignore-errors (report-anyhow condition)))
+          ""))))
+
+;;; A report may fail, or what it is to print may have a method for PRINT-OBJECT that does. What its
+;;; author wrote is shown all the same, as far as it came.
+
+(defun without-addresses (text)
+  "Return TEXT without the addresses of objects, which are others in each Lisp."
+  (loop for start = (search " {" text)
+        for end = (and start (position #\} text :start start))
+        while (and end (every (lambda (char) (digit-char-p char 16)) (subseq text (+ 2 start) end)))
+        do (setf text (concatenate 'string (subseq text 0 start) (subseq text (1+ end))))
+        finally (return text)))
+
+(defun failing-report-text (condition trouble beginning)
+  "Return in words that CONDITION said BEGINNING before its report failed, with TROUBLE."
+  (let ((why (or (our-text trouble)
+                 (ignore-errors (format-briefly nil "~A" trouble))
+                 ;; It tells of the condition, which cannot be printed.
+                 (ignore-errors (simple-condition-format-control trouble))
+                 (type-of trouble))))
+    (format nil "~@[~A... ~](~(~A~), whose report fails: ~A)"
+            (and (string/= "" beginning) (string-right-trim " " beginning))
+            (type-of condition)
+            (without-addresses (one-line (princ-to-string why))))))
+
+(defun write-report (condition stream)
+  "Write to STREAM what CONDITION reports, with words for the objects that cannot be printed."
+  (printing-words ()
+    (let ((sb-ext:*suppress-print-errors* 'error) (*print-escape* nil) (*print-circle* nil)
+          (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
+      (print-object condition stream))))
+
+(defun report-anyhow (condition)
+  "Return what CONDITION reports, as much of it as can be printed. If its report fails, that is said
+too."
+  (let ((out (make-string-output-stream)))
+    (handler-case (progn (write-report condition out)
+                         (format nil "~A (~(~A~), whose report fails)"
+                                 (without-addresses (get-output-stream-string out))
+                                 (type-of condition)))
+      ((or error storage-condition) (trouble)
+        (failing-report-text condition trouble (get-output-stream-string out))))))
+
+(defun our-text (condition)
+  "Return what CONDITION, which Lisp itself has signalled, means to a user, in words that are the
+same on every version of SBCL; NIL if we have none."
+  (cond ((typep condition 'storage-condition) (storage-text condition))
+        ((input-ended-p condition) "The input has ended: there is nothing left to read.")
+        ((reader-p condition)
+         (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
+        (t (lisp-error-text condition))))
+
+(defun text-of-condition (condition)
+  "Return what CONDITION says, or what it is if it cannot say that."
+  (let ((text (or (printing-words () (our-text condition)) (own-text condition))))
+    (if (string= text "") (string-downcase (type-of condition)) (visible text))))
+
+(defun hundredths (number)
+  "Return NUMBER, to be written with two decimals: 0 if it is nearer to that than these can tell, as
+-0.00 says no more than 0.00."
+  (if (< (abs number) 0.005d0) 0 number))
+
+(defun coordinate-text (number)
+  "Return NUMBER, a coordinate in metres, as text: to a tenth of a millimetre, and without the zeros
+that end it, so that what was typed as 23.2 is not 23.200000762939453. What is not 0, but smaller
+than that, is written with an exponent."
+  (let ((text (string-right-trim "0" (format nil "~,4F" number))))
+    (cond ((< 0 (abs number) 5d-5)
+           (let ((*read-default-float-format* 'double-float)) (prin1-to-string (double number))))
+          ((ends-with #\. text) (format nil "~A0" text))
+          (t text))))
+
+(defun point-in-text (x y)
+  "Return the point at X, Y, in metres, as text."
+  (format nil "(~A ~A)" (coordinate-text x) (coordinate-text y)))
+
+(defun one-line-text (condition)
+  "Return what CONDITION says as the part of a sentence."
+  (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))
+
+;;; Where users look.
+
+(defun followed (stream)
+  "Return the stream that STREAM, perhaps a synonym, stands for here."
+  (if (typep stream 'synonym-stream)
+      (followed (symbol-value (synonym-stream-symbol stream)))
+      stream))
+
+(defun editors-output ()
+  "Return the stream that this thread's standard output goes to if an editor, SLIME or SLY, has set
+it, or NIL. It stays open, and other threads may write to it; what they write to standard output
+otherwise does not come to where the user types."
+  (let* ((stream (followed *standard-output*))
+         (package (symbol-package (type-of stream))))
+    (and package
+         (some (lambda (server) (starts-with-subseq server (package-name package)))
+               '("SWANK" "SLYNK"))
+         stream)))

@@ -1,0 +1,71 @@
+;;;; writing.lisp -- writing a file anew, or saying in a sentence why that cannot be.
+
+(in-package :ars-magna.basics)
+
+(export '(call-replacing-file write-file-anew unwritten-reason))
+
+(defun new-file-for (file)
+  "Return the absolute path of the file that is to be written for FILE: where a link leads to, if it
+is one. Signals an error if there is something that is no file of bytes or is write-protected, or no
+directory for it, or the name is illegible."
+  (when (many-files-p file) (error *many-files-text*))
+  (check-name-legible file)
+  (when (dangling-link-p file)
+    (error "it is a link to a file that there is not"))
+  (let ((path (or (probe-file file)
+                  (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
+    (when (and (probe-file path) (not (plain-file-p path)))
+      (error "it is a directory or a device"))
+    (check-unprotected path)
+    (unless (uiop:directory-exists-p (uiop:pathname-directory-pathname path))
+      (error "there is no such directory"))
+    path))
+
+(defun call-replacing-file (function file &key (external-format :utf-8) (check #'identity))
+  "Call FUNCTION with a stream to a new file of UTF-8, which takes the place of FILE at one stroke
+when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename.
+FILE keeps its permissions. What FUNCTION writes does not follow the printer's variables. In the
+EXTERNAL-FORMAT :LATIN-1 each character that is written is an octet. CHECK is called with the path
+of the new file when that is written; if it signals an error, FILE is as it was."
+  (let* ((path (new-file-for file)) (directory (uiop:pathname-directory-pathname path)))
+    (remove-abandoned-files directory)
+    ;; The new file's name is rolled for: whoever writes a file rolls on as if he had not.
+    (call-with-own-lisps-dice
+     (lambda ()
+       (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
+                                  :directory directory :prefix (temporary-file-prefix)
+                                  :type :unspecific)
+         (printing-plainly () (funcall function out))
+         :close-stream
+         (funcall check new)
+         (copy-permissions new path)
+         (replace-file path new))))
+    (truename path)))
+
+(defun unwritten-reason (trouble)
+  "Return why a file could not be written, by the error TROUBLE, as the part of a sentence: of what
+Lisp says only the system's own words, without streams and names that its user does not know."
+  (let* ((text (one-line-text trouble))
+         (end (search ": " text :from-end t))
+         (words (and end (subseq text (+ 2 end)))))
+    (cond ((not (typep trouble '(or file-error stream-error))) text)
+          ((and words (notany (lambda (char) (find char "\"/")) words)) (string-downcase words))
+          (t "no file can be made in that directory"))))
+
+(defun write-file-anew (function file what
+                        &key (check #'identity) kind
+                          (remedy "give the name of a file that you may write"))
+  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals MISUSE, with the REMEDY, if
+WHAT, such as \"the run\", cannot be written there, or if FILE is there and of another kind than
+KIND, see NOTE-KIND-OF-FILE; then it is as it was."
+  (let ((advice (file-advice file kind)))
+    (when advice
+      (reject-use "~@(~A~) is not written to ~A: ~A. It is left as it is; give another name."
+                  what (shown-name file) advice)))
+  (handler-case (call-replacing-file function file :check check)
+    (ars-magna-error (trouble) (error trouble))
+    (error (trouble)
+      (reject-use "~@(~A~) cannot be written to ~A: ~A. What was there is as before; ~A."
+                  what (cut (princ-to-string (shown-name file)) 200)
+                  (cut (unwritten-reason trouble) 200)
+                  remedy))))

@@ -1,0 +1,254 @@
+;;;; copying.lisp -- the objects of a run, copied into another that goes on by itself.
+
+(in-package :ars-magna.copying)
+
+(export '(copying copy-values copy-slots))
+
+;;; A COPIER walks from what it is given to all that can be reached, and remembers what it copied to
+;;; what: two objects that refer to the same one do so in the copies. It copies an object first, and
+;;; puts what is in the copy right later, from a list of work: so lists and chains may be as long as
+;;; they like. What is in structures is known from their kinds, or else from their classes:
+;;;
+;;;   copied   lists, arrays, tables, structures, instances, conditions, closures with their cells;
+;;;   fresh    the :LINKs of kinds, as in a new object;
+;;;   shared   numbers, symbols, code, what DEFINE-SHARED says, and :SHARED slots of kinds.
+
+(declaim (inline forked))
+(addition forked)
+(defun forked (value copier)
+  "Return what a fork has for VALUE: for methods of COPY-PLAN-VALUE, which are given COPIER. It may
+not be complete before they have returned."
+  (typecase value
+    ((or number symbol character) value)
+    (t (forked-object value copier))))
+
+(defun forked-object (value copier)
+  (declare #.*hot* (type copier copier))
+  (multiple-value-bind (copy known-p) (gethash value (copier-table copier))
+    (cond (known-p copy)
+          ((copier-screen copier) (copy-unless-screened value copier))
+          (t (begin-copy value copier)))))
+
+(defun copy-unless-screened (value copier)
+  "Return what COPIER is to have for VALUE as its screen says: that, or a copy."
+  (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
+    (if screened-p
+        (note-copy value instead copier)
+        (begin-copy value copier))))
+
+(defmethod copy-plan-value ((value structure-object) fork)
+  (copy-slots value fork))
+
+(defun copy-slots (object copier &optional (manner (manner object)))
+  "Return what COPIER has for the structure OBJECT: a new one, in whose slots are copies."
+  (declare #.*hot* (type manner manner))
+  (let ((copy (note-copy object (copy-structure (the structure-object object)) copier)))
+    (loop for (writer . initial) in (manner-fresh manner)
+          do (funcall (the function writer) (funcall (the function initial)) copy))
+    (unless (zerop (length (manner-indices manner)))
+      (put-right-later copy (manner-indices manner) copier))
+    copy))
+
+;;; Other objects.
+
+(define-shared package pathname readtable class generic-function method method-combination)
+
+(defmethod copy-plan-value ((value random-state) fork)
+  (note-copy value (make-random-state value) fork))
+
+(defmethod copy-plan-value ((value dice) fork)
+  (note-copy value (copy-dice value) fork))
+
+(defmethod copy-plan-value ((value condition) fork)
+  (multiple-value-bind (copy indices) (copy-condition value)
+    (put-right-later (note-copy value copy fork) (coerce indices 'simple-vector) fork)))
+
+(defmethod copy-plan-value ((value standard-object) fork)
+  (let ((copy (note-copy value (allocate-instance (class-of value)) fork)))
+    (dolist (slot (instance-slot-names (class-of value)))
+      (when (slot-boundp value slot)
+        (setf (slot-value copy slot) (slot-value value slot))))
+    (put-right-later copy nil fork)))
+
+(defun like-array (array)
+  "Return an array like ARRAY, with the same in it."
+  (if (vectorp array)
+      (if (simple-array-p array)
+          (copy-seq array)
+          (let ((copy (make-array (array-dimension array 0)
+                                  :element-type (array-element-type array) :adjustable t
+                                  :fill-pointer (and (array-has-fill-pointer-p array)
+                                                     (fill-pointer array)))))
+            (dotimes (index (array-total-size array) copy)
+              (setf (row-major-aref copy index) (row-major-aref array index)))))
+      (let ((copy (make-array (array-dimensions array) :element-type (array-element-type array)
+                                                       :adjustable (adjustable-array-p array))))
+        (dotimes (index (array-total-size array) copy)
+          (setf (row-major-aref copy index) (row-major-aref array index))))))
+
+(defun simple-array-p (array)
+  (typep array 'simple-array))
+
+(defun copy-displaced (array copier)
+  "Return what COPIER is to have for ARRAY, which is part of another."
+  (multiple-value-bind (base offset) (array-displacement array)
+    (note-copy array
+               (make-array (array-dimensions array)
+                           :element-type (array-element-type array)
+                           :adjustable (adjustable-array-p array)
+                           :fill-pointer (and (array-has-fill-pointer-p array)
+                                              (fill-pointer array))
+                           :displaced-to (forked base copier) :displaced-index-offset offset)
+               copier)))
+
+(defun copy-as-told (value copier)
+  "Return what COPY-PLAN-VALUE returns for VALUE, unless who asks for the copy has decided. An error
+in a user's method is CANNOT-FORK."
+  (let ((decision (decision-about value copier)))
+    (flet ((blame (condition)
+             (unless (typep condition 'ars-magna-error)
+               (error 'cannot-fork :value value :place (found-in value copier)
+                                   :trouble (brief-text condition)))))
+      (declare (dynamic-extent #'blame))
+      (if decision
+          (cdr decision)
+          (handler-bind ((error #'blame))
+            (copy-plan-value value copier))))))
+
+(defun begin-copy (value copier)
+  "Return what COPIER, which does not know VALUE yet, is to have for it."
+  (declare #.*hot*)
+  (flet ((note (copy) (put-right-later (note-copy value copy copier) nil copier)))
+    (declare (inline note))
+    (typecase value
+      (cons (note (cons (car value) (cdr value))))
+      (hash-table (let ((copy (note-copy value (like-table value) copier)))
+                    (push (cons value copy) (copier-tables copier))
+                    copy))
+      (structure-object (let ((manner (manner value)))
+                          (ecase (manner-way manner)
+                            (:copy (copy-slots value copier manner))
+                            (:share value)
+                            (:method (note-copy value (copy-as-told value copier) copier))
+                            (:ask (ask-about value copier)))))
+      (function (if (closure-p value) (note (copy-closure value)) (copy-function value copier)))
+      (simple-vector (if (zerop (length value)) value (note (copy-seq value))))
+      (array (cond ((array-displacement value) (copy-displaced value copier))
+                   ((eq t (array-element-type value)) (note (like-array value)))
+                   (t (note-copy value (like-array value) copier))))
+      (t (cond ((not (value-cell-p value)) (note-copy value (copy-as-told value copier) copier))
+               ;; So that who leaves it later is told, in a fork too, that it is gone.
+               ((exit-cell-p value) value)
+               (t (note (make-value-cell (cell-value value)))))))))
+
+(defun copy-function (function copier)
+  "Return what COPIER is to have for FUNCTION, which has closed over nothing: itself. What is a
+function and an instance of a class of a user's may keep anything."
+  (cond ((typep function 'generic-function) (copy-plan-value function copier))
+        ((typep function 'standard-object) (ask-about function copier))
+        (t function)))
+
+;;; Putting right.
+
+(defun put-list-right (list copier)
+  "Put right what is in LIST, a copy, as far as it goes on into what has not been copied."
+  (declare #.*hot* (type copier copier))
+  (loop
+    (setf (car list) (forked (car list) copier))
+    (let ((tail (cdr list)))
+      (cond ((or (not (consp tail)) (nth-value 1 (gethash tail (copier-table copier))))
+             (setf (cdr list) (forked tail copier))
+             (return))
+            (t (setf list (setf (cdr list)
+                                (note-copy tail (cons (car tail) (cdr tail)) copier))))))))
+
+(defun put-right (copy indices copier)
+  "Let what is in COPY be copies too. INDICES are the numbers of slots, or NIL for what has none."
+  (declare #.*hot* (type copier copier))
+  (cond (indices
+         (loop for index of-type (unsigned-byte 20) across (the simple-vector indices)
+               do (let ((value (instance-slot copy index)))
+                    (unless (typep value '(or null fixnum))
+                      (setf (instance-slot copy index) (forked value copier))))))
+        ((consp copy) (put-list-right copy copier))
+        ((simple-vector-p copy)
+         (dotimes (index (length copy))
+           (let ((value (svref copy index)))
+             (unless (typep value '(or null fixnum))
+               (setf (svref copy index) (forked value copier))))))
+        ((functionp copy)
+         (replace-closure-values copy (lambda (value) (forked value copier))))
+        ((arrayp copy)
+         (dotimes (index (array-total-size copy))
+           (setf (row-major-aref copy index) (forked (row-major-aref copy index) copier))))
+        ((value-cell-p copy) (setf (cell-value copy) (forked (cell-value copy) copier)))
+        (t (dolist (slot (instance-slot-names (class-of copy)))
+             (when (slot-boundp copy slot)
+               (setf (slot-value copy slot) (forked (slot-value copy slot) copier)))))))
+
+(defun put-all-right (copier)
+  "Put right the copies that wait for that, and those that come up then."
+  (declare #.*hot* (type copier copier))
+  (loop until (zerop (copier-fill copier))
+        do (let ((fill (decf (copier-fill copier) 2)))
+             (put-right (setf (copier-holder copier) (svref (copier-work copier) fill))
+                        (svref (copier-work copier) (1+ fill))
+                        copier))))
+
+;; A key must be complete before a table can know where it belongs.
+(defun fill-tables (tables copier)
+  "Fill the copies in TABLES, a list (table . copy)."
+  (let ((contents (loop for (table) in tables
+                        do (setf (copier-holder copier) table)
+                        collect (loop for key being the hash-keys of table using (hash-value value)
+                                      collect (cons (forked key copier) (forked value copier))))))
+    (put-all-right copier)
+    (loop for (nil . copy) in tables
+          for pairs in contents
+          do (loop for (key . value) in pairs
+                   do (setf (gethash key copy) value)))))
+
+(defun finish-copies (copier)
+  "Put right all that COPIER has copied."
+  (loop
+    (put-all-right copier)
+    (let ((tables (shiftf (copier-tables copier) '())))
+      (unless tables (return))
+      (fill-tables tables copier))))
+
+(defmacro copying ((copier) &body body)
+  "Run BODY, which copies things by COPIER, and put all that right. Return the value of BODY, one."
+  (once-only (copier)
+    `(progn
+       (refresh-manners)
+       (prog1 (progn ,@body)
+         (finish-copies ,copier)))))
+
+;;; Values alone, of which no run is part.
+
+(defun plain-value-p (value)
+  "True if VALUE is a list, an array, a table, a closure or a variable of one, or a structure or
+instance of a class of a user's of which nobody has said how it is copied: what has no identity."
+  (typecase value
+    ((or cons array hash-table) t)
+    (condition nil)
+    (function (and (closure-p value) (not (typep value 'standard-object))))
+    (structure-object (and (null (kind-of value)) (eq :copy (manner-way (manner value)))))
+    (standard-object (eq (first (compute-applicable-methods #'copy-plan-value (list value nil)))
+                         (find-method #'copy-plan-value '()
+                                      (list (find-class 'standard-object) (find-class t)))))
+    (t (and (value-cell-p value) (not (exit-cell-p value))))))
+
+(defun immediate-p (value)
+  (typep value '(or number symbol character)))
+
+(defun copy-values (list instead-of)
+  "Return LIST with copies of the plain values in it, and of those in these; what two hold is shared
+by their copies. For anything else there is what INSTEAD-OF, a function, returns."
+  (if (every #'immediate-p list)
+      list
+      (with-copier (copier :screen (lambda (value)
+                                     (if (plain-value-p value)
+                                         (values nil nil)
+                                         (values (funcall instead-of value) t))))
+        (copying (copier) (forked list copier)))))

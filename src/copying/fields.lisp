@@ -1,0 +1,76 @@
+;;;; fields.lisp -- what is in an object, of a kind or not, to be written down and put back.
+
+(in-package :ars-magna.copying)
+
+(export '(field-name field-kept-p field-reader field-writer field-initial fields-of-type
+          blank-object note-lasting lasting-name lasting-function))
+
+;;; A copy in a file has what another object of a run would need to go on: of a kind, what its
+;;; roles :FIXED, :STATE and :MEMORY say; what is :SCRATCH or a :LINK is as at first. A structure
+;;; without a kind has no roles, and all that is in it counts.
+
+(defstruct (field (:constructor make-field (name kept-p reader writer initial)) (:copier nil))
+  "What is known of a slot of structures of one type."
+  (name nil :type symbol :read-only t)
+  (kept-p t :type boolean :read-only t)
+  (reader nil :type function :read-only t)
+  (writer nil :type function :read-only t)
+  (initial nil :type function :read-only t))
+
+(document-functions
+  field-name "Return the name of the slot, a symbol."
+  field-kept-p "True if what is in the slot is to be written down."
+  field-reader "Return the function of an object that returns what is in the slot."
+  field-writer "Return the function of a value and an object that puts the value into the slot, and
+signals an error if it is of the wrong type."
+  field-initial "Return the function that returns what the slot begins with.")
+
+(defun field-of-kind (slot)
+  "Return the field that SLOT, of a kind, is."
+  (make-field (kind-slot-name slot)
+              (and (member (kind-slot-role slot) '(:fixed :state :memory)) t)
+              (kind-slot-reader slot)
+              (kind-slot-writer slot)
+              (kind-slot-initial slot)))
+
+(defun plain-field (name type)
+  "Return the field that the slot NAME, of TYPE, of a structure without a kind is."
+  (make-field name t
+              (lambda (object) (slot-value object name))
+              (lambda (value object)
+                (unless (typep value type)
+                  (error 'type-error :datum value :expected-type type))
+                (setf (slot-value object name) value))
+              (constantly nil)))
+
+(defun fields-of-type (type)
+  "Return a list of the fields of the structures of TYPE, a symbol."
+  (let* ((kind (kind-called type))
+         (slots (and kind (kind-slots kind))))
+    (append (mapcar #'field-of-kind slots)
+            (loop for (name slot-type) in (class-slot-types (find-class type))
+                  unless (find name slots :key #'kind-slot-name)
+                    collect (plain-field name slot-type)))))
+
+(defun blank-object (type)
+  "Return a new structure of TYPE, a symbol, in which nothing is yet what it should be: all of its
+fields are to be written before anybody looks at it."
+  (allocate-instance (find-class type)))
+
+;;; Functions that objects hold, and that a file may name: none but these.
+
+(defvar *lasting-functions* '()
+  "The names of functions that objects of a run hold for as long as they last.")
+
+(defun note-lasting (name)
+  "Let the function called NAME be one that a file may name as held by an object. Return NAME."
+  (pushnew name *lasting-functions*)
+  name)
+
+(defun lasting-name (function)
+  "Return the name of FUNCTION if it is one of those that NOTE-LASTING was told of, or NIL."
+  (find function *lasting-functions* :key #'fdefinition))
+
+(defun lasting-function (name)
+  "Return the function called NAME if NOTE-LASTING was told of it, or NIL."
+  (and (member name *lasting-functions*) (fdefinition name)))

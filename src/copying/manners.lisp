@@ -1,0 +1,167 @@
+;;;; manners.lisp -- how structures are copied: found out once for each class.
+
+(in-package :ars-magna.copying)
+
+(export '(define-shared define-shared-slots))
+
+(addition cannot-fork)
+(define-condition cannot-fork (ars-magna-error)
+  ((value :initarg :value :reader cannot-fork-value)
+   (place :initarg :place :initform nil :reader cannot-fork-place)
+   (trouble :initarg :trouble :initform nil :reader cannot-fork-trouble))
+  (:report (lambda (condition stream)
+             (format stream "~A cannot be copied for a fork~@[; it was found in ~A~]. ~:[Share it, ~
+                             leave it out, or define a method of COPY-PLAN-VALUE for it~;The ~
+                             method of COPY-PLAN-VALUE for it failed: ~:*~A. Mend that, share it, ~
+                             or leave it out~]."
+                     (safe-text (cannot-fork-value condition) :length 200)
+                     (cannot-fork-place condition)
+                     (and (cannot-fork-trouble condition)
+                          (string-right-trim "." (cannot-fork-trouble condition))))))
+  (:documentation "A fork was asked for, and something in the run is part of the world outside: a
+stream, a thread, a lock. Restarts: SHARE-VALUE, both runs have the same one; LEAVE-OUT-VALUE, the
+fork has NIL instead; MAKE-NO-FORK."))
+
+(addition cannot-fork-value cannot-fork-place share-value leave-out-value make-no-fork)
+(document-restarts
+ 'share-value "Make the fork; both runs have the same object."
+ 'leave-out-value "Make the fork; it has NIL instead of the object."
+ 'make-no-fork "Make no fork. The function that was to make one returns NIL.")
+(document-functions
+  cannot-fork-value "Return what cannot be copied."
+  cannot-fork-place "Return where it was found: a text, such as the name of a plan's variable.")
+
+(defun found-in (value copier)
+  "Return a text that says where COPIER has come upon VALUE: what its option :PLACE-OF, a function,
+says, or else in what kind of object."
+  (let ((place-of (copier-option copier :place-of)))
+    (or (and place-of (funcall place-of value))
+        (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))
+
+(defun decision-about (value copier)
+  "Return a cons of VALUE and what the fork is to have for it, if COPIER was told that; else NIL."
+  (assoc value (copier-option copier :decisions) :test #'eq))
+
+(defun ask-about (value copier)
+  "Return what the fork is to have for VALUE as the option :DECISIONS, an alist, says. Signals
+CANNOT-FORK."
+  (let ((decision (decision-about value copier)))
+    (if decision
+        (cdr decision)
+        (error 'cannot-fork :value value :place (found-in value copier)))))
+
+(defgeneric copy-plan-value (value fork)
+  (:documentation
+   "Return what FORK, a fork of a run that is being made, is to have for VALUE, which was found in
+the variables of its plans, in closures, or wherever a run keeps things. Lists, vectors, tables,
+structures and instances of classes are copied, with what is in them; what two hold is shared by
+their copies. Functions are shared, those that have closed over something are copied with that. A
+method for a class of one's own may say otherwise: that VALUE itself is shared, by returning it, or
+what stands for it; (forked x fork) is what FORK has for another object x.")
+  (:method (value fork) (ask-about value fork)))
+
+(addition copy-plan-value)
+
+;;; What is shared.
+
+(defvar *shared-types* '()
+  "The types of structures that are shared.")
+
+(defmacro define-shared (&rest types)
+  "Let objects of TYPES be shared by a run and its forks."
+  `(progn ,@(loop for type in types
+                  collect `(pushnew ',type *shared-types*)
+                  collect `(defmethod copy-plan-value ((value ,type) fork)
+                             (declare (ignore fork))
+                             value))))
+
+(defvar *shared-slots* '()
+  "Lists (type slot...): slots of structures without a kind, in which nothing is ever altered.")
+
+(defmacro define-shared-slots (type &rest slots)
+  "Let a run and its forks share what is in SLOTS of structures of TYPE."
+  `(pushnew '(,type ,@slots) *shared-slots* :test #'equal))
+
+(defun shared-slot-p (name object kind)
+  "True if forks share what is in the slot NAME of OBJECT, of KIND or of none."
+  (let ((slot (kind-slot-called name kind)))
+    (if slot
+        (kind-slot-shared-p slot)
+        (or (and (environment-p object) (fixed-slot-p name))
+            (loop for (type . slots) in *shared-slots*
+                    thereis (and (typep object type) (member name slots)))))))
+
+;;; Manners.
+
+(defstruct (manner (:constructor make-manner (way indices fresh)) (:copier nil))
+  "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD, if a method knows; or :ASK,
+of what is the system's own. What is in the slots number INDICES is copied too; FRESH is a list
+(writer . initial) of functions for the slots that are as in a new object."
+  (way :copy :type (member :share :copy :method :ask) :read-only t)
+  (indices #() :type simple-vector :read-only t)
+  (fresh '() :type list :read-only t))
+
+(defun systems-own-p (class)
+  "True if CLASS is one of the Lisp system's own, such as streams and threads."
+  (let ((name (package-name (or (symbol-package (class-name class)) :keyword))))
+    (or (string= name "COMMON-LISP") (starts-with-subseq "SB-" name))))
+
+(defun kind-slot-called (name kind)
+  (and kind (find name (kind-slots kind) :key #'kind-slot-name :test #'eq)))
+
+(defun link-slots (kind)
+  (remove :link (and kind (kind-slots kind)) :key #'kind-slot-role :test-not #'eq))
+
+(defun own-method-p (object)
+  "True if somebody has said how structures like OBJECT are copied."
+  (let ((method (first (compute-applicable-methods #'copy-plan-value (list object nil)))))
+    (not (eq method (find-method #'copy-plan-value '()
+                                 (list (find-class 'structure-object) (find-class t)))))))
+
+(defun way-to-copy (object)
+  "Return the way in which structures like OBJECT are copied; see MANNER."
+  (cond ((some (lambda (type) (typep object type)) *shared-types*) :share)
+        ((own-method-p object) :method)
+        ((and (systems-own-p (class-of object)) (not (environment-p object))) :ask)
+        (t :copy)))
+
+(defun find-manner (object)
+  "Return how structures like OBJECT are copied."
+  (let* ((kind (kind-of object)) (links (link-slots kind)) (way (way-to-copy object)))
+    (if (member way '(:share :ask))
+        (make-manner way #() '())
+        (make-manner way
+                     (coerce (loop for (index . name) in (reference-slots object)
+                                   unless (or (find name links :key #'kind-slot-name)
+                                              (shared-slot-p name object kind))
+                                     collect index)
+                             'simple-vector)
+                     (loop for slot in links
+                           collect (cons (kind-slot-writer slot) (kind-slot-initial slot)))))))
+
+(defconstant +manners-known+ 4096 "How many manners are remembered at most, a power of 2.")
+
+(defun no-manners ()
+  (make-array +manners-known+ :initial-element nil))
+
+(defvar *manners* (cons '() (no-manners))
+  "The methods of COPY-PLAN-VALUE, and what was found out when these were all: a vector of lists
+(layout . manner), each where the number of its layout says, the last one of those that belong
+there.")
+
+(defun refresh-manners ()
+  "Forget the manners that were found out before methods of COPY-PLAN-VALUE were defined."
+  (let ((methods (methods-of-generic #'copy-plan-value)))
+    (unless (eq methods (car *manners*))
+      (setf *manners* (cons methods (no-manners))))))
+
+(defun manner (object)
+  "Return how OBJECT, a structure, is copied."
+  (declare #.*hot*)
+  (let* ((manners (cdr *manners*))
+         (layout (layout-of object))
+         (place (logand (layout-number layout) (1- +manners-known+)))
+         (known (svref manners place)))
+    (if (eq layout (car known))
+        (cdr known)
+        (cdr (setf (svref manners place) (cons layout (find-manner object)))))))

@@ -1,0 +1,238 @@
+;;;; definitions.lisp -- what all defining forms share: where they stand, what is wrong with them.
+
+(in-package :ars-magna.definitions)
+
+(export '(current-source *definition* definition-again make-defining defining-form reject-clause
+          call-with-definition expand-definition forms-or-rejection title check-function-name
+          other-definition-p in-file-p missing-name read-value clause-place current-form-digest
+          endless-p))
+
+;;; A defining form is checked when it is expanded and carried out when that is evaluated. In
+;;; both, *DEFINITION* says which one it is, so that an error names file and line, and restarts
+;;; leave the definition out, read it again from its file, or take something else instead.
+
+(defstruct (defining-form (:conc-name defining-) (:constructor make-defining (source form))
+                          (:copier nil))
+  "The definition FORM, from SOURCE, that is being expanded or carried out."
+  (source '() :type list :read-only t)
+  (form '() :type list :read-only t)
+  ;; Which of the forms of that operator and name in its file it is, from 0, once looked up.
+  (ordinal nil)
+  ;; The part of it that was rejected last.
+  (clause nil))
+
+(document-functions
+  make-defining "Return that FORM, from SOURCE, is being expanded or carried out."
+  defining-form "Return the form that is being expanded or carried out.")
+
+(defvar *definition* nil
+  "The definition that is being expanded or carried out, or NIL.")
+
+(defun current-source ()
+  "Return the source of the definition that is being carried out, or else of the form that is being
+loaded; NIL if it was typed."
+  (if *definition*
+      (defining-source *definition*)
+      (source-here)))
+
+(defun current-form-digest ()
+  "Return a number for the form of the definition that is being carried out, or NIL."
+  (and *definition* (form-digest (defining-form *definition*))))
+
+(defun current-head ()
+  "Return operator and name of the definition that is being carried out, in a list."
+  (and *definition* (head (defining-form *definition*))))
+
+(defun current-docstring ()
+  "Return what the author of the definition that is being carried out says there of what it defines:
+the value of :documentation, or the first string behind the name; NIL if there is neither."
+  (let* ((parts (and *definition* (cddr (defining-form *definition*))))
+         (text (or (second (member :documentation parts)) (find-if #'stringp parts))))
+    (and (stringp text) text)))
+
+(defun title (operator name)
+  "Return what the definition of NAME by OPERATOR is called in messages, such as \"defmap yard\"."
+  (let ((name (abridged name)))
+    (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
+
+(defun definition-text (definition)
+  "Return what DEFINITION is called in messages."
+  (let ((form (defining-form definition)))
+    (title (first form) (second form))))
+
+(defun clause-place (clause)
+  "Return where CLAUSE of the definition at hand stands, such as \"yard.lisp, line 7\", or NIL."
+  (let ((source (if *definition* (current-source) (source-here))))
+    (when source
+      (multiple-value-bind (line ordinal)
+          (clause-line (source-file source)
+                       (and *definition* (defining-form *definition*)) clause)
+        (when *definition* (setf (defining-ordinal *definition*) ordinal))
+        (format nil "~A~@[, line ~D~]" (source-file source)
+                (or (line-in-text (source-file source) clause (place-in-text clause)) line))))))
+
+(defun reject-clause (definition clause expected &optional (place (clause-place clause)))
+  "Signal MALFORMED-DEFINITION about CLAUSE, at PLACE, of DEFINITION, a string such as \"defmap
+watson\"."
+  (when *definition* (setf (defining-clause *definition*) clause))
+  (error 'malformed-definition :definition definition :clause clause :expected expected
+                               :place place))
+
+(defun check-function-name (definition name)
+  "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, belongs to a package whose names users cannot
+define as functions, or is no name of a function."
+  (unless (or (symbolp name) (and (consp name) (eq 'setf (first name))))
+    (reject-clause definition name "a symbol as the name"))
+  (let ((package (and (symbolp name) (symbol-package name))))
+    (when (and package (package-locked-p package) (not (eq package *package*)))
+      (reject-clause definition name
+                     (format nil "a name that is free; ~A belongs to ~A. Call it my-~(~A~), or ~
+                                  shadow the symbol in your package: (:shadow #:~(~A~))"
+                             name (package-name package) name name)))))
+
+;;; Restarts.
+
+(addition skip-definition skip-clause read-again)
+(document-restarts
+ 'skip-definition "Leave the definition with the mistake out. What had its name keeps it."
+ 'skip-clause "Leave the clause of a map that has the mistake out, and go on with the next."
+ 'read-again "Read the definition, or the clause, again from its file, after you have mended it
+there."
+ 'use-value "Use the value that you type instead: another clause, definition, name or value.")
+
+(defun read-value (what)
+  "Ask the user for WHAT, a form; return a list of it."
+  (format *query-io* "~&~A: " what)
+  (finish-output *query-io*)
+  (list (read *query-io*)))
+
+(defun in-file-p (condition)
+  "True if what CONDITION is about was read from a file, and could be read again."
+  (declare (ignore condition))
+  (and (current-source) t))
+
+(defun definition-again (definition)
+  "Return the form of DEFINITION as it stands in its file now."
+  (read-definition-again (source-file (defining-source definition))
+                         (defining-form definition) (defining-ordinal definition)))
+
+(defun other-definition-p (value &optional (definition *definition*))
+  "True if VALUE is a whole form that can take the place of DEFINITION."
+  (and (consp value)
+       (symbolp (first value))
+       (same-name-p (first value) (first (defining-form definition)))))
+
+(defun definition-with (definition value)
+  "Return the form of DEFINITION with VALUE for the clause that was rejected; VALUE itself if that
+is such a form."
+  (let* ((form (defining-form definition))
+         (clause (defining-clause definition))
+         (new (subst value clause form :test #'equal)))
+    (cond ((other-definition-p value definition) value)
+          ((and clause (not (equal new form))) new)
+          (t (reject-use "~S can stand for no part of ~A. Give a whole form for it."
+                         value (definition-text definition))))))
+
+(defun call-with-definition-restarts (function replace)
+  "Call FUNCTION. A user who chooses so leaves the definition at hand out, or has REPLACE called
+with another form for it: read again from its file, or with another clause. If that is no better,
+the user is asked again."
+  (let ((definition *definition*))
+    (flet ((instead (choose)
+             (call-with-definition-restarts
+              (lambda () (funcall replace (funcall choose definition))) replace)))
+      (restart-case (funcall function)
+        (skip-definition ()
+          :report (lambda (stream) (format stream "Leave ~A out." (definition-text definition)))
+          nil)
+        (read-again ()
+          :test in-file-p
+          :report (lambda (stream)
+                    (format stream "Read ~A again from its file." (definition-text definition)))
+          (instead #'definition-again))
+        (use-value (value)
+          :report (lambda (stream)
+                    (format stream "Use another clause of ~A, or another form for it."
+                            (definition-text definition)))
+          :interactive (lambda () (read-value "A clause to use, or a whole form"))
+          (instead (lambda (definition) (definition-with definition value))))))))
+
+;;; Mistakes that Lisp finds.
+
+(defun missing-name (condition)
+  "Return the name of the variable or function that CONDITION says is not defined, or NIL."
+  (and (typep condition '(or unbound-variable undefined-function))
+       (cell-error-name condition)))
+
+(defun head (form)
+  "Return operator and name of the definition FORM, in a list."
+  (subseq form 0 (min 2 (length form))))
+
+(defun reject-value (condition)
+  "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form that an author wrote."
+  (reject-clause (definition-text *definition*)
+                 (or (missing-name condition)
+                     (append (head (defining-form *definition*)) (list +more+)))
+                 (format nil "forms that have values (~A)"
+                         (string-right-trim "." (text-of-condition condition)))))
+
+(defun call-blaming-author (function)
+  "Call FUNCTION, which carries out the definition at hand. Errors that are not ours are mistakes in
+the definition."
+  (handler-bind ((error (lambda (condition)
+                          (unless (typep condition 'ars-magna-error)
+                            (reject-value condition)))))
+    (funcall function)))
+
+(defun call-as-definition (source form function)
+  "Call FUNCTION, which carries out the definition FORM from SOURCE."
+  (let ((*definition* (make-defining source form)))
+    (call-with-definition-restarts (lambda () (call-blaming-author function)) #'eval)))
+
+(defun endless-p (form)
+  "True if FORM has more conses than anybody writes, as circular lists do."
+  (let ((left 10000000) (stack (list form)))
+    (loop while stack
+          do (let ((part (pop stack)))
+               (when (consp part)
+                 (when (minusp (decf left)) (return t))
+                 (push (cdr part) stack)
+                 (push (car part) stack))))))
+
+(defun rejected-form (condition)
+  "Return a form that signals again, where it is evaluated, what CONDITION says."
+  (when *compile-file-truename*
+    (call-at-place (malformed-definition-clause condition)
+                   (lambda () (warn-of-definition "~A" condition))))
+  `(reject-clause ',(malformed-definition-definition condition)
+                  ',(malformed-definition-clause condition)
+                  ,(malformed-definition-expected condition)
+                  ,(malformed-definition-place condition)))
+
+(defun forms-or-rejection (function nested)
+  "Return what FUNCTION returns. If it signals MALFORMED-DEFINITION and the form is NESTED in
+others or in a file that is compiled, where the compiler would make another error of that, return a
+form that signals it later."
+  (if (or nested *compile-file-truename*)
+      (handler-case (funcall function)
+        (malformed-definition (condition) (list (rejected-form condition))))
+      (funcall function)))
+
+(defun call-with-definition (form function)
+  "Call FUNCTION, which expands the definition FORM, and return what it returns."
+  (let ((*definition* (make-defining (source-here) form)))
+    (call-with-definition-restarts function #'identity)))
+
+(defun expand-definition (form environment function)
+  "Return the expansion of FORM, (operator name ...), in ENVIRONMENT: what FUNCTION returns, a list
+of forms that carry it out and as second value a list of forms to come before. The whole returns
+the name."
+  (call-with-definition
+   form
+   (lambda ()
+     (multiple-value-bind (forms before)
+         (forms-or-rejection function (nested-p environment))
+       `(progn
+          ,@before
+          (call-as-definition ',(current-source) ',form (lambda () ,@forms))
+          ',(second form))))))

@@ -1,0 +1,152 @@
+;;;; facts.lisp -- what people want to know of an object or a name: for DESCRIBE and inspectors.
+
+(in-package :ars-magna.definitions)
+
+(export '(facts known-facts define-facts listed fact-text))
+
+;;; FACTS says it once, as labels and texts; DESCRIBE and the inspectors of editors show them. Of a
+;;; symbol, DESCRIBE also shows what users' definitions call so, since maps, kickers and the like go
+;;; by name.
+
+(defgeneric facts (object)
+  (:documentation "Return what people want to know of OBJECT: a list of lists (label text), in
+order, without those whose text is NIL.")
+  (:method (object) (declare (ignore object)) '()))
+
+(defun known-facts (&rest labels-and-texts)
+  "Return a list (label text) for each two of LABELS-AND-TEXTS, unless the text is NIL. What is no
+string is written as people write it."
+  (loop for (label fact) on labels-and-texts by #'cddr
+        when fact collect (list label (if (stringp fact) fact (fact-text fact)))))
+
+(defun fact-text (fact)
+  "Return FACT, any object, as people write it, on one line."
+  (let ((*print-case* :downcase) (*read-default-float-format* 'double-float))
+    (one-line (safe-text fact :length 400))))
+
+(defun listed (objects)
+  "Return OBJECTS, such as names, as people list them; NIL if there are none."
+  (and objects
+       (format nil "~{~A~^, ~}"
+               (names-to-show (loop for object in objects
+                                    collect (if (typep object '(or symbol string))
+                                                object
+                                                (fact-text object)))))))
+
+(defun write-facts-of (facts stream &optional (indent 2))
+  (loop for (label text) in facts
+        do (format stream "~&~V@T~A: ~A~%" indent label text)))
+
+(defun write-facts (object stream)
+  "Write to STREAM what OBJECT is, and what is to be known of it and its definition."
+  (format stream "~&~S~%" object)
+  (write-facts-of (append (facts object) (facts-of-definition (entry-of object))) stream))
+
+(defmacro define-facts ((class variable) &rest labels-and-forms)
+  "Let DESCRIBE and inspectors show, of the object VARIABLE of CLASS, what FORMS return under
+LABELS, alternating, as KNOWN-FACTS takes them."
+  `(progn
+     (defmethod facts ((,variable ,class)) (known-facts ,@labels-and-forms))
+     ,@(unless (kind-called class)
+         `((defmethod describe-object ((,variable ,class) stream)
+             (write-facts ,variable stream))))))
+
+(defun describe-by-kind (object stream)
+  "Write to STREAM what OBJECT is, what people want to know of it, and what is in it, by role."
+  (write-facts object stream)
+  (loop for (title . slots) in (slots-to-show object)
+        do (format stream "~& ~A:~%" title)
+           (loop for (name value text) in slots
+                 do (format stream "  ~(~22A~) ~A  (~A)~%" name (cut (fact-text value) 200)
+                            text))))
+
+;;; Parameters.
+
+(define-facts (parameter parameter)
+  "What it is" (parameter-sentence parameter)
+  "Value" (fact-text (parameter-value parameter))
+  "Default" (fact-text (parameter-default parameter))
+  "Can be" (describe-type (parameter-type parameter))
+  "Unit" (parameter-unit parameter)
+  "In a clean simulation" (and (eq :noise (parameter-kind parameter))
+                               (fact-text (parameter-clean parameter))))
+
+;;; Definitions.
+
+(defun entry-of (object)
+  "Return the entry of a registry for OBJECT, or NIL."
+  (loop for registry in *registries*
+          thereis (find object (registry-entries registry) :key #'entry-object :test #'eq)))
+
+(defun entry-line (entry)
+  "Return the line on which the definition of ENTRY stands in its file now, or NIL."
+  (and (entry-head entry)
+       (clause-line (source-file (entry-source entry)) (entry-head entry) nil)))
+
+(defun facts-of-definition (entry)
+  "Return, as FACTS does, where the definition of ENTRY stands, and what its author says of it."
+  (and entry
+       (known-facts "Documentation" (entry-documentation entry)
+                    "Defined in" (and (source-file (entry-source entry))
+                                      (format nil "~A~@[, line ~D~]"
+                                              (source-file (entry-source entry))
+                                              (entry-line entry))))))
+
+(defun open-registries ()
+  "Return the registries of what users define."
+  (remove-if #'registry-fixed-p *registries*))
+
+(defun worth-telling-p (entry registry symbol)
+  "True if one who asks for SYMBOL wants to know of ENTRY, which that stands for in REGISTRY. What
+is ours, such as a command, Lisp tells of by itself, unless it is called otherwise there, as TURN."
+  (or (not (registry-fixed-p registry))
+      (and (not (eq symbol (entry-name entry)))
+           (facts (entry-object entry)))))
+
+(defun describe-definitions (symbol stream)
+  "Write to STREAM what definitions are called SYMBOL."
+  (dolist (registry *registries*)
+    (let ((entry (lookup-entry symbol registry)))
+      (when (and entry (worth-telling-p entry registry symbol))
+        (format stream "~&~%~A names ~:[a~;an~] ~A:~%" symbol
+                (find (char (registry-text registry) 0) "aeiou") (registry-text registry))
+        (write-facts-of (append (facts (entry-object entry)) (facts-of-definition entry))
+                        stream)))))
+
+(defmethod describe-object :after ((symbol symbol) stream)
+  (when symbol (describe-definitions symbol stream)))
+
+;;; Documentation, of kinds of definition.
+
+(defun registry-called (kind)
+  "Return the registry of what users define of KIND, a symbol such as KICKER, or NIL."
+  (find-if (lambda (registry)
+             (or (same-name-p kind (registry-kind registry))
+                 (member kind (registry-synonyms registry) :test #'same-name-p)))
+           (open-registries)))
+
+(defmethod documentation ((name symbol) (kind symbol))
+  (let ((registry (registry-called kind)))
+    (if registry
+        (let ((entry (lookup-entry name registry)))
+          (and entry (entry-documentation entry)))
+        (call-next-method))))
+
+;;; Where definitions stand, for editors.
+
+(defun definition-sources (name)
+  "Return a list (file position operator) for each definition called NAME, a symbol, whose place
+Lisp does not know by itself, as it does of variables and functions: where in its file, a string, it
+stands now, and what it begins with."
+  (loop for registry in (open-registries)
+        for entry = (lookup-entry name registry)
+        for file = (and entry (not (entry-variable entry)) (source-file (entry-source entry)))
+        for place = (and file (entry-head entry) (not (same-name-p 'procedure
+                                                                   (registry-kind registry)))
+                         (ignore-errors
+                           (first (definition-positions (file-text (native-path file))
+                                                        (entry-head entry)))))
+        when place
+          collect (list file (first place) (first (entry-head entry)))))
+
+(tell-sources #'definition-sources)

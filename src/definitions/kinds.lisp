@@ -1,0 +1,164 @@
+;;;; kinds.lisp -- what each slot of a kind of object is: said once, for all who need to know.
+
+(in-package :ars-magna.definitions)
+
+(export '(slots-to-show *object-kinds* kind-p kind-of kind-called kind-name kind-slots all-kinds
+          find-kind-name kind-slot-name kind-slot-role kind-slot-type kind-slot-text
+          kind-slot-part-p kind-slot-reader kind-slot-writer object-slots reset kind-slot-shared-p
+          kind-decisive-slots kind-slot-initial slot-content))
+
+;;; A kind is a structure whose slots say what they are, by role:
+;;;
+;;;   :fixed    the model: how the object was made;
+;;;   :state    what decides the future, or what programs are told of it;
+;;;   :memory   what is shown to people and decides nothing;
+;;;   :scratch  what means nothing between ticks;
+;;;   :link     what ties the object to those who use it, such as continuations.
+;;;
+;;; From that follow the readers' documentation, RESET, DIGEST-STATE, forks and the inspection of an
+;;; object. Other objects in a slot are referred to, unless the slot is marked as a :PART: then they
+;;; belong to the object, and are reset, digested and shown with it. What is in a slot marked as
+;;; :SHARED is replaced and never altered: forks have the same. Slots marked as :NEAR stand first in
+;;; memory, beside each other: what is read of many objects, one after the other, belongs there.
+
+(defstruct (kind-slot (:constructor make-kind-slot
+                          (name role type text part-p shared-p initial reader writer))
+                      (:copier nil))
+  "What is known of a slot of a kind. INITIAL returns the value that it begins with."
+  (name nil :type symbol :read-only t)
+  (role nil :type (member :fixed :state :memory :scratch :link) :read-only t)
+  (type t :read-only t)
+  (text "" :type string :read-only t)
+  (part-p nil :type boolean :read-only t)
+  (shared-p nil :type boolean :read-only t)
+  (initial nil :type function :read-only t)
+  (reader nil :type function :read-only t)
+  (writer nil :type function :read-only t))
+
+(defun decisive-p (slot)
+  "True if SLOT has state in it, or parts."
+  (or (eq :state (kind-slot-role slot))
+      (and (eq :fixed (kind-slot-role slot)) (kind-slot-part-p slot))))
+
+(defstruct (object-kind (:conc-name kind-)
+                        (:constructor make-kind
+                            (name slots parent
+                             &aux (decisive-slots (remove-if-not #'decisive-p slots))))
+                        (:predicate kind-p) (:copier nil))
+  "A kind of object: its slots, those of its PARENT first."
+  (name nil :type symbol :read-only t)
+  (slots '() :type list :read-only t)
+  (decisive-slots '() :type list :read-only t)
+  (parent nil :type (or null object-kind) :read-only t))
+
+(document-functions
+  kind-slot-name "Return the name of the slot, a symbol."
+  kind-slot-role "Return what the slot is: :FIXED, :STATE, :MEMORY, :SCRATCH or :LINK."
+  kind-slot-type "Return the Lisp type of the slot's values."
+  kind-slot-text "Return what is in the slot, in words."
+  kind-slot-part-p "True if what is in the slot belongs to the object."
+  kind-slot-shared-p "True if what is in the slot is never altered, so that copies can share it."
+  kind-slot-reader "Return the function of an object that returns what is in the slot."
+  kind-slot-writer "Return the function of a value and an object that puts the value into the slot."
+  kind-slot-initial "Return the function that returns what the slot holds at first."
+  kind-decisive-slots "Return those slots of the kind whose contents decide what happens."
+  kind-p "True of kinds."
+  kind-name "Return the name of the kind, the type of its objects."
+  kind-slots "Return a list of what is known of the slots of the kind, inherited ones first.")
+
+(defmethod print-object ((kind object-kind) stream)
+  (print-unreadable-object (kind stream :type t) (princ (kind-name kind) stream)))
+
+(define-registry object-kind "kind of object"
+  :object-p kind-p :by-symbol t :fixed t :internal t)
+
+(declaim (inline kind-called))
+(defun kind-called (name)
+  "Return the kind called NAME, the very symbol, or NIL."
+  (get name 'object-kind))
+
+(declaim (inline kind-of))
+(defun kind-of (object)
+  "Return the kind that OBJECT is of, or NIL."
+  (and (typep object 'structure-object)
+       (kind-called (type-of object))))
+
+(defun based-on-p (kind base)
+  "True if KIND is or includes the kind called BASE."
+  (loop for each = kind then (kind-parent each)
+        while each
+          thereis (eq base (kind-name each))))
+
+(defun all-kinds (&optional base)
+  "Return a list of all kinds, in order of definition; with BASE, the name of one, of those that
+are or include it."
+  (remove-if-not (lambda (kind) (or (null base) (based-on-p kind base)))
+                 (all-object-kinds)))
+
+(defun look-up-kind-name (name base kinds)
+  (loop for kind in kinds
+        when (and (same-name-p name (kind-name kind)) (based-on-p kind base))
+          return (kind-name kind)))
+
+(defun find-kind-name (name base)
+  "Return the name of the first kind, of those that are or include the one called BASE, that is
+called as NAME, a symbol or string; NIL if none is."
+  (let ((kinds (registry-objects *object-kinds*)))
+    (if (symbolp name)
+        ;; Plans' commands ask this of each argument. What was found holds until a kind is defined.
+        (let ((known (get name 'known-kind-name)))
+          (unless (and known (eq base (first known)) (eq kinds (second known)))
+            (setf known (list base kinds (look-up-kind-name name base kinds))
+                  (get name 'known-kind-name) known))
+          (third known))
+        (look-up-kind-name name base kinds))))
+
+;;; What is in an object.
+
+(declaim (inline slot-content))
+(defun slot-content (slot object)
+  "Return what is in SLOT of OBJECT."
+  (funcall (kind-slot-reader slot) object))
+
+(defun object-slots (object &rest roles)
+  "Return a list (name value text) for each slot of OBJECT, of a kind, whose role is among ROLES;
+without ROLES, for each."
+  (loop for slot in (kind-slots (kind-of object))
+        when (or (null roles) (member (kind-slot-role slot) roles))
+          collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
+
+(defun slots-to-show (object)
+  "Return lists (title (name value text)...) of the slots of OBJECT, a structure: by role if it is
+of a kind, else all under one title, without texts."
+  (if (kind-of object)
+      (loop for (role title) in '((:fixed "as it was made") (:state "state") (:memory "memory")
+                                  (:scratch "scratch") (:link "links"))
+            for slots = (object-slots object role)
+            when slots collect (cons title slots))
+      (list (cons "slots" (loop for name in (class-slot-names (class-of object))
+                                collect (list name (slot-value object name) nil))))))
+
+;;; Reset.
+
+(declaim (inline map-parts))
+(defun map-parts (function value)
+  "Call FUNCTION with the object VALUE, or with each in the list or vector VALUE."
+  (typecase value
+    (list (mapc function value))
+    (vector (map nil function value))
+    (t (funcall function value))))
+
+(defgeneric reset (object)
+  (:documentation "Make OBJECT, of a kind, and its parts as they were when they were made. What its
+:LINKs say stays. Return OBJECT. A kind may add an :AFTER method.")
+  (:method (object) object)
+  (:method ((object structure-object))
+    (let ((kind (kind-of object)))
+      (when kind
+        (dolist (slot (kind-slots kind))
+          (ecase (kind-slot-role slot)
+            ((:state :memory :scratch)
+             (funcall (kind-slot-writer slot) (funcall (kind-slot-initial slot)) object))
+            (:fixed (when (kind-slot-part-p slot) (map-parts #'reset (slot-content slot object))))
+            (:link))))
+      object)))

@@ -1,0 +1,152 @@
+;;;; lisp-slips.lisp -- what was meant where Lisp finds no function, value, syntax or type.
+
+(in-package :ars-magna.definitions)
+
+(export '(note-dispatch-character value-behind *function-meant* ours-called))
+
+(defun functions-like (name package)
+  "Return the functions and macros, not Lisp's, that PACKAGE sees and for which NAME may be a slip."
+  (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
+    (do-symbols (symbol package)
+      (when (and (fboundp symbol)
+                 (not (eq lisp (symbol-package symbol)))
+                 (<= (abs (- (length (symbol-name symbol)) (length (symbol-name name)))) 2)
+                 (resembles-p name symbol))
+        (pushnew symbol symbols)))
+    (sort symbols #'string<)))
+
+(defun ours-called (name)
+  "Return the function of ours that is called like NAME, a string or another symbol, and the name of
+the package that exports it; or NIL."
+  ;; A user's package may have nicknames of its own for others.
+  (let ((*package* (find-package "KEYWORD")))
+    (dolist (package '("ARS" "NISP"))
+      (multiple-value-bind (symbol status)
+          (and (find-package package) (find-symbol (string name) package))
+        (when (and (eq :external status) (fboundp symbol)) (return (values symbol package)))))))
+
+;;; Names in other packages.
+
+(defun user-packages ()
+  "Return the packages that use ARS, ARS-USER first, without those of this system."
+  (let ((ours (find-package "ARS-USER")))
+    (cons ours
+          (remove-if (lambda (package)
+                       (or (eq ours package)
+                           (starts-with-subseq "ARS-MAGNA" (package-name package))))
+                     (and (find-package "ARS") (package-used-by-list "ARS"))))))
+
+(defun elsewhere-text (name predicate)
+  "Return in a sentence which users' package has a symbol called NAME, another one, that fits
+PREDICATE, and how to use it; or NIL."
+  (dolist (package (user-packages))
+    (multiple-value-bind (symbol status) (find-symbol (symbol-name name) package)
+      (when (and symbol (not (eq symbol name)) (funcall predicate symbol))
+        (return
+          (if (and (eq :external status) (eq package (symbol-package symbol)))
+              (format nil "There is ~(~A:~A~)." (package-name package) symbol)
+              (format nil "~A has it: say (in-package :~(~:*~A~)) first."
+                      (package-name package))))))))
+
+;;; Functions.
+
+;; The layer that knows commands sets it.
+(defvar *function-meant* (constantly nil)
+  "A function of a symbol that is the name of no function: it returns that of one which is called so
+elsewhere, as at the prompt, or NIL.")
+
+(defun function-slip-text (name)
+  "Return in a sentence what NAME, of no function, may be a slip for, or NIL."
+  (when (and (symbolp name) (symbol-package name))
+    (multiple-value-bind (ours package)
+        (ours-called (or (funcall *function-meant* name) name))
+      (if ours
+          (if (eq ours (find-symbol (symbol-name ours) (symbol-package name)))
+              (format nil "In Lisp it is ~(~A~)." ours)
+              (format nil "There is one in ~A: write ~(~:*~A:~A~), or type (in-package :ars-user) ~
+                           first."
+                      package ours))
+          (function-elsewhere-text name)))))
+
+(defun function-elsewhere-text (name)
+  "Return in a sentence which function, not ours, NAME may be a slip for, or NIL."
+  (or (elsewhere-text name #'fboundp)
+      (let ((like (nearest-name name (functions-like name (symbol-package name)))))
+        (and like (format nil "Did you mean ~(~A~)?" (unqualified-text like))))))
+
+;;; Variables.
+
+(defun variable-of-users-p (symbol)
+  "True if SYMBOL means something where a variable stands."
+  (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol))))
+
+(defun defined-slip-text (name)
+  "Return in a sentence what the definitions are that NAME, which has no value, stands for, or NIL."
+  (loop for registry in *registries*
+        for entry = (and (not (registry-fixed-p registry)) (lookup-entry name registry))
+        when (and entry (not (entry-variable entry)))
+          return (format nil "It is the name of ~:[a~;an~] ~A: '~(~A~)."
+                          (find (char (usual-name registry) 0) "aeiou")
+                          (usual-name registry) (unqualified-text name))))
+
+(defun variable-slip-text (name)
+  "Return in a sentence what NAME, which has no value, may be a slip for, or NIL."
+  (when (and (symbolp name) (symbol-package name))
+    (let ((code (code-slip name)))
+      (or (and code (format nil "Did you mean ~A?" code))
+          (elsewhere-text name #'variable-of-users-p)
+          (defined-slip-text name)
+          (let ((like (variable-slip name)))
+            (and like (format nil "Did you mean ~A?" like)))))))
+
+;;; Syntax.
+
+(defvar *dispatch-remedies* '() "Lists (character remedy) for what may stand behind # elsewhere.")
+
+(defun note-dispatch-character (character remedy)
+  "Note that REMEDY, a sentence, says what to do to have CHARACTER read behind #."
+  (pushnew (list character remedy) *dispatch-remedies* :test #'equal))
+
+(defun syntax-slip-text (condition)
+  "Return in a sentence what to do to have read what CONDITION says cannot be read, or NIL."
+  (let ((character (and (typep condition 'simple-condition)
+                        (starts-with-subseq "no dispatch function"
+                                            (simple-condition-format-control condition))
+                        (first (simple-condition-format-arguments condition)))))
+    (and character (second (assoc character *dispatch-remedies* :test #'char-equal)))))
+
+;;; Types.
+
+(defgeneric value-behind (datum)
+  (:documentation "Return in a sentence how to get what somebody may have meant who gave DATUM where
+it is of no use; or NIL.")
+  (:method (datum)
+    (declare (ignore datum))
+    nil))
+
+(defun type-slip-text (datum type)
+  "Return in a sentence how to have an object of TYPE, for somebody who gave DATUM; NIL if there is
+no more to say."
+  (or (type-remedy datum type) (value-behind datum)))
+
+(defun source-known-p (type)
+  "True if the words for TYPE, an argument type, say what returns such an object."
+  (and (our-own-p (argument-type-name type))
+       (search " returns" (argument-type-words type))))
+
+(defun type-remedy (datum type)
+  "Return in a sentence what is wrong with DATUM for the argument type TYPE, or what to give; NIL if
+there is no more to say."
+  (let ((type (and (symbolp type) (find-argument-type type nil))))
+    (when (and type (or (trouble-with datum type) (source-known-p type)))
+      (sentence (format nil "Give ~A" (argument-type-text type datum))))))
+
+(defmethod slip-text ((condition error))
+  (typecase condition
+    (undefined-function (function-slip-text (cell-error-name condition)))
+    (unbound-variable (variable-slip-text (cell-error-name condition)))
+    (reader-error (syntax-slip-text condition))
+    (type-error (type-slip-text (type-error-datum condition)
+                                (type-error-expected-type condition)))))
+
+(setf *report-addition* #'slip-text)

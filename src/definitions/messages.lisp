@@ -1,0 +1,278 @@
+;;;; messages.lisp -- the queue of errors, warnings and messages (manual 3.7), and OUT.
+
+(in-package :ars-magna.definitions)
+
+(export '(error-policy warn-at-once warn-notably *message-queue* make-message-queue message-queue
+          copy-message-queue message-queue-read-p message-queue-listener
+          message-queue-error-policy message message-kind message-items message-asker
+          message-robot message-told-p *robot-told-of* message-run *run-that-reports* *told-of*
+          take-messages queue-message message-text phrase write-message *message-limit*
+          make-message message-cause message-queue-unsignalled))
+
+;;; Messages are queued as lists of items and become text only when somebody reads them. The
+;;; queue is bounded: past *MESSAGE-LIMIT* the oldest go, and how many went is remembered.
+
+(defparameter *message-limit* 1000
+  "How many messages a queue holds before it forgets the oldest (manual 3.7; our bound).")
+
+(public flush-all-errors*)
+(defvar flush-all-errors* nil
+  "When true, queued messages are discarded instead of displayed. Default NIL (manual 3.7).")
+
+(deftype error-policy ()
+  "What becomes of errors in users' code."
+  '(member :report :signal :collect))
+
+(defvar *told-of* nil
+  "A note of who asked for what messages tell of here, as NOTE-OF-ASKER returns it, or NIL.")
+
+(defvar *robot-told-of* nil
+  "The name of the robot whose doing messages tell of here, or NIL.")
+
+(defvar *run-that-reports* (constantly nil)
+  "A function that returns the run that a message queued in this thread belongs to, or NIL.")
+
+(defstruct (message (:constructor make-message
+                        (kind items &key cause (summary "") told-p notable-p about))
+                    (:copier nil))
+  "What the simulator or a user has to say: KIND is :error, :warning or :message. ASKER is a note of
+who asked for what it tells of, such as a command that has ended, or NIL; ROBOT is the name of the
+robot whose command that is, or NIL. RUN is what it belongs to, as several runs may share a queue,
+or NIL. CAUSE is what is wrong with users' code, which SUMMARY says in a line, or NIL, see
+troubles.lisp. ABOUT, or NIL, is the name of the command whose failure it tells. TOLD-P is true if
+users' code has been told of it otherwise. NOTABLE-P is true of a warning that is shown like an
+error if nobody reads it; or a function that returns that in the end; or :AT-ONCE of one that is
+shown as it comes if nobody listens, as the run may never end."
+  (kind :message :type (member :error :warning :message) :read-only t)
+  (items '() :type list :read-only t)
+  (asker *told-of* :read-only t)
+  (robot *robot-told-of* :read-only t)
+  (run (funcall *run-that-reports*) :read-only t)
+  (cause nil :read-only t)
+  (summary "" :type string :read-only t)
+  (about nil :type (or null symbol) :read-only t)
+  (told-p nil :type boolean :read-only t)
+  (notable-p nil :type (or boolean (eql :at-once) function) :read-only t))
+
+(defstruct (message-queue (:constructor make-message-queue (&key (error-policy :report) echoed))
+                          (:copier nil))
+  "Messages nobody has read yet. LISTENER, if any, is called (with no arguments, in the thread
+that reports) after each message is queued. ERROR-POLICY says what becomes of errors in users'
+code: TROUBLES are the latest of them, the newest first, UNSIGNALLED is the first that is to be
+signalled, see troubles.lisp. SEEN is the end of NEWEST-FIRST that nobody needs to be shown. If
+ECHOED, a table, errors are shown as they come where nobody listens; the table counts them. READ-P
+is true once somebody has read messages, or looked whether there are any. LOCK guards all lists,
+counts and tables; whether UNSIGNALLED is NIL may be asked without it."
+  (lock (make-lock "messages") :read-only t)
+  (newest-first '() :type list)
+  (count 0 :type fixnum)
+  (forgotten 0 :type fixnum)
+  (listener nil :type (or null function))
+  (error-policy :report :type error-policy)
+  (seen '() :type list)
+  (read-p nil :type boolean)
+  (troubles '() :type list)
+  (unsignalled nil :type (or null message))
+  (echoed nil :type (or null hash-table) :read-only t))
+
+(setf (documentation 'message-kind 'function) "Return :ERROR, :WARNING or :MESSAGE."
+      (documentation 'message-items 'function) "Return the items that the message is made of."
+      (documentation 'message-asker 'function)
+      "Return a note of who asked for what the message tells of, or NIL."
+      (documentation 'message-robot 'function)
+      "Return the name of the robot whose command the message tells of, or NIL."
+      (documentation 'message-told-p 'function)
+      "True if users' code has been told otherwise of what the message tells of."
+      (documentation 'message-run 'function) "Return the run that the message belongs to, or NIL."
+      (documentation 'make-message-queue 'function) "Return a new, empty queue of messages."
+      (documentation 'message-queue-read-p 'function)
+      "True if somebody has read messages of the queue, or looked whether there are any."
+      (documentation 'message-queue-listener 'function)
+      "Return the function that is called after each message is queued, or NIL. Can be set."
+      (documentation 'make-message 'function)
+      "Return a message of the kind and the list of items given, see MESSAGE."
+      (documentation 'message-cause 'function)
+      "Return the condition or failure in users' code that the message tells of, or NIL."
+      (documentation 'message-queue-error-policy 'function)
+      "Return :REPORT, :SIGNAL or :COLLECT: what becomes of errors in users' code. Can be set."
+      (documentation 'message-queue-unsignalled 'function)
+      "Return the first message about an error in users' code that is to be signalled, or NIL.")
+
+;; An interrupt, such as Control-C, may report something too.
+(defmacro with-queue ((queue) &body body)
+  "Run BODY while no other thread changes QUEUE. Interrupts wait."
+  `(deferring-interrupts (with-lock ((message-queue-lock ,queue)) ,@body)))
+
+(defvar *message-queue* (make-message-queue :echoed (make-hash-table :test 'equal))
+  "The queue that messages go to. A headless simulation binds its own.")
+
+(defun copy-message-queue (queue)
+  "Return a new queue that holds the messages of QUEUE, as seen, and has no listener."
+  (let ((copy (make-message-queue)))
+    (with-queue (queue)
+      (setf (message-queue-newest-first copy) (message-queue-newest-first queue)
+            (message-queue-seen copy) (message-queue-newest-first queue)
+            (message-queue-count copy) (message-queue-count queue)
+            (message-queue-forgotten copy) (message-queue-forgotten queue)))
+    copy))
+
+(defvar *message-echo* (constantly nil)
+  "A function of a message and a queue that echoes, called when nobody listens to that.")
+
+(defun keep-trouble (message queue)
+  "Remember MESSAGE, which tells QUEUE of an error in users' code, and the latest before it."
+  (push message (message-queue-troubles queue))
+  (let ((last (nthcdr (1- *message-limit*) (message-queue-troubles queue))))
+    (when last (setf (rest last) '())))
+  (when (and (eq :signal (message-queue-error-policy queue))
+             (null (message-queue-unsignalled queue)))
+    (setf (message-queue-unsignalled queue) message)))
+
+(defun to-be-seen-p (message)
+  "True if MESSAGE tells of an error, or of what is wrong with users' code, and nobody was told of
+it otherwise."
+  (and (not (message-told-p message))
+       (or (message-cause message) (eq :error (message-kind message)))))
+
+(defun echoed-p (message queue)
+  "True if MESSAGE is shown as it comes where nobody listens to QUEUE."
+  (or (eq :at-once (message-notable-p message))
+      (and (message-queue-echoed queue)
+           (or (to-be-seen-p message) (eq t (message-notable-p message))))))
+
+(defun queue-message (message queue)
+  "Add MESSAGE to QUEUE, and let whoever listens to that know."
+  (with-queue (queue)
+    (when (and (message-cause message) (eq :error (message-kind message)))
+      (keep-trouble message queue))
+    (push message (message-queue-newest-first queue))
+    (incf (message-queue-count queue))
+    (when (> (message-queue-count queue) (* 2 *message-limit*))
+      (incf (message-queue-forgotten queue) (- (message-queue-count queue) *message-limit*))
+      (setf (message-queue-newest-first queue)
+            (subseq (message-queue-newest-first queue) 0 *message-limit*)
+            (message-queue-count queue) *message-limit*)))
+  (let ((listener (message-queue-listener queue)))
+    (cond (listener (funcall listener))
+          ((echoed-p message queue) (funcall *message-echo* message queue)))))
+
+(public error-set)
+(defun error-set (&rest stuff)
+  "Queue an error message made of the items STUFF, printed by OUT's rules. Return nothing
+(manual 3.7)."
+  (queue-message (make-message :error stuff) *message-queue*)
+  (values))
+
+(public warning-set)
+(defun warning-set (&rest stuff)
+  "Queue a warning made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
+  (queue-message (make-message :warning stuff) *message-queue*)
+  (values))
+
+(defun warn-notably (&rest stuff)
+  "Queue a warning made of the items STUFF that is shown like an error if nobody reads it. Return
+nothing."
+  (queue-message (make-message :warning stuff :notable-p t) *message-queue*)
+  (values))
+
+(defun warn-at-once (&rest stuff)
+  "Queue a warning made of the items STUFF that is shown as it comes if nobody listens. Return
+nothing."
+  (queue-message (make-message :warning stuff :notable-p :at-once) *message-queue*)
+  (values))
+
+(public message-set)
+(defun message-set (&rest stuff)
+  "Queue a message made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
+  (queue-message (make-message :message stuff) *message-queue*)
+  (values))
+
+(defun take-messages (&optional (queue *message-queue*))
+  "Empty QUEUE. Return its messages, oldest first, at most *MESSAGE-LIMIT* of them. If older
+ones were forgotten, a warning that says how many comes first."
+  (with-queue (queue)
+    (setf (message-queue-read-p queue) t)
+    (let* ((messages (message-queue-newest-first queue))
+           (kept (subseq messages 0 (min (length messages) *message-limit*)))
+           (forgotten (+ (message-queue-forgotten queue) (- (length messages) (length kept)))))
+      (setf (message-queue-newest-first queue) '()
+            (message-queue-count queue) 0
+            (message-queue-forgotten queue) 0)
+      (setf kept (reverse kept))
+      (if (plusp forgotten)
+          (cons (make-message :warning (list forgotten " earlier messages were forgotten")) kept)
+          kept))))
+
+;;; What a message says with numbers takes longer to write than to know, and few are read.
+
+(defstruct (phrase (:constructor phrase (control &rest arguments)) (:copier nil))
+  "An item of a message: what FORMAT makes of CONTROL and ARGUMENTS, which never change."
+  (control "" :type string :read-only t)
+  (arguments '() :type list :read-only t))
+(setf (documentation 'phrase 'function)
+      "Return an item of a message that says what FORMAT makes of the arguments, once it is read.")
+
+(defmethod print-object ((phrase phrase) stream)
+  (printing-words ()
+    (apply #'format stream (phrase-control phrase) (phrase-arguments phrase))))
+
+;;; Printing.
+
+(defun write-item (item stream)
+  "Write ITEM as OUT does: no quotes, floats without an exponent marker, T as a new
+line (reading 36)."
+  (cond ((eq item t) (terpri stream))
+        ((floatp item)
+         (let ((*read-default-float-format* (type-of item)))
+           (princ item stream)))
+        (t (princ item stream))))
+
+(defun write-items (items stream)
+  "Write each of ITEMS to STREAM by OUT's rules."
+  (dolist (item items) (write-item item stream)))
+
+(public (out :nisp))
+(defun out (&rest items)
+  "Print each of ITEMS, without quotes, to standard output; T ends the line. Return nothing
+(manual 3.1.3)."
+  (write-items items *standard-output*)
+  (finish-output)
+  (values))
+
+(defun item-text (item)
+  "Return ITEM as OUT writes it; words that say so if it cannot be printed."
+  (handler-case (with-output-to-string (stream) (write-item item stream))
+    (error (trouble) (format nil "what cannot be printed (~A: ~A)"
+                             (string-downcase (type-of item)) (one-line-text trouble)))))
+
+(defun message-text (message)
+  "Return the items of MESSAGE as a string, without the marker of its kind."
+  (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
+
+(defun text-with-command (message)
+  "Return what MESSAGE says, with the name of the command that it is about before it: for somebody
+who has not just asked for that."
+  (let ((text (message-text message)) (name (message-about message)))
+    (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
+        (format nil "~(~A~): ~A" name text)
+        text)))
+
+(defun write-message (message stream &optional (text (message-text message)))
+  "Write MESSAGE, which says TEXT, and a new line to STREAM, or return that if STREAM is NIL, marked
+*ERROR* -> or *WARNING* -> (manual E)."
+  (format stream "~@[*~A* -> ~]~A~%"
+          (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
+          text))
+
+(public error-display)
+(defun error-display (&optional (stream *standard-output*))
+  "Write all queued messages to STREAM, oldest first, and flush the queue; NIL and T mean standard
+output. Writes nothing when FLUSH-ALL-ERRORS* is true. Return nothing (manual 3.7). Signals
+WRONG-ARGUMENT, and keeps the messages, if STREAM is no stream. See reading 207."
+  (check-argument error-display stream (typep stream '(or stream boolean)) "a stream")
+  (let ((messages (take-messages))
+        (stream (if (streamp stream) stream *standard-output*)))
+    (unless flush-all-errors*
+      (dolist (message messages) (write-message message stream))
+      (finish-output stream)))
+  (values))

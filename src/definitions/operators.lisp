@@ -1,0 +1,43 @@
+;;;; operators.lisp -- what can be asked of a run, by name: all that a journal may do.
+
+(in-package :ars-magna.definitions)
+
+(export '(operator-name operator-function define-operator check-operands find-operator))
+
+;;; An operator says what its arguments are, and how it is done again when a journal is replayed.
+;;; Nothing else is ever called because a journal says so.
+
+(defstruct (askable (:conc-name operator-) (:constructor make-operator (name types rest function))
+                    (:predicate operator-p) (:copier nil))
+  "Something that can be asked of a run. TYPES are argument types, REST that of any further
+arguments or NIL; FUNCTION, of the arguments, asks it again."
+  (name nil :type symbol :read-only t)
+  (types '() :type list :read-only t)
+  (rest nil :type symbol :read-only t)
+  (function nil :type function :read-only t))
+
+(document-functions
+  operator-name "Return the name of the operator, a symbol."
+  operator-function "Return the function of the operator's arguments that asks it again.")
+
+(define-registry operator "operator" :object-p operator-p :fixed t :internal t)
+
+(defun define-operator (name types function &key rest)
+  "Let NAME be an operator that takes arguments of TYPES, names of argument types, and of the type
+REST after them, if that is given. FUNCTION, of these, asks it again in the current simulation."
+  (register *operators* name (make-operator name types rest function))
+  name)
+
+(defun check-operands (operator arguments)
+  "Signal WRONG-ARGUMENT unless OPERATOR takes ARGUMENTS, a list."
+  (let ((types (operator-types operator)) (name (operator-name operator)))
+    (unless (and (<= (length types) (length arguments))
+                 (or (operator-rest operator) (= (length types) (length arguments))))
+      (error 'wrong-argument :operator name :name "argument list" :value arguments
+                             :expected (format nil "~:[~;at least ~]~D argument~:P"
+                                               (operator-rest operator) (length types))))
+    (loop for argument in arguments
+          for number from 1
+          for rest = types then (rest rest)
+          for type = (if rest (first rest) (operator-rest operator))
+          do (check-of-type name (format nil "argument ~D" number) argument type))))

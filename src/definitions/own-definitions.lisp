@@ -1,0 +1,69 @@
+;;;; own-definitions.lisp -- WITH-OWN-DEFINITIONS: afterwards all is defined as it was before.
+
+(in-package :ars-magna.definitions)
+
+(export '(*kept-variables* become call-with-own-definitions))
+
+(defun become (object model)
+  "Make the structure OBJECT like MODEL, another of its type, slot by slot. Return OBJECT."
+  (dolist (name (class-slot-names (class-of object)) object)
+    (unless (eql (slot-value object name) (slot-value model name))
+      (setf (slot-value object name) (slot-value model name)))))
+
+(defun keep-entry (entry)
+  "Return ENTRY with what RESTORE-ENTRY needs besides: a copy of its object, and a list of the value
+of its variable if there is one."
+  (let ((variable (entry-variable entry)))
+    (list entry
+          (copy-structure (entry-object entry))
+          (and variable (boundp variable) (list (global-value variable))))))
+
+(defun restore-entry (kept)
+  (destructuring-bind (entry copy value) kept
+    (become (entry-object entry) copy)
+    (when value
+      (setf (global-value (entry-variable entry)) (first value)))))
+
+(defun restore-registry (registry kept)
+  "Make REGISTRY as it was when KEPT, a list made by KEEP-ENTRY, was made."
+  (let ((now (registry-entries registry))
+        (then (mapcar #'first kept)))
+    (with-lock (*registries-lock*) (set-entries registry then))
+    (mapc #'forget-entry (set-difference now then))
+    (mapc #'restore-entry kept)
+    (mapc #'reinstate (registry-objects registry))))
+
+(defvar *own-definitions-thread* nil "The thread that is inside WITH-OWN-DEFINITIONS, or NIL.")
+
+(defun claim-definitions ()
+  "Let this thread be the one inside WITH-OWN-DEFINITIONS. Return what to set back afterwards."
+  (let ((other (compare-and-swap (symbol-value '*own-definitions-thread*) nil
+                                 (current-thread))))
+    (unless (member other (list nil (current-thread)))
+      (reject-use "Another thread is inside with-own-definitions: only one at a time may be."))
+    other))
+
+(defvar *kept-variables* '()
+  "Symbols of the variables that say what is current, for WITH-OWN-DEFINITIONS. Layers add them.")
+
+(defun call-with-own-definitions (function)
+  "Call FUNCTION; see WITH-OWN-DEFINITIONS."
+  (let* ((outer (claim-definitions))
+         (variables *kept-variables*)
+         (values (mapcar #'symbol-value variables))
+         (kept (loop for registry in *registries*
+                     collect (cons registry (mapcar #'keep-entry (registry-entries registry))))))
+    (in-any-case
+      (funcall function)
+      (loop for (registry . entries) in kept
+            do (restore-registry registry entries))
+      (mapc #'set variables values)
+      (setf *own-definitions-thread* outer))))
+
+(addition with-own-definitions)
+(defmacro with-own-definitions (() &body body)
+  "Run BODY. Maps, robots, kickers and whatever else it defines, redefines or undefines is
+afterwards, however BODY ends, as it was before: for tests, and suites of users. Return the values
+of BODY. A run of a map that BODY redefines ends all the same; SIMULATOR starts another. Definitions
+are shared by all threads, so only one thread at a time may do this; else it signals MISUSE."
+  `(call-with-own-definitions (lambda () ,@body)))

@@ -1,0 +1,97 @@
+;;;; parameters-of-runs.lisp -- a run binds the parameters, and knows which have changed.
+
+(in-package :ars-magna.definitions)
+
+(export '(call-with-parameters call-with-parameter-values parameter-values digest-parameters
+          follow-parameters changed-parameters))
+
+(defmacro with-parameters-bound ((values) &body body)
+  "Run BODY with the parameters bound to those in the list that the variable VALUES holds, in order.
+For those defined before this is compiled, as all of ours are, that is much quicker than PROGV."
+  (let ((symbols (mapcar #'parameter-symbol (registry-objects *parameters*))))
+    `(let* ,(loop for symbol in symbols collect `(,symbol (pop ,values)))
+       (progv (mapcar #'parameter-symbol (nthcdr ,(length symbols) (registry-objects *parameters*)))
+           ,values
+         ,@body))))
+
+(defun check-settings (settings)
+  "Signal WRONG-ARGUMENT unless SETTINGS is a list of lists (name value)."
+  (unless (and (proper-list-p settings)
+               (loop for setting in settings
+                     always (and (proper-list-p setting) (= 2 (length setting)))))
+    (reject-argument 'with-simulation 'parameters settings
+                     "a list of lists (name value), such as '((max-speed* 1/2))")))
+
+(defun call-with-parameters (settings function)
+  "Call FUNCTION with every parameter bound: as SETTINGS, a list of lists (name value), says, and as
+it is now where they say nothing. Changes made inside end with the call. Signals WRONG-ARGUMENT and
+UNKNOWN-NAME."
+  (check-settings settings)
+  (let* ((settings (loop for (name value) in settings
+                         collect (cons (parameter-symbol (find-parameter name)) value)))
+         (values (loop for parameter in (registry-objects *parameters*)
+                       for symbol = (parameter-symbol parameter)
+                       for setting = (assoc symbol settings)
+                       do (when setting (check-parameter-value parameter (cdr setting)))
+                       collect (if setting (cdr setting) (symbol-value symbol)))))
+    (let ((*noise-before-cleaning* *noise-before-cleaning*))
+      (with-parameters-bound (values) (funcall function)))))
+
+(defun call-with-parameter-values (values function)
+  "Call FUNCTION with the parameters bound to VALUES, a vector as PARAMETER-VALUES returns, and
+leave in it what they are afterwards. Return the values of FUNCTION."
+  (let ((known (coerce values 'list)))
+    (with-parameters-bound (known)
+      (multiple-value-prog1 (funcall function)
+        (replace values (parameter-values))))))
+
+(defun parameter-values ()
+  "Return a vector of the values of all parameters as they are now, for FOLLOW-PARAMETERS."
+  (map 'vector (lambda (parameter) (symbol-value (parameter-symbol parameter)))
+       (registry-objects *parameters*)))
+
+(defun digest-parameters (known digest)
+  "Add KNOWN, a vector made by PARAMETER-VALUES, to DIGEST. Of parameters that came later only
+values that are not the default are added, by name: so the digests of runs of before hold."
+  (loop for parameter in (registry-objects *parameters*)
+        for value across known
+        if (parameter-digested-p parameter)
+          collect value into values
+        else unless (eql value (parameter-default parameter))
+          append (list (parameter-name parameter) value) into others
+        finally (digest-add digest (coerce values 'simple-vector))
+                (when others (digest-add digest others))))
+
+(defun changed-parameters (known)
+  "Return a list (symbol . value) of the parameters whose value here is not that in KNOWN, a vector
+made by PARAMETER-VALUES."
+  (declare (type simple-vector known))
+  (loop for parameter in (registry-objects *parameters*)
+        for old across known
+        for symbol = (parameter-symbol parameter)
+        unless (eql old (symbol-value symbol)) collect (cons symbol (symbol-value symbol))))
+
+(defun usable-value-p (parameter value)
+  "True if PARAMETER can have VALUE; if not, queue an error message."
+  (handler-case (progn (check-parameter-value parameter value) t)
+    (wrong-argument (trouble) (error-set (princ-to-string trouble)) nil)))
+
+(defun follow-parameters (known global-p note)
+  "Find the parameters that have changed since KNOWN, a vector made by PARAMETER-VALUES, was
+last brought up to date, and do that. If GLOBAL-P, the caller is a thread with bindings of its
+own: values set globally by others come in and values set here go out. A value that cannot be
+used is put back, with an error message. NOTE is called with each symbol and its new value."
+  (declare #.*hot* (type simple-vector known) (type function note))
+  (loop for parameter in (registry-objects *parameters*)
+        for index of-type fixnum from 0
+        for symbol = (parameter-symbol (the parameter parameter))
+        for old = (svref known index)
+        for here = (symbol-value symbol)
+        for global = (if global-p (global-value symbol) here)
+        unless (and (eql here old) (eql global old))
+          do (let ((new (if (eql global old) here global)))
+               (unless (usable-value-p parameter new) (setf new old))
+               (setf (svref known index) new
+                     (symbol-value symbol) new)
+               (when global-p (setf (global-value symbol) new))
+               (unless (eql new old) (funcall note symbol new)))))

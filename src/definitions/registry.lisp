@@ -1,0 +1,330 @@
+;;;; registry.lisp -- what users define, by kind and name: finding, listing, redefining, undefining.
+
+(in-package :ars-magna.definitions)
+
+(export '(registry define-registry registry-objects register *definition-listener*
+          seal-definitions lookup-entry from-this-file-p entry-name entry-object entry-source
+          entry-digest registry-entries users-p names-to-offer defined-names all-definitions
+          definition-to-replace variable-in-use-p entries-meant take-back reinstate))
+
+;;; One registry for each kind of definition. Names compare as names, whatever package they were
+;;; read in; the newest definition of a name counts. A registry that tells names apart by symbol,
+;;; as functions are, finds the very symbol first and then whatever is called the same.
+;;;
+;;; The lists are replaced, never altered, so that any thread may read them at any time. All
+;;; writing is done under one lock.
+
+(defstruct (entry (:constructor make-entry (name object source variable
+                                            &optional (digest (current-form-digest))
+                                              (head (current-head))
+                                              (documentation (current-docstring))))
+                  (:copier nil))
+  "That NAME means OBJECT, by a definition in SOURCE; VARIABLE, if any, holds what it stands for.
+DIGEST is a number for the form of the definition, or NIL if there was none, HEAD its operator and
+name, DOCUMENTATION what its author says there of what is defined."
+  (name nil :type symbol :read-only t)
+  (object nil :read-only t)
+  (source nil :type list :read-only t)
+  (variable nil :type symbol :read-only t)
+  (digest nil :type (or null integer) :read-only t)
+  (head '() :type list :read-only t)
+  (documentation nil :type (or null string) :read-only t))
+
+(defstruct (registry (:constructor %make-registry (kind text)) (:copier nil))
+  "All definitions of one KIND, called TEXT in messages: entries in order, and their objects."
+  (kind nil :type symbol :read-only t)
+  (text "" :type string :read-only t)
+  (entries '() :type list)
+  (objects '() :type list)
+  ;; True if names that are different symbols mean different things.
+  (by-symbol-p nil :type boolean)
+  ;; True if users cannot take back any definitions, or those that they find.
+  (fixed-p nil :type boolean)
+  (sealed-p nil :type boolean)
+  ;; What else UNDEFINE may call the kind.
+  (synonyms '() :type list)
+  ;; Returns what else an object may be called, a list of strings and symbols.
+  (aliases (constantly '()) :type function))
+
+(document-functions
+  entry-name "Return the symbol that is defined."
+  entry-object "Return what the name of the entry means."
+  entry-source "Return the source of the entry's definition; see sources.lisp."
+  entry-digest "Return a number for the form of the entry's definition, or NIL."
+  registry-entries "Return what is known of the definitions in REGISTRY, in order."
+  registry-objects "Return what REGISTRY has, in order of definition; do not alter it.")
+
+(defmethod print-object ((registry registry) stream)
+  (print-unreadable-object (registry stream :type t)
+    (format stream "~A, ~D" (registry-text registry) (length (registry-objects registry)))))
+
+(defvar *registries* '() "All registries, in order of definition.")
+(defvar *registries-lock* (make-lock "registries"))
+
+(defun ensure-registry (kind text &key by-symbol fixed sealed synonyms aliases)
+  "Return the registry of KIND, made if there is none, with these properties."
+  (let ((registry (or (find kind *registries* :key #'registry-kind)
+                      (let ((new (%make-registry kind text)))
+                        (setf *registries* (append *registries* (list new)))
+                        new))))
+    (setf (registry-by-symbol-p registry) (and by-symbol t)
+          (registry-fixed-p registry) (and fixed t)
+          (registry-sealed-p registry) (and sealed t)
+          (registry-synonyms registry) synonyms
+          (registry-aliases registry) (or aliases (constantly '())))
+    registry))
+
+;;; Finding.
+
+(defun called-p (entry name registry)
+  (or (same-name-p name (entry-name entry))
+      (loop for alias in (funcall (registry-aliases registry) (entry-object entry))
+              thereis (same-name-p name alias))))
+
+(defun qualified-symbol (name)
+  "Return the symbol that NAME, a string such as \"PACKAGE:NAME\", stands for, or NIL. What is not
+called just so is looked for in upper case."
+  (let ((colon (and (stringp name) (position #\: name))))
+    (when (and colon (plusp colon))
+      (let* ((prefix (subseq name 0 colon))
+             (package (or (find-package prefix) (find-package (string-upcase prefix))))
+             (name (string-left-trim ":" (subseq name colon))))
+        (and package
+             (or (find-symbol name package) (find-symbol (string-upcase name) package)))))))
+
+(defun lookup-entry (name registry)
+  "Return the entry of REGISTRY for NAME, a symbol or string, perhaps PACKAGE:NAME, or NIL."
+  (when (typep name '(or symbol string))
+    (let ((entries (registry-entries registry))
+          (name (or (qualified-symbol name) name)))
+      (or (loop for entry in entries
+                when (eq name (entry-name entry)) return entry)
+          (loop with last = nil
+                for entry in entries
+                when (called-p entry name registry) do (setf last entry)
+                finally (return last))))))
+
+(defun entries-meant (name)
+  "Return the entries of users' definitions, of whatever kind, that NAME, a symbol, stands for."
+  (loop for registry in *registries*
+        for entry = (and (not (registry-fixed-p registry)) (lookup-entry name registry))
+        when (and entry (users-p entry)) collect entry))
+
+(defun defined-names (registry)
+  "Return the names defined in REGISTRY, in order."
+  (mapcar #'entry-name (registry-entries registry)))
+
+(defun names-to-offer (registry)
+  "Return the names defined in REGISTRY, those of users first, the newest of these before others."
+  (let ((entries (registry-entries registry)))
+    (mapcar #'entry-name (append (reverse (remove-if-not #'users-p entries))
+                                 (remove-if #'users-p entries)))))
+
+(defun find-definition (name registry errorp)
+  "Return the object in REGISTRY that is called NAME. If there is none, return NIL, or signal
+UNKNOWN-NAME if ERRORP is true."
+  (let ((entry (lookup-entry name registry)))
+    (cond (entry (entry-object entry))
+          (errorp (reject-name (registry-text registry) name (names-to-offer registry))))))
+
+(defun from-this-file-p (name registry)
+  "True if NAME in REGISTRY is from the file that is being loaded, which may yet define it anew."
+  (let ((entry (lookup-entry name registry))
+        (file (source-file (current-source))))
+    (and entry file (equal file (source-file (entry-source entry))))))
+
+;;; Defining.
+
+(defgeneric take-back (object)
+  (:documentation "Undo what the definition of OBJECT has done besides entering it.")
+  (:method (object) object))
+
+(defgeneric reinstate (object)
+  (:documentation "Do again what TAKE-BACK may have undone: OBJECT is defined as it was before.")
+  (:method (object) object))
+
+(defun entry-to-replace (name registry)
+  "Return the entry in REGISTRY whose place a definition of NAME would take, or NIL."
+  (find-if (lambda (entry) (same-entry-p entry name registry)) (registry-entries registry)))
+
+(defun definition-to-replace (name registry)
+  "Return the object in REGISTRY whose place a definition of NAME would take, or NIL."
+  (let ((entry (entry-to-replace name registry)))
+    (and entry (entry-object entry))))
+
+(defun set-entries (registry entries)
+  (setf (registry-entries registry) entries
+        (registry-objects registry) (mapcar #'entry-object entries)))
+
+(defparameter *own-source* '("the simulator itself") "The source of what a user finds defined.")
+
+(defun seal-definitions ()
+  "Let all that is defined so far count as the simulator's own."
+  (dolist (registry *registries*)
+    (set-entries registry
+                 (loop for entry in (registry-entries registry)
+                       collect (make-entry (entry-name entry) (entry-object entry)
+                                           *own-source* (entry-variable entry)
+                                           (entry-digest entry) (entry-head entry)
+                                           (entry-documentation entry))))))
+
+(defun users-p (entry)
+  "True if ENTRY is a definition of a user's, not of the simulator's own."
+  (not (equal *own-source* (entry-source entry))))
+
+(defun same-entry-p (entry name registry)
+  (if (registry-by-symbol-p registry)
+      (eq name (entry-name entry))
+      (same-name-p name (entry-name entry))))
+
+(defun entries-with (new old before registry)
+  "Return the entries of REGISTRY with NEW: directly before the object BEFORE, in the place of OLD,
+or last. Of several that are called the same the newest comes last, for those who ask by name."
+  (let* ((entries (registry-entries registry)) (others (remove old entries)))
+    (cond (before (let ((tail (member before others :key #'entry-object)))
+                    (append (ldiff others tail) (list new) tail)))
+          ((and old (not (find (entry-name new) (rest (member old entries))
+                               :key #'entry-name :test #'same-name-p)))
+           (substitute new old entries))
+          (t (append others (list new))))))
+
+(defun variable-in-use-p (name)
+  "True if the variable NAME has a value at top level that something else would lose."
+  (ignore-errors (global-value name)))
+
+(defun warn-without-variable (control name kind)
+  "Warn, as CONTROL says of NAME, that a definition of KIND called so has no variable."
+  (warn-of-definition "~@?: the ~A is to be called by its name, '~(~A~)." control name kind name))
+
+(defun free-variable (name kind)
+  "Return NAME if it can be a variable, and is not in use, for a definition of KIND, called so; else
+NIL, with a warning unless NAME is a symbol of Common Lisp's, say, or ours."
+  (cond ((not (variable-name-p name))
+         (when (users-symbol-p name)
+           (warn-without-variable "~(~A~) is a constant or the like, and stays so" name kind)))
+        ((variable-in-use-p name)
+         (warn-without-variable "The variable ~(~A~) already has a value" name kind))
+        (t name)))
+
+(defun say-if-replaced (old new registry)
+  "Warn that the entry NEW replaces OLD if OLD was defined in another file."
+  (let ((file (source-file (entry-source old)))
+        (other (source-file (entry-source new))))
+    (when (and file (not (equal file other)))
+      (warn-of-definition "The ~A ~(~A~) is defined anew~@[ in ~A~]; so far it was as ~A says."
+                          (registry-text registry) (entry-name new) other file))))
+
+(defun variable-for (name old registry)
+  "Return the variable of a definition of NAME, which replaces the entry OLD, or NIL: the one that
+OLD had, or NAME if it is free."
+  (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
+        (t (free-variable name (registry-text registry)))))
+
+(defvar *definition-listener* nil
+  "A function that is called in this thread with each object that is defined, or NIL.")
+
+(defun replace-entry (old new registry before value)
+  "Put the entry NEW into REGISTRY, in the place of OLD or before the object BEFORE, and let its
+variable, if any, hold VALUE. True unless another thread has replaced OLD meanwhile."
+  (with-lock (*registries-lock*)
+    (when (eq old (entry-to-replace (entry-name new) registry))
+      (set-entries registry (entries-with new old before registry))
+      (when (entry-variable new) (setf (global-value (entry-variable new)) value))
+      t)))
+
+(defun register (registry name object &key variable (value object) before)
+  "Let NAME mean OBJECT in REGISTRY, from now on; it takes the place of what it meant before. With
+VARIABLE, the special variable NAME, if it can be one and is not in use, has VALUE from now on.
+BEFORE is an object of the registry to come directly before, instead of last. Return OBJECT, and the
+object whose place it has taken, or NIL: of several threads that define NAME, each gets another."
+  (loop
+    (let* ((old (entry-to-replace name registry))
+           (variable (and variable (variable-for name old registry)))
+           (new (make-entry name object (current-source) variable)))
+      (when (replace-entry old new registry before value)
+        (when old (say-if-replaced old new registry))
+        (when *definition-listener* (funcall *definition-listener* object))
+        (return (values object (and old (entry-object old))))))))
+
+;;; Undefining.
+
+(defun find-registry (kind)
+  (or (find-if (lambda (registry)
+                 (or (same-name-p kind (registry-kind registry))
+                     (member kind (registry-synonyms registry) :test #'same-name-p)))
+               *registries*)
+      (reject-name "kind of definition" kind
+                   (mapcar #'usual-name (remove-if #'registry-fixed-p *registries*)))))
+
+(defun all-definitions (kind)
+  "Return lists (name object source) for all definitions of KIND, as UNDEFINE takes it, in order.
+SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of what was typed."
+  (loop for entry in (registry-entries (find-registry kind))
+        collect (list (entry-name entry) (entry-object entry)
+                      (if (users-p entry) (source-file (entry-source entry)) :own))))
+
+(defun usual-name (registry)
+  "Return what users call the kind of REGISTRY, a string."
+  (string-downcase (or (first (registry-synonyms registry)) (registry-kind registry))))
+
+(defun forget-value (variable)
+  "Let VARIABLE have no value at top level: what a headless run has bound it to here, it keeps."
+  (join-thread (start-thread (lambda () (makunbound variable)) "forgetting")))
+
+(defun forget-entry (entry)
+  "Undo what the definition of ENTRY, no longer in its registry, has done."
+  (take-back (entry-object entry))
+  (when (entry-variable entry) (forget-value (entry-variable entry))))
+
+(defun check-undefinable (registry entry)
+  (when (or (registry-fixed-p registry)
+            (and (registry-sealed-p registry)
+                 (equal *own-source* (entry-source entry))))
+    (reject-use "The ~A ~(~A~) cannot be undefined: the simulator needs it."
+                (registry-text registry) (entry-name entry))))
+
+(addition undefine)
+(defun undefine (kind name)
+  "Take back the definition of NAME, of KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE,
+KICKER, MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. Its variable becomes
+unbound; worlds that are under way keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE
+for what is no user's to define, and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
+  (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
+  (check-argument undefine name (typep name '(or symbol string)) "a symbol, the name of what goes")
+  (let ((registry (find-registry kind)))
+    (find-definition name registry t)
+    (let ((entry (lookup-entry name registry)))
+      (check-undefinable registry entry)
+      (deferring-interrupts
+        (with-lock (*registries-lock*)
+          (set-entries registry (remove entry (registry-entries registry))))
+        (forget-entry entry))
+      name)))
+
+;;; Making registries.
+
+(defmacro define-registry (kind text &key object-p by-symbol fixed sealed synonyms aliases internal
+                                       (finder (symbolicate 'find- kind))
+                                       (lister (symbolicate 'all- kind 's)))
+  "Define the registry of KIND, a symbol, in the variable *KINDs*, and the functions FIND-KIND and
+ALL-KINDs, or as FINDER and LISTER say, for users unless INTERNAL is true. TEXT is what a definition
+is called in messages. OBJECT-P names the predicate of what may be given instead of a name. The rest
+are slots of REGISTRY."
+  (let ((variable (symbolicate '* kind 's*)))
+    `(progn
+       (defparameter ,variable
+         (ensure-registry ',kind ,text :by-symbol ,by-symbol :fixed ,fixed :sealed ,sealed
+                                       :synonyms ',synonyms :aliases ,aliases)
+         ,(format nil "The registry of each ~A." text))
+       ,@(unless internal `((addition ,finder ,lister)))
+       (defun ,finder (name &optional (errorp t))
+         ,(format nil "Return the ~A called NAME, a symbol or string~@[; one is returned as it ~
+                       is~*~]. If there is none, signal UNKNOWN-NAME, or return NIL if ERRORP is ~
+                       NIL."
+                  text object-p)
+         ,(if object-p
+              `(if (,object-p name) name (find-definition name ,variable errorp))
+              `(find-definition name ,variable errorp)))
+       (defun ,lister ()
+         ,(format nil "Return a list of the ~As that are defined, in order of definition." text)
+         (copy-list (registry-objects ,variable))))))

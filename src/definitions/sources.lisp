@@ -1,0 +1,360 @@
+;;;; sources.lisp -- where in a file a definition stands, for its errors and for reading it again.
+
+(in-package :ars-magna.definitions)
+
+(export '(source-here source-file count-in-file part-in-file-p skip-comment line-of-clause
+          form-digest file-digest same-words-p))
+
+;;; A source is a list (file digest): the file that a definition was read from, and a number for
+;;; what was in it then. NIL stands for a definition that was typed. Definitions carry their
+;;; source through compiled files, so it is a plain list.
+;;;
+;;; A file is read here without regard to its packages: words are compared as words, and nothing
+;;; is interned in any package that a user has.
+
+(defun text-file (path)
+  "Return PATH if that is a file of Lisp text, not a compiled one."
+  (and path
+       (not (equalp "fasl" (pathname-type path)))
+       (probe-file path)))
+
+(defun source-here ()
+  "Return the source of the form that is being compiled or loaded, or NIL."
+  (let ((file (text-file (if (edited-file)
+                             (native-path (edited-file))
+                             (or *compile-file-truename* *load-truename*)))))
+    (when file
+      (ignore-errors (list (native-name file) (file-digest file))))))
+
+(defun source-file (source)
+  "Return what the system calls the file of SOURCE, a string, or NIL."
+  (first source))
+
+;;; Finding a form in a text.
+
+(defun package-for-words ()
+  "Return an empty package in which those packages go by nicknames that do so in the current one."
+  (let ((package (make-package (gensym "WORDS") :use '())))
+    (copy-nicknames *package* package)
+    package))
+
+(defmacro with-words ((text) &body body)
+  "Run BODY, in which READ-WORDS of a position reads the form of the string TEXT that begins there
+and returns it and where it ends, or NIL."
+  (with-gensyms (words)
+    `(let ((,words (package-for-words)))
+       (unwind-protect
+            (flet ((read-words (position)
+                     (let ((*package* ,words) (*read-eval* nil))
+                       (ignore-errors (read-from-string ,text nil nil :start position)))))
+              ,@body)
+         (delete-package ,words)))))
+
+(defun same-words-p (a b)
+  "True if the forms A and B look the same, whatever packages their symbols are in."
+  (cond ((and (symbolp a) (symbolp b)) (string= a b))
+        ((and (consp a) (consp b))
+         (and (same-words-p (car a) (car b)) (same-words-p (cdr a) (cdr b))))
+        ((and (realp a) (realp b)) (= a b))
+        ((and (arrayp a) (arrayp b)) (equalp a b))
+        (t (or (eql a b)
+               (and (typep a 'structure-object) (eq (type-of a) (type-of b)))))))
+
+(defun skip-quoted (text start)
+  "Return where the string or |word| that begins in TEXT at START ends."
+  (loop with quote = (char text start)
+        for i from (1+ start) below (length text)
+        for char = (char text i)
+        when (char= char #\\) do (incf i)
+        when (char= char quote) return (1+ i)
+        finally (return (length text))))
+
+(defun skip-block-comment (text start)
+  "Return where the comment, perhaps with others in it, that begins in TEXT at START ends."
+  (loop with depth = 0
+        for i from start below (1- (length text))
+        do (cond ((string= "#|" text :start2 i :end2 (+ i 2)) (incf depth) (incf i))
+                 ((string= "|#" text :start2 i :end2 (+ i 2))
+                  (incf i)
+                  (when (zerop (decf depth)) (return (1+ i)))))
+        finally (return (length text))))
+
+(defun starts-at-p (prefix text i)
+  "True if TEXT goes on with PREFIX at I."
+  (let ((end (+ i (length prefix))))
+    (and (<= end (length text))
+         (string= prefix text :start2 i :end2 end))))
+
+(defun skip-comment (text i)
+  "Return where the comment that begins in TEXT at I ends; NIL if none does."
+  (cond ((char= #\; (char text i)) (or (position #\Newline text :start i) (length text)))
+        ((starts-at-p "#|" text i) (skip-block-comment text i))))
+
+(defun skip-text (text i)
+  "Return where in TEXT what begins at I and is no code, or an escaped character, ends; NIL if it is
+code."
+  (cond ((skip-comment text i))
+        ((find (char text i) "\"|") (skip-quoted text i))
+        ((starts-at-p "#\\" text i) (+ i 3))
+        ((char= #\\ (char text i)) (+ i 2))))
+
+(defun openings (text start end)
+  "Return the positions of the opening parentheses of code in TEXT between START and END."
+  (let ((positions '()) (i start))
+    (loop while (< i end)
+          do (when (char= #\( (char text i)) (push i positions))
+             (setf i (or (skip-text text i) (1+ i))))
+    (nreverse positions)))
+
+(defun word-at-p (text position word)
+  "True if TEXT has WORD at POSITION, perhaps behind the name of a package."
+  (let ((end (position-if (lambda (char) (find char '(#\Space #\Tab #\Newline #\Return)))
+                          text :start position))
+        (length (length (string word))))
+    (and end
+         (<= (+ position length) end)
+         (string-equal word text :start2 (- end length) :end2 end))))
+
+;; A map has thousands of clauses, and each may have to be found: what was found last is kept.
+(defvar *last-positions* '("" nil ())
+  "A list of the text and form that DEFINITION-POSITIONS had last, and what it returned.")
+
+(defun definition-positions (text form)
+  "Return a list of lists (start end same) for the forms in TEXT that have operator and name of
+FORM; SAME is true if it is FORM, word by word."
+  (destructuring-bind (last-text last-form positions) *last-positions*
+    (if (and (eq form last-form) (or (eq text last-text) (string= text last-text)))
+        positions
+        (third (setf *last-positions* (list text form (look-for-definitions text form)))))))
+
+(defun look-for-definitions (text form)
+  "Do what DEFINITION-POSITIONS says."
+  (destructuring-bind (operator &optional name &rest clauses) form
+    (declare (ignore clauses))
+    (with-words (text)
+      (loop for position in (openings text 0 (length text))
+            when (word-at-p text (1+ position) operator)
+              append (multiple-value-bind (found end) (read-words position)
+                       (when (and (consp found) (symbolp (first found)) (consp (rest found))
+                                  (same-name-p (first found) operator)
+                                  (same-words-p (second found) name))
+                         (list (list position end (same-words-p found form)))))))))
+
+(defun position-of-definition (positions ordinal)
+  "Return the element of POSITIONS that is the same as it was, or has the number ORDINAL, or is the
+first, and its number."
+  (let ((number (or (position-if #'third positions)
+                    (and ordinal (< ordinal (length positions)) ordinal)
+                    0)))
+    (values (nth number positions) number)))
+
+(defvar *last-forms* '("" 0 0 ())
+  "A list of the text, start and end of which FORMS-BETWEEN was asked last, and the answer.")
+
+(defun forms-in (text start end)
+  "Return conses (position . form) for the forms in parentheses in TEXT between START and END."
+  (with-words (text)
+    (loop for position in (openings text start end)
+          collect (cons position (read-words position)))))
+
+(defun forms-between (text start end)
+  "Return what FORMS-IN does, which is asked for again and again."
+  (destructuring-bind (last-text last-start last-end forms) *last-forms*
+    (if (and (= start last-start) (= end last-end)
+             (or (eq text last-text) (string= text last-text)))
+        forms
+        (fourth (setf *last-forms* (list text start end (forms-in text start end)))))))
+
+(defun found-p (form found)
+  "True if FOUND, what FORMS-IN read, is FORM, word by word."
+  (and found (same-words-p found form)))
+
+(defvar *last-place* '(())
+  "A cons of what FORMS-BETWEEN returned and its tail that begins with what was found there last. It
+is replaced, never altered: any thread may ask.")
+
+(defun form-position (text form start end)
+  "Return where FORM, a list, stands in TEXT between START and END, or NIL. What is asked for one
+after the other mostly stands so, too: it is looked for from the one before on, then from START."
+  (let ((forms (forms-between text start end)))
+    (flet ((look (from)
+             (let ((tail (member form from :key #'cdr :test #'found-p)))
+               (when tail (setf *last-place* (cons forms tail)))
+               (car (first tail)))))
+      (or (and (eq forms (car *last-place*)) (look (cdr *last-place*)))
+          (look forms)))))
+
+(defun word-position (text form start end)
+  "Return where the first word of FORM, or FORM itself, stands in TEXT, or NIL."
+  (let ((word (if (consp form) (first form) form)))
+    (and word
+         (or (symbolp word) (realp word))
+         (search (if (and (symbolp word) (not (keywordp word)))
+                     (symbol-name word)
+                     (prin1-to-string word))
+                 text :start2 start :end2 end :test #'char-equal))))
+
+(defun line-number (text position)
+  (1+ (count #\Newline text :end position)))
+
+(defvar *last-file* '(nil nil "")
+  "A list of the file of which TEXT-OF-FILE was asked last, when it was written, and its text.")
+
+(defun text-of-file (file)
+  "Return the text of FILE, a native name, as FILE-TEXT does, which is asked for again and again."
+  (let ((written (file-write-date (native-path file))))
+    (destructuring-bind (last-file last-written text) *last-file*
+      (if (and (equal file last-file) (eql written last-written))
+          text
+          (third (setf *last-file* (list file written (file-text (native-path file)))))))))
+
+(defun line-of-clause (text form clause)
+  "Return the line in TEXT on which CLAUSE of the definition FORM begins, that of the definition if
+CLAUSE is not found in it, or NIL; and which of the definitions of that name it is."
+  (let ((positions (and form (definition-positions text form))))
+    (multiple-value-bind (place number) (position-of-definition positions nil)
+      (destructuring-bind (&optional (start 0) (end (length text)) same) place
+        (declare (ignore same))
+        (let ((position (or (and (consp clause) (form-position text clause start end))
+                            (and place (or (word-position text clause (1+ start) end) start)))))
+          (values (and position (line-number text position))
+                  (and place number)))))))
+
+(defun clause-line (file form clause)
+  "Return what LINE-OF-CLAUSE does for the text in FILE; NIL if that cannot be read."
+  (ignore-errors (line-of-clause (text-of-file file) form clause)))
+
+(defun count-in-file (word file)
+  "Return how often WORD stands in FILE, in whatever case, also in comments; NIL if that cannot be
+read."
+  (ignore-errors
+    (loop with text = (text-of-file file)
+          for start = (search word text :test #'char-equal)
+            then (search word text :test #'char-equal :start2 (1+ start))
+          while start count t)))
+
+(defun part-in-file-p (file form part)
+  "True if a form in FILE, as that is now, has operator and name of FORM, and PART, a list, in it."
+  (ignore-errors
+    (let ((text (read-file-into-string (native-path file))))
+      (loop for (start end) in (definition-positions text form)
+              thereis (form-position text part start end)))))
+
+(defun read-definition-again (file form ordinal)
+  "Return the definition that was FORM, number ORDINAL of its name, as it is in FILE now. Signals
+MISUSE if it is not there."
+  (let* ((text (read-file-into-string (native-path file)))
+         (place (position-of-definition (definition-positions text form) ordinal)))
+    (unless place
+      (reject-use "~A has no (~(~A ~A~) ...) that can be read." file (first form) (second form)))
+    (values (read-from-string text t nil :start (first place)))))
+
+;;; What a text or form says, as a number.
+
+(defun paren-p (char)
+  (find char "()"))
+
+(defun code-alone (text)
+  "Return TEXT without comments, and with one space for each run of blanks; none beside parentheses,
+at the beginning and at the end."
+  (with-output-to-string (stream)
+    (let ((i 0) (last #\() (blank nil))
+      (loop while (< i (length text))
+            do (let* ((char (char text i)) (code (not (or (blank-p char) (skip-comment text i))))
+                      (end (or (skip-text text i) (1+ i))))
+                 (when code
+                   (unless (or (not blank) (paren-p last) (paren-p char))
+                     (write-char #\Space stream))
+                   (write-string text stream :start i :end (min end (length text)))
+                   (setf last char))
+                 (setf blank (not code) i end))))))
+
+(defun text-digest (text)
+  "Return a number for the characters of TEXT."
+  (let ((digest (make-digest)))
+    (loop for char across text do (digest-add digest char))
+    (digest-value digest)))
+
+(defun form-end (text start)
+  "Return where the list that begins in TEXT at START ends."
+  (loop with depth = 0 and i = start
+        while (< i (length text))
+        do (let ((skipped (skip-text text i)))
+             (cond (skipped (setf i skipped))
+                   (t (case (char text i)
+                        (#\( (incf depth))
+                        (#\) (when (<= (decf depth) 0) (return (1+ i)))))
+                      (incf i))))
+        finally (return (length text))))
+
+(defun code-without (operator text)
+  "Return TEXT, as CODE-ALONE returns it, without the forms at its top level whose OPERATOR, a
+string, is that, perhaps behind the name of a package."
+  (with-output-to-string (stream)
+    (loop with i = 0
+          while (< i (length text))
+          do (let ((end (if (paren-p (char text i)) (form-end text i) (1+ i))))
+               (unless (word-at-p text (1+ i) operator)
+                 (write-string text stream :start i :end end))
+               (setf i end)))))
+
+(defvar *last-digest* '("" nil 0)
+  "A list of the text, what was left out, and the number that FILE-DIGEST had last: each definition
+in a file asks again.")
+
+(defun file-digest (file &optional without)
+  "Return a number for the code in FILE; comments and layout do not count, nor do forms at top level
+whose operator is WITHOUT, a string, if given."
+  ;; Any file can be read so, and what its bytes mean does not matter here.
+  (let ((text (read-file-into-string file :external-format :latin-1)) (last *last-digest*))
+    (if (and (string= text (first last)) (equal without (second last)))
+        (third last)
+        (let* ((code (code-alone text))
+               (number (text-digest (if without (code-without without code) code))))
+          (setf *last-digest* (list text without number))
+          number))))
+
+(defun form-digest (form)
+  "Return a number for FORM: for its shape, what its symbols are called, and its data."
+  (let ((digest (make-digest)))
+    (add-form form digest (make-hash-table :test 'eq))
+    (digest-value digest)))
+
+(defun add-integer (integer digest)
+  (loop for rest = integer then (ash rest -64)
+        do (digest-add digest rest)
+        until (<= -1 rest 0)))
+
+(defun kind-of-atom (atom)
+  "Return the name of the type of ATOM, the same for all that are read alike."
+  (typecase atom
+    (symbol 'symbol)
+    (string 'string)
+    (integer 'integer)
+    (t (first (ensure-list (type-of atom))))))
+
+(defun add-atom (atom digest known)
+  "Add ATOM, of a form, to DIGEST. Symbols without a home, whose names macros make up, count by the
+order in which they come up; KNOWN has those that have."
+  (digest-add digest (kind-of-atom atom))
+  (typecase atom
+    (symbol (digest-add digest (if (symbol-package atom)
+                                   (symbol-name atom)
+                                   (or (gethash atom known)
+                                       (setf (gethash atom known) (hash-table-count known))))))
+    (string (loop for char across atom do (digest-add digest char)))
+    (integer (add-integer atom digest))
+    (ratio (add-integer (numerator atom) digest) (add-integer (denominator atom) digest))
+    (t (digest-add digest atom))))
+
+(defun add-form (form digest known)
+  "Add FORM to DIGEST; see ADD-ATOM."
+  (cond ((form-behind-comma form)
+         (digest-add digest "comma")
+         (add-form (form-behind-comma form) digest known))
+        ((consp form)
+         (digest-add digest "list")
+         (loop while (consp form) do (add-form (pop form) digest known))
+         (digest-add digest "end")
+         (when form (add-form form digest known)))
+        (t (add-atom form digest known))))
