@@ -10,7 +10,8 @@
 
 ;;; A participant acts on what happens in a run, by way of requests only. It may keep ticks coming,
 ;;; has chance of its own, and knows when the run ends. What it asks for is in the journal, so a
-;;; run is repeated without it.
+;;; run is repeated without it. Of what follows, a participant needs only PARTICIPANT-AFTER-TICK. If
+;;; it is of a kind (see DEFINE-KIND), the roles of its slots say what digests and forks make of it.
 
 (defgeneric participant-after-tick (participant simulation)
   (:documentation "Let PARTICIPANT act, after each tick of SIMULATION. Called by the owner.")
@@ -52,16 +53,15 @@ For any thread.")
 (defgeneric participant-digest (participant digest)
   (:documentation "Add the state of PARTICIPANT to DIGEST.")
   (:method (participant digest)
-    (declare (ignore participant digest))
-    (values)))
+    (digest-state participant digest)))
 
 (defgeneric participant-copy (participant simulation copier)
   (:documentation
    "Return what takes the part of PARTICIPANT in SIMULATION, a fork of its run that COPIER makes, or
-NIL if it does not go on there. See COPY-PLAN-VALUE.")
+NIL if it does not go on there. One of a kind does. See COPY-PLAN-VALUE.")
   (:method (participant simulation copier)
-    (declare (ignore participant simulation copier))
-    nil))
+    (declare (ignore simulation))
+    (and (kind-of participant) (forked participant copier))))
 
 (defgeneric participant-place (participant value)
   (:documentation "Return a text that says where PARTICIPANT has VALUE, or NIL if it does not.")
