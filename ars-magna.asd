@@ -1,11 +1,9 @@
 ;;;; ars-magna.asd -- the systems and the order in which their layers load.
 
-(defsystem "ars-magna"
-  :description "An abstract robot simulator for people who build reactive planners."
-  :version "1.9.0"
-  :license "MIT"
-  :depends-on ("alexandria" "bordeaux-threads" "chipz" "closer-mop" "lparallel"
-               "named-readtables" "sb-cltl2" "sb-introspect" "sb-posix")
+(defsystem "ars-magna/core"
+  :description "The simulator alone: worlds, robots, runs, plans, pictures."
+  :depends-on ("alexandria" "bordeaux-threads" "closer-mop" "named-readtables" "sb-cltl2"
+               "sb-introspect" "sb-posix")
   :serial t
   :components
   ((:module "src/host" :serial t
@@ -40,17 +38,10 @@
     :components ((:file "package") (:file "digesting") (:file "copiers") (:file "manners")
                  (:file "copying") (:file "holding") (:file "fields") (:file "contradictions")
                  (:file "given")))
-   (:file "src/base")
+   (:module "base" :pathname "src" :components ((:file "base")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
                  (:file "intervals") (:file "angles")))
-   (:module "src/statistics" :serial t
-    :components ((:file "package") (:file "arguments") (:file "fractions") (:file "gamma")
-                 (:file "normal") (:file "beta") (:file "samples") (:file "proportions")
-                 (:file "means") (:file "bootstrap") (:file "pairs") (:file "rare-signs")
-                 (:file "permutation")
-                 (:file "several") (:file "survival") (:file "sequential")
-                 (:file "sobol") (:file "designs")))
    (:module "src/nisp" :serial t
     :components ((:file "package") (:file "control") (:file "known-types") (:file "typed-lists")
                  (:file "binding")
@@ -72,16 +63,6 @@
                  (:file "residents") (:file "new-thing") (:file "kicking")
                  (:file "map-things") (:file "defmap")
                  (:file "soundness") (:file "facts")))
-   (:module "src/ways" :serial t
-    :components ((:file "package") (:file "terrain") (:file "queue") (:file "crossing")
-                 (:file "field") (:file "chart") (:file "lines") (:file "descent")
-                 (:file "pencil") (:file "ways")))
-   (:module "src/floors" :serial t
-    :components ((:file "package") (:file "trouble") (:file "decimals") (:file "yaml")
-                 (:file "description") (:file "images") (:file "pgm") (:file "inflating")
-                 (:file "png-chunks") (:file "png-rows") (:file "png")
-                 (:file "reading-images") (:file "occupancy") (:file "runs") (:file "lines")
-                 (:file "frames") (:file "importing") (:file "exporting")))
    (:module "src/time" :serial t
     :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
                  (:file "interruptions") (:file "custody") (:file "phases") (:file "timeline")
@@ -181,6 +162,39 @@
                  (:file "stranded") (:file "thread") (:file "starting") (:file "forking")
                  (:file "accessors") (:file "outcomes") (:file "commands") (:file "runs")
                  (:file "cut-off") (:file "outside") (:file "taking-part") (:file "seeing")))
+   (:module "src" :serial t
+    :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors")
+                 (:file "ars"))))
+  ;; The packages are locked once they are loaded.
+  :perform (prepare-op (operation system)
+             (declare (ignore operation system))
+             (when (find-package :ars-magna.faces)
+               (symbol-call :ars-magna.faces :unlock-packages))))
+
+(defsystem "ars-magna"
+  :description "An abstract robot simulator for people who build reactive planners."
+  :version "1.10.0"
+  :license "MIT"
+  :depends-on ("ars-magna/core" "chipz" "lparallel")
+  :serial t
+  :components
+  ((:module "src/statistics" :serial t
+    :components ((:file "package") (:file "arguments") (:file "fractions") (:file "gamma")
+                 (:file "normal") (:file "beta") (:file "samples") (:file "proportions")
+                 (:file "means") (:file "bootstrap") (:file "pairs") (:file "rare-signs")
+                 (:file "permutation")
+                 (:file "several") (:file "survival") (:file "sequential")
+                 (:file "sobol") (:file "designs")))
+   (:module "src/ways" :serial t
+    :components ((:file "package") (:file "terrain") (:file "queue") (:file "crossing")
+                 (:file "field") (:file "chart") (:file "lines") (:file "descent")
+                 (:file "pencil") (:file "ways")))
+   (:module "src/floors" :serial t
+    :components ((:file "package") (:file "trouble") (:file "decimals") (:file "yaml")
+                 (:file "description") (:file "images") (:file "pgm") (:file "inflating")
+                 (:file "png-chunks") (:file "png-rows") (:file "png")
+                 (:file "reading-images") (:file "occupancy") (:file "runs") (:file "lines")
+                 (:file "frames") (:file "importing") (:file "exporting")))
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "task-tree") (:file "saving")))
@@ -227,8 +241,7 @@
                  (:file "ways-picture")))
    (:module "src/experiment/replay" :serial t
     :components ((:file "aside") (:file "replaying") (:file "failures") (:file "trial-series")))
-   (:module "src" :serial t
-    :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors") (:file "ars"))))
+   (:module "src" :components ((:file "all"))))
   ;; The packages are locked once they are loaded.
   :perform (prepare-op (operation system)
              (declare (ignore operation system))

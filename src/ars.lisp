@@ -2,18 +2,14 @@
 
 (in-package :ars-magna.faces)
 
-;;; What they export is marked where it is defined, by PUBLIC and ADDITION.
+;;; What they export is marked where it is defined, by PUBLIC and ADDITION. The system ARS-MAGNA
+;;; marks more than its core: see src/all.lisp.
 
-(define-face :ars
-  "The simulator as the manual describes it. It shadows CL:EQUAL and CL:MAP by extensions.")
-
-(define-face :nisp
-  "The Nisp dialect, which shadows CL:LET, CL:LOOP and CL:IF by extensions, and the plan language.")
+(fill-faces)
 
 (define-user-package :ars-user
   (:documentation "The package to work in: Common Lisp, ARS and NISP; XLIB is our canvas. What is
 defined in it is the user's."))
 
 ;;; What is defined from here on is the users'.
-(seal-definitions)
 (lock-packages)

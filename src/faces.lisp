@@ -61,17 +61,24 @@
     (setf (documentation package t) documentation)
     package))
 
-(defun fill-face (face documentation)
-  "Let the package FACE, with DOCUMENTATION, export what is marked for it."
-  (unlock-package (ensure-face face documentation))
-  (dolist (symbol (public-symbols face))
-    (show symbol face)))
+(defparameter *faces*
+  '((:ars . "The simulator as the manual describes it. It shadows CL:EQUAL and CL:MAP by
+extensions.")
+    (:nisp . "The Nisp dialect, which shadows CL:LET, CL:LOOP and CL:IF by extensions, and the plan
+language."))
+  "The packages that export what is marked for them, and their documentation.")
 
-(defmacro define-face (face documentation)
-  "Define the package FACE, :ARS or :NISP, which exports what is marked for it (see PUBLIC).
-See reading 29."
-  `(eval-when (:compile-toplevel :load-toplevel :execute)
-     (fill-face ,face ,documentation)))
+(defun fill-all-faces ()
+  "Let each face export what is marked for it."
+  (loop for (face . documentation) in *faces*
+        do (unlock-package (ensure-face face documentation))
+           (dolist (symbol (public-symbols face))
+             (show symbol face))))
+
+(defmacro fill-faces ()
+  "Define the faces ARS and NISP: they export what is marked by now (see PUBLIC). See reading 29."
+  '(eval-when (:compile-toplevel :load-toplevel :execute)
+     (fill-all-faces)))
 
 ;;; Locks. A user who by accident defines a function, type or variable called as one of ours is told
 ;;; so, instead of changing the simulator.

@@ -122,6 +122,33 @@
   (is (string= "(NIL NIL NIL NIL NIL NIL NIL NIL NIL)"
                (printed-in-child "ars-magna" *what-is-defined*))))
 
+(defparameter *core-then-all*
+  "(flet ((users ()
+            (list (find-symbol \"FIND-WAY\" :ars)
+                  (mapcar #'first (ars-magna.base:all-definitions :kicker))
+                  (mapcar #'third (ars-magna.base:all-definitions :kicker)))))
+     (eval '(ars:defkicker ars-user::sway (ars-user::thing) (:prob 1/2) nil))
+     (eval '(ars:defmap ars-user::hut (9 9)))
+     (eval '(ars:defrobot ars-user::tom (ars-user::hut (4 4) 0)))
+     (prin1 (list (remove nil (mapcar #'find-package '(:chipz :lparallel :ars-magna.plots)))
+                  (users)
+                  (eval '(ars:with-simulation (ars-user::tom :clean t)
+                          (nisp:rpl-init-robot ars-user::tom)
+                          (nisp:run-plan (nisp:interp-lambda ()
+                                           (nisp:seq (nisp:rpl-robot-turn 1)
+                                                     (nisp:wait-for nisp:robot-stopped*))))
+                          (list (plusp (ars:robot-angle ars-user::tom))
+                                (stringp (ars:text-map ars-user::tom)))))
+                  (let ((*standard-output* (make-broadcast-stream)))
+                    (asdf:load-system :ars-magna)
+                    (users)))))"
+  "Prints what there is when the core is loaded, and after all of the simulator.")
+
+(test core.can-be-loaded-alone-and-then-the-rest
+  (is (string-equal "(nil (nil (ars-user::sway) (nil)) (t t)
+ (ars-magna.ways:find-way (ars-user::sway) (nil)))"
+                    (printed-in-child "ars-magna/core" *core-then-all*))))
+
 ;;; Plans of the same name in several packages.
 
 (rpl:def-interp-proc ars-user::echo-name () :user)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.definitions)
 
 (export '(registry define-registry registry-objects register *definition-listener*
-          seal-definitions lookup-entry from-this-file-p entry-name entry-object entry-source
+          lookup-entry from-this-file-p entry-name entry-object entry-source
           entry-digest registry-entries users-p names-to-offer defined-names all-definitions
           definition-to-replace variable-in-use-p entries-meant take-back reinstate))
 
@@ -158,16 +158,6 @@ UNKNOWN-NAME if ERRORP is true."
 
 (defparameter *own-source* '("the simulator itself") "The source of what a user finds defined.")
 
-(defun seal-definitions ()
-  "Let all that is defined so far count as the simulator's own."
-  (dolist (registry *registries*)
-    (set-entries registry
-                 (loop for entry in (registry-entries registry)
-                       collect (make-entry (entry-name entry) (entry-object entry)
-                                           *own-source* (entry-variable entry)
-                                           (entry-digest entry) (entry-head entry)
-                                           (entry-documentation entry))))))
-
 (defun users-p (entry)
   "True if ENTRY is a definition of a user's, not of the simulator's own."
   (not (equal *own-source* (entry-source entry))))
@@ -240,7 +230,8 @@ object whose place it has taken, or NIL: of several threads that define NAME, ea
   (loop
     (let* ((old (entry-to-replace name registry))
            (variable (and variable (variable-for name old registry)))
-           (new (make-entry name object (current-source) variable)))
+           (source (if *marking-p* *own-source* (current-source)))
+           (new (make-entry name object source variable)))
       (when (replace-entry old new registry before value)
         (when old (say-if-replaced old new registry))
         (when *definition-listener* (funcall *definition-listener* object))

@@ -1,0 +1,6 @@
+;;;; all.lisp -- what the packages ARS and NISP export besides the names of the core.
+
+(in-package :ars-magna.faces)
+
+(fill-faces)
+(lock-packages)
