@@ -56,7 +56,7 @@
                                        (command:robot-go-forward rover 8)
                                        (run:run-ticks 20)
                                        (robot:robot-x rover)))))
-             (stats:deviation ends))))
+             (sample-deviation ends))))
     (let ((fine (spread 1)))
       (dolist (quantum '(2 4 8))
         (is (< .8 (/ (spread quantum) fine) 1.2))))))

@@ -93,14 +93,6 @@ integers; COUNT may be -1."
 
 ;;; Student's t.
 
-(defun student-tail (number freedom)
-  "Return the probability that Student's t of FREEDOM degrees is above NUMBER (Abramowitz and
-Stegun 26.7.1)."
-  (declare (type double-float number freedom))
-  (let* ((square (* number number)) (whole (+ freedom square))
-         (tail (/ (incomplete-beta (/ freedom 2) .5d0 (/ freedom whole) (/ square whole)) 2)))
-    (if (minusp number) (- 1 tail) tail)))
-
 (defun student-reach (confidence freedom)
   "Return the t for which Student's t of FREEDOM degrees lies from -t to t with a probability of
 CONFIDENCE."

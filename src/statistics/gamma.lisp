@@ -36,13 +36,6 @@ part)."
         ((< x (+ a 1)) (- 1 (* (poisson-density a x) (gamma-series a x))))
         (t (* a (poisson-density a x) (gamma-fraction a x)))))
 
-(defun lower-gamma (a x)
-  "Return P(A, X) = 1 - Q(A, X)."
-  (declare (type double-float a x))
-  (cond ((zerop x) 0d0)
-        ((< x (+ a 1)) (* (poisson-density a x) (gamma-series a x)))
-        (t (- 1 (upper-gamma a x)))))
-
 (defun chi-square-tail (x freedom)
   "Return the probability that chi-square of FREEDOM degrees, 1 or more, is above X, 0 or more
 (Abramowitz and Stegun 26.4.19)."

@@ -54,20 +54,13 @@ either way; NIL if that is too much work. What is within GRAIN is equal."
                               for odds across (the doubles (cdr sums))
                               when (>= (abs found) (- sum grain)) sum odds))))
 
-(defun signed-sum (sizes dice)
-  "Return the sum of SIZES with signs thrown by DICE."
-  (declare (type doubles sizes) (type dice dice) #.*hot*)
-  (loop with sum of-type double-float = 0d0
-        for size across sizes
-        do (incf sum (if (< (roll dice) .5d0) size (- size)))
-        finally (return sum)))
-
 (defun drawn-share (sizes sum grain resamples dice)
   "Return the share of RESAMPLES draws whose sum is SUM or more either way; what was seen counts as
 one of them, so that it is never 0 (Phipson and Smyth 2010)."
-  (/ (double (1+ (loop repeat resamples
-                       count (>= (abs (signed-sum sizes dice)) (- sum grain)))))
-     (1+ resamples)))
+  (let ((shares (map 'doubles (constantly .5d0) sizes)))
+    (/ (double (1+ (loop repeat resamples
+                         count (>= (abs (tilted-sum sizes shares dice)) (- sum grain)))))
+       (1+ resamples))))
 
 (defconstant +seldom+ .05d0
   "What is no more likely than this is drawn anew with tilted signs, if that is wanted.")

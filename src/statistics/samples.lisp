@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.statistics)
 
-(export '(mean variance deviation median quantile))
+(export '(mean median))
 
 ;;; What a sample is too small for is NIL: the mean of nothing, the variance of one number.
 
@@ -100,27 +100,6 @@ more."
 WRONG-ARGUMENT unless they are numbers from -1e15 to 1e15."
   (let ((sample (sample 'mean 'numbers numbers)))
     (when (plusp (length sample)) (mean-of sample))))
-
-(defun variance (numbers)
-  "Return the variance of NUMBERS, a list or vector, with n - 1 below; NIL of fewer than two.
-Signals WRONG-ARGUMENT unless they are numbers from -1e15 to 1e15."
-  (let ((sample (sample 'variance 'numbers numbers)))
-    (when (< 1 (length sample)) (variance-of sample))))
-
-(defun deviation (numbers)
-  "Return the standard deviation of NUMBERS, the root of their VARIANCE; NIL of fewer than two.
-Signals WRONG-ARGUMENT unless they are numbers from -1e15 to 1e15."
-  (let ((sample (sample 'deviation 'numbers numbers)))
-    (when (< 1 (length sample)) (deviation-of sample))))
-
-(defun quantile (numbers share)
-  "Return the number that a SHARE, from 0 to 1, of NUMBERS, a list or vector, is below, in between
-by proportion (Hyndman and Fan 1996, type 7); NIL if there are none. Signals WRONG-ARGUMENT unless
-these are numbers from -1e15 to 1e15."
-  (check-argument quantile share (probability-p share) "a number from 0 to 1")
-  (let ((sample (sample 'quantile 'numbers numbers)))
-    (when (plusp (length sample))
-      (sorted-quantile (sorted sample) (meant share)))))
 
 (defun median (numbers)
   "Return the median of NUMBERS, a list or vector; NIL if there are none. Signals WRONG-ARGUMENT
