@@ -141,7 +141,7 @@
   (in-studio (robot)
     (let* ((snapshot (display:take-snapshot (robot:robot-world robot)))
            (boxes (loop for x from 20 to 60 by 10 collect (list x 20 (+ x 8) 28))))
-      (canvas:with-canvas ((make-instance 'display::blank-canvas) :scale 8)
+      (canvas:with-canvas ((make-instance 'canvas:canvas) :scale 8)
         (is (equal (first boxes) (display::best-box snapshot '() boxes (display::index-boxes '()))))
         (is (equal (third boxes)
                    (display::best-box snapshot '() boxes

@@ -118,7 +118,8 @@ remember what was painted where."
 
 (defun measure-detail (pane width)
   "Return how many pixels high a drawing is of all that PANE shows, WIDTH pixels wide."
-  (let ((canvas (make-instance 'blank-canvas)) (window (window-of pane)))
+  (let ((canvas (make-instance 'svg-canvas :stream (make-broadcast-stream)))
+        (window (window-of pane)))
     (with-canvas (canvas)
       (nth-value 1 (draw-display canvas (pane-display pane) (window-snapshot window)
                                  (window-robot window) :width width)))))

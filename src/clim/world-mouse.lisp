@@ -42,7 +42,7 @@
 (defun at-middle-p (pane image x y)
   "True if X, Y of PANE is at the middle of the robot that IMAGE is of."
   (multiple-value-bind (to-x to-y) (point-at pane x y)
-    (let ((reach (/ (with-canvas ((make-instance 'blank-canvas) :scale (pane-scale pane))
+    (let ((reach (/ (with-canvas ((make-instance 'canvas) :scale (pane-scale pane))
                       (robot-radius))
                     2 (pane-scale pane))))
       (<= (max (abs (- to-x (robot-image-x image))) (abs (- to-y (robot-image-y image))))

@@ -5,7 +5,7 @@
 (export '(canvas canvas-p canvas-color-p paint-rectangles paint-arc paint-path paint-segments
           paint-string call-with-clipping with-clipping call-with-origin with-origin
           call-with-subject with-subject subject-title call-on-canvas with-canvas
-          +character-width+ +line-height+ blank-canvas))
+          +character-width+ +line-height+))
 
 ;;; A canvas is what the bodies of :graphics get as their window. Coordinates are pixels, x to the
 ;;; right and y down. As in X, the outline of a rectangle and a line run through the middles of
@@ -90,31 +90,3 @@ within the box, however wide the line is."))
 (defmacro with-canvas ((canvas &rest options) &body body)
   "Run BODY with DRAW-GCONTEXT*, IN-COLOR* and GRAPHICS-SCALE* bound for CANVAS. OPTIONS: :scale."
   `(call-on-canvas (lambda () ,@body) ,canvas ,@options))
-
-;;; A canvas on which nothing is seen: to learn how much room a drawing takes.
-
-(defclass blank-canvas (canvas) ()
-  (:documentation "A canvas that forgets what is drawn on it."))
-
-(defmethod paint-rectangles ((canvas blank-canvas) gcontext rectangles fill-p)
-  (declare (ignore gcontext rectangles fill-p)))
-
-(defmethod paint-arc ((canvas blank-canvas) gcontext x y width height start extent fill-p)
-  (declare (ignore gcontext x y width height start extent fill-p)))
-
-(defmethod paint-path ((canvas blank-canvas) gcontext points fill-p)
-  (declare (ignore gcontext points fill-p)))
-
-(defmethod paint-segments ((canvas blank-canvas) gcontext segments)
-  (declare (ignore gcontext segments)))
-
-(defmethod paint-string ((canvas blank-canvas) gcontext x y string)
-  (declare (ignore gcontext x y string)))
-
-(defmethod call-with-clipping (function (canvas blank-canvas) x y width height)
-  (declare (ignore x y width height))
-  (funcall function))
-
-(defmethod call-with-origin (function (canvas blank-canvas) x y)
-  (declare (ignore x y))
-  (funcall function))
