@@ -224,30 +224,13 @@ frame, and the cast; WATCH is called with the simulation after each tick."
                     (film-moments journal (funcall seen) until kinds moments)
                     (and (rest (snapshot-robots (cast-opening cast))) t))))))
 
-(defun film-file-p (file)
-  "True if FILE, the name of one, is a page for browsers, as it ends."
-  (and (typep file '(or string pathname))
-       (string-equal "html" (or (pathname-type file) ""))))
-
-(define-constant +film-endings+ ".html or .svg; with :series t in .svg or .png"
-  :test #'cl:equal
-  :documentation "How names of files end in which a run can be saved.")
-
 (defun animation-kind (file series)
   "Return :HTML, :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT for other names, and
 says what is for a film, or for a SERIES."
-  (if (and (film-file-p file) (not series))
-      (let ((missing (missing-directory file)))
-        (when missing
-          (reject-argument 'save-animation 'file file
-                           (format nil "a name in a directory that there is; make ~A first"
-                                   missing)))
-        :html)
-      (let ((kind (picture-kind 'save-animation file (if series ".svg or .png" +film-endings+))))
-        (when (and (eq kind :png) (not series))
-          (reject-argument 'save-animation 'file file
-                           (format nil "a name that ends in ~A" +film-endings+)))
-        kind)))
+  (if series
+      (picture-kind 'save-animation file)
+      (picture-kind 'save-animation file '(:html :svg)
+                    ".html or .svg; with :series t in .svg or .png")))
 
 (defun shown-end (operator journal until)
   "Return the tick at which what is shown of JOURNAL, up to UNTIL, an argument of OPERATOR, ends.

@@ -85,8 +85,8 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
 (defun convert-to-png (svg file)
   (write-file-anew (lambda (out) (write-png svg out file)) file "the picture" :kind :image))
 
-(defun picture-kind (operator file &optional (endings ".svg or .png"))
-  "Return :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT if OPERATOR cannot save a
+(defun picture-kind (operator file &optional (kinds '(:svg :png)) (endings ".svg or .png"))
+  "Return which of KINDS the name of FILE ends in. Signals WRONG-ARGUMENT if OPERATOR cannot save a
 picture there; then it says that a name has one of ENDINGS."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
@@ -95,7 +95,7 @@ picture there; then it says that a name has one of ENDINGS."
     (let ((missing (missing-directory file)))
       (when missing (reject (format nil "a name in a directory that there is; make ~A first"
                                     missing))))
-    (or (find (pathname-type file) '(:svg :png) :test #'string-equal)
+    (or (find (pathname-type file) kinds :test #'string-equal)
         (reject (format nil "a name that ends in ~A" endings)))))
 
 (defun save-svg (svg file kind)
