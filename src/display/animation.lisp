@@ -314,8 +314,7 @@ also if its definitions are not those at hand. Signals what REPLAY does."
 
 (defun check-animation (series every rate display layers scale title)
   (flet ((reject (name value expected)
-           (error 'wrong-argument :operator 'save-animation :name name :value value
-                                  :expected expected)))
+           (reject-argument 'save-animation name value expected)))
     (check-display 'save-animation display)
     (unless (or series (eq display :world))
       (reject "display" display ":world, or :series t for numbered pictures"))

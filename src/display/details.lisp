@@ -215,9 +215,8 @@ anew; a display does not, lest it show what the robot cannot know."
     (+ +margin+ (max (+ y (* 2 +dial+)) (+ next (* 2 +line-height+))))))
 
 (defun draw-cameras (canvas robot width)
-  (let ((y +margin+))
-    (dolist (camera (robot-image-cameras robot) y)
-      (setf y (draw-camera canvas robot camera y width)))))
+  (reduce (lambda (y camera) (draw-camera canvas robot camera y width))
+          (robot-image-cameras robot) :initial-value +margin+))
 
 ;;; Hands.
 
@@ -234,9 +233,8 @@ anew; a display does not, lest it show what the robot cannot know."
   (+ y (* +line-height+ (if (hand-image-location hand) 2 1))))
 
 (defun draw-hands (canvas robot width)
-  (let ((y +margin+))
-    (dolist (hand (robot-image-hands robot) y)
-      (setf y (draw-hand canvas hand y width)))))
+  (reduce (lambda (y hand) (draw-hand canvas hand y width))
+          (robot-image-hands robot) :initial-value +margin+))
 
 ;;; Storage bins.
 
@@ -252,6 +250,5 @@ anew; a display does not, lest it show what the robot cannot know."
           finally (return top))))
 
 (defun draw-bins (canvas robot width)
-  (let ((y +margin+))
-    (dolist (bin (robot-image-bins robot) y)
-      (setf y (draw-bin canvas bin y width)))))
+  (reduce (lambda (y bin) (draw-bin canvas bin y width))
+          (robot-image-bins robot) :initial-value +margin+))

@@ -63,6 +63,5 @@ the world shows, TITLE what stands above it: see DRAW-FRAMED. To be called withi
 
 (defun check-display (operator display)
   (unless (member display (cons :all +displays+))
-    (error 'wrong-argument :operator operator :name "display" :value display
-                           :expected (format nil "one of ~{~(~S~)~^, ~}"
-                                             (append +displays+ '(:all))))))
+    (reject-argument operator "display" display
+                     (format nil "one of ~{~(~S~)~^, ~}" (append +displays+ '(:all))))))

@@ -19,19 +19,18 @@
 
 (defun check-drawing (operator canvas gcontext numbers)
   (count-call)
-  (flet ((reject (name value expected)
-           (error 'wrong-argument :operator operator :name name :value value
-                                  :expected expected)))
-    (unless (canvas-p canvas) (reject "drawable" canvas "the window that the body was given"))
-    (unless (gcontext-p gcontext) (reject "gcontext" gcontext "draw-gcontext*"))
-    (unless (every #'within-reason-p numbers)
-      (reject "coordinates" numbers "numbers of pixels, from -1e9 to 1e9"))))
+  (unless (canvas-p canvas)
+    (reject-argument operator "drawable" canvas "the window that the body was given"))
+  (unless (gcontext-p gcontext)
+    (reject-argument operator "gcontext" gcontext "draw-gcontext*"))
+  (unless (every #'within-reason-p numbers)
+    (reject-argument operator "coordinates" numbers "numbers of pixels, from -1e9 to 1e9")))
 
 (defun check-sequence (operator canvas gcontext numbers multiple)
   (check-drawing operator canvas gcontext numbers)
   (unless (zerop (mod (length numbers) multiple))
-    (error 'wrong-argument :operator operator :name "coordinates" :value numbers
-                           :expected (format nil "~D numbers for each" multiple))))
+    (reject-argument operator "coordinates" numbers
+                     (format nil "~D numbers for each" multiple))))
 
 (defmacro define-drawing (name (canvas gcontext numbers . rest) documentation &body body)
   "Define NAME, which checks NUMBERS: a list of required arguments, or (SEQUENCE MULTIPLE)."

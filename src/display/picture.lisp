@@ -25,8 +25,7 @@ above it, its layers and its scale."
 
 (defun check-picture (operator robot display layers scale title)
   (unless (robot-p robot)
-    (error 'wrong-argument :operator operator :name "robot" :value robot
-                           :expected "a robot"))
+    (reject-argument operator "robot" robot "a robot"))
   (check-display operator display)
   (check-map-options operator :title title :layers layers :scale scale))
 
@@ -104,14 +103,12 @@ picture there; then it says that a name has one of ENDINGS."
     (:svg (save-text svg file))
     (:png (convert-to-png svg (merge-pathnames file)))))
 
-(defun save-snapshot (snapshot robot file &key (display :all) (layers *picture-layers*)
-                                            (in-color t) scale title)
-  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it."
+(defun save-snapshot (snapshot robot file &rest look &key (display :all) &allow-other-keys)
+  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it. LOOK
+are options of WRITE-PICTURE."
   (save-svg (telling-what-breaks
               (with-output-to-string (stream)
-                (write-picture stream snapshot robot :display display :layers layers
-                                                     :in-color in-color :scale scale
-                                                     :title title)))
+                (apply #'write-picture stream snapshot robot :display display look)))
             file (picture-kind 'save-snapshot file)))
 
 (addition save-picture)

@@ -92,6 +92,15 @@
   "Write TEXT with the characters that mean something in SVG replaced."
   (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
+(defun write-words (canvas gcontext string)
+  "Finish an element of text, which is STRING."
+  (write-svg canvas " fill=\"")
+  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
+  (write-svg canvas "\">")
+  (write-text string (svg-stream canvas))
+  (write-svg canvas "</text>
+"))
+
 ;;; Painting.
 
 (defun note-reach (canvas left top right bottom)
@@ -180,12 +189,8 @@
 
 (defmethod paint-string ((canvas svg-canvas) gcontext x y string)
   (note-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
-  (write-svg canvas "<text x=\"" x "\" y=\"" y "\" fill=\"")
-  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
-  (write-svg canvas "\">")
-  (write-text string (svg-stream canvas))
-  (write-svg canvas "</text>
-"))
+  (write-svg canvas "<text x=\"" x "\" y=\"" y "\"")
+  (write-words canvas gcontext string))
 
 ;;; Where.
 
@@ -227,12 +232,7 @@
   (write-svg canvas "<text x=\"" x "\" y=\"" y "\" font-size=\"" size "\" text-anchor=\""
              (string-downcase anchor) "\"" (if bold-p " font-weight=\"bold\"" ""))
   (when upward-p (write-svg canvas " transform=\"rotate(-90," x "," y ")\""))
-  (write-svg canvas " fill=\"")
-  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
-  (write-svg canvas "\">")
-  (write-text string (svg-stream canvas))
-  (write-svg canvas "</text>
-"))
+  (write-words canvas gcontext string))
 
 (defmethod character-width ((canvas svg-canvas) size)
   (* 61/100 size))
