@@ -38,10 +38,12 @@ variables; such lists for what variables hold weakly."
 
 ;;; Visiting.
 
+(defun first-visit-p (object reach)
+  (not (shiftf (gethash object (reach-seen reach)) t)))
+
 (defun visit-function (function name reach)
   "Visit FUNCTION, called NAME, or NIL if it is only a part of another."
-  (unless (gethash function (reach-seen reach))
-    (setf (gethash function (reach-seen reach)) t)
+  (when (first-visit-p function reach)
     (cond ((typep function 'generic-function)
            (dolist (method (code-references function)) (visit-function method name reach)))
           (t (when name (note-origin function name reach))
@@ -67,8 +69,7 @@ there, as by a trial, or it has closed over something."
 
 (defun note-weak (object symbol reach)
   "Note what OBJECT, which is in the value of the variable SYMBOL, holds if it is weak."
-  (when (and (weak-p object) (not (gethash object (reach-seen reach))))
-    (setf (gethash object (reach-seen reach)) t)
+  (when (and (weak-p object) (first-visit-p object reach))
     (dolist (number (weak-numbers object (lambda (atom) (note-weak atom symbol reach))))
       (setf (gethash (list :variable (qualified symbol) number) (reach-weak-parts reach)) t))))
 
@@ -94,8 +95,7 @@ empty table count as no data, since they often stand where a table or structure 
 (defun visit-definition (entry reach)
   "Visit what ENTRY, of a registry, says, if that is a user's."
   (let ((object (entry-object entry)))
-    (unless (or (gethash entry (reach-seen reach)) (experiment-p object) (not (users-p entry)))
-      (setf (gethash entry (reach-seen reach)) t)
+    (when (and (not (experiment-p object)) (users-p entry) (first-visit-p entry reach))
       (note-part (type-of object) (qualified (entry-name entry)) (or (entry-digest entry) 0) reach)
       (let ((file (source-file (entry-source entry))))
         (when file (note-file file nil reach)))
@@ -115,9 +115,7 @@ empty table count as no data, since they often stand where a table or structure 
   (when (proper-list-p list)
     (dolist (element list)
       (cond ((functionp element) (visit-function element nil reach))
-            ((and (typep element 'structure-object)
-                  (not (gethash element (reach-seen reach))))
-             (setf (gethash element (reach-seen reach)) t)
+            ((and (typep element 'structure-object) (first-visit-p element reach))
              (dolist (slot (class-slot-names (class-of element)))
                (let ((value (slot-value element slot)))
                  (when (functionp value) (visit-function value nil reach)))))))))
@@ -142,20 +140,17 @@ empty table count as no data, since they often stand where a table or structure 
       (visit-variable symbol reach))))
 
 (defun visit-symbol (symbol reach)
-  (unless (gethash symbol (reach-seen reach))
-    (setf (gethash symbol (reach-seen reach)) t)
-    (when (users-symbol-p symbol) (visit-name symbol reach))))
+  (when (and (first-visit-p symbol reach) (users-symbol-p symbol))
+    (visit-name symbol reach)))
 
 (defun visit-list (list reach)
   (unless (gethash list (reach-seen reach))
-    (loop while (and (consp list) (not (gethash list (reach-seen reach))))
-          do (setf (gethash list (reach-seen reach)) t)
-             (visit (pop list) reach))
+    (loop while (and (consp list) (first-visit-p list reach))
+          do (visit (pop list) reach))
     (visit list reach)))
 
 (defun visit-vector (vector reach)
-  (unless (gethash vector (reach-seen reach))
-    (setf (gethash vector (reach-seen reach)) t)
+  (when (first-visit-p vector reach)
     (loop for element across vector do (visit element reach))))
 
 (defun visit-setter (name reach)
