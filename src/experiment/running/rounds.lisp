@@ -13,7 +13,7 @@
   (conditions '() :type list :read-only t)
   (first 1 :type integer :read-only t)
   (last 0 :type integer :read-only t)
-  (presence nil :type presence :read-only t)
+  (presence nil :type hash-table :read-only t)
   (shard nil :type list :read-only t)
   ;; How many seconds each may take, or NIL.
   (time-limit nil :type (or null real) :read-only t)

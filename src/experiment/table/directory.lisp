@@ -162,15 +162,14 @@ there for good when this returns."
         (float-text (/ (round milliseconds 1/1000) 1000d0))
         (integer-text worker) (integer-text (process-number)) (host-name)))
 
-;;; What is there. For each condition the trials are a row of bits.
+;;; What is there: the presence of rows is a table from conditions to bits, one for each trial.
 
-(defstruct (presence (:constructor make-presence ()) (:copier nil))
-  "Which trials of which conditions have rows."
-  (bits (make-hash-table :test 'eq) :read-only t))
+(defun make-presence ()
+  (make-hash-table :test 'eq))
 
 (defun bits-of (condition presence)
-  (or (gethash condition (presence-bits presence))
-      (setf (gethash condition (presence-bits presence))
+  (or (gethash condition presence)
+      (setf (gethash condition presence)
             (make-array 64 :element-type 'bit :adjustable t :initial-element 0))))
 
 (defun present-p (condition trial presence)
@@ -181,7 +180,7 @@ there for good when this returns."
   (let ((bits (bits-of condition presence)))
     (when (>= trial (length bits))
       (setf bits (adjust-array bits (* 2 (1+ trial)) :initial-element 0)
-            (gethash condition (presence-bits presence)) bits))
+            (gethash condition presence) bits))
     (setf (aref bits trial) 1)))
 
 (defun condition-of-texts (experiment texts)
