@@ -237,36 +237,21 @@ in CHOICES."
         (setf (gethash name known) condition)))))
 
 (defun experiment-from (name definition
-                        &key documentation robots parameters clean (thinking :free) factors cases
-                          (trials 100) (seed 0) (limit 100000) time-limit variables
-                          run until success measures series form deciding)
-  "Return an experiment called NAME; DEFINITION is what errors in it are said to be in."
-  (let ((experiment (%make-experiment name)))
-    (check-robots definition (list* :robots robots) robots)
-    (check-value definition (list :thinking thinking) thinking)
-    (setf (experiment-documentation experiment) documentation
-          (experiment-robots experiment) robots
-          (experiment-thinking experiment) thinking
-          (experiment-axes experiment)
-          (loop for (part values) in factors collect (axis-from definition part values))
-          (experiment-cases experiment)
-          (loop for (case settings) in cases
-                collect (make-case case (settings-from definition settings)))
-          (experiment-trials experiment) trials
-          (experiment-seed experiment) seed
-          (experiment-limit experiment) limit
-          (experiment-time-limit experiment) time-limit
-          (experiment-variables experiment) variables
-          (experiment-run experiment) run
-          (experiment-until experiment) until
-          (experiment-success experiment) success
-          (experiment-measures experiment) measures
-          (experiment-series experiment) series
-          (experiment-form experiment) form
-          (experiment-deciding experiment) deciding
-          (experiment-conditions experiment)
-          (let ((settings (settings-from definition parameters)))
-            (call-plainly (lambda () (all-conditions experiment clean settings)))))
+                        &rest options
+                        &key robots parameters clean (thinking :free) factors cases
+                        &allow-other-keys)
+  "Return an experiment called NAME; DEFINITION is what errors in it are said to be in. OPTIONS are
+also those slots of an experiment that are taken as they are."
+  (check-robots definition (list* :robots robots) robots)
+  (check-value definition (list :thinking thinking) thinking)
+  (let* ((axes (loop for (part values) in factors collect (axis-from definition part values)))
+         (cases-from (loop for (case settings) in cases
+                           collect (make-case case (settings-from definition settings))))
+         (experiment (apply #'%make-experiment :name name :axes axes :cases cases-from
+                                               :allow-other-keys t options))
+         (settings (settings-from definition parameters)))
+    (setf (experiment-conditions experiment)
+          (call-plainly (lambda () (all-conditions experiment clean settings))))
     (check-conditions-differ definition
                              (if factors
                                  (list* :vary (mapcar #'first factors))

@@ -4,7 +4,7 @@
 
 (export '(experiment-package experiment-limit experiment-documentation trial-seed))
 
-(defstruct (experiment (:constructor %make-experiment (name)) (:copier nil))
+(defstruct (experiment (:constructor %make-experiment) (:copier nil))
   "A question: what is done in a trial, under which conditions, and what is measured."
   (name nil :type symbol)
   (documentation nil :type (or null string))
