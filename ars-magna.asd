@@ -230,7 +230,7 @@
                  (:file "rounds") (:file "stopping") (:file "repeatable") (:file "running")))
    (:module "src/experiment/report" :serial t
     :components ((:file "scaling") (:file "estimates") (:file "summary") (:file "text-table")
-                 (:file "texts") (:file "remarks") (:file "report")))
+                 (:file "remarks") (:file "report")))
    (:module "src/experiment/comparison" :serial t
     :components ((:file "differences") (:file "contrasts") (:file "overall") (:file "figures")
                  (:file "verdicts") (:file "comparison-table") (:file "levels") (:file "meaning")

@@ -7,7 +7,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
         :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots
                 #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
-                #:save-chart #:power-of-ten)
+                #:save-chart #:power-of-ten #:decimal-text #:without-zeros)
   (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.plots)
 
-(export '(figure-text power-of-ten))
+(export '(figure-text power-of-ten decimal-text without-zeros))
 
 ;;; Inside, all numbers are rationals: nothing overflows, whatever their size, and the same data
 ;;; make the same picture to the last byte.
@@ -29,9 +29,9 @@ WRONG-ARGUMENT."
 ;;; Text.
 
 (defun decimal-text (value decimals)
-  "Return VALUE, a rational, in decimals, rounded to DECIMALS of these."
+  "Return VALUE in decimals, rounded to DECIMALS of these."
   (multiple-value-bind (whole rest)
-      (truncate (abs (round (* value (expt 10 decimals)))) (expt 10 decimals))
+      (truncate (abs (round (* (rational value) (expt 10 decimals)))) (expt 10 decimals))
     (format nil "~:[~;-~]~D~:[~;.~V,'0D~]"
             (and (minusp value) (plusp (+ whole rest)))
             whole (plusp decimals) decimals rest)))

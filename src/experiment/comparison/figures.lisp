@@ -2,11 +2,6 @@
 
 (in-package :ars-magna.experiment)
 
-(defun hundredths-text (share trials)
-  "Return SHARE, seen in TRIALS, in hundredths."
-  (fixed-text (* 100 (rational share))
-              (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
-
 ;;; Of means all numbers have the same last decimal, which has a negative number above the point. It
 ;;; shows the width of the interval, or if that is nothing the difference, with two digits.
 
@@ -29,10 +24,8 @@
 (defun power-text (number decimals)
   "Return NUMBER with a power of ten, up to its last of DECIMALS."
   (let* ((power (power-of-ten number))
-         (text (fixed-text (/ number (expt 10 power)) (max 0 (+ decimals power)))))
-    (format nil "~Ae~D"
-            (if (find #\. text) (string-right-trim "." (string-right-trim "0" text)) text)
-            power)))
+         (text (decimal-text (/ number (expt 10 power)) (max 0 (+ decimals power)))))
+    (format nil "~Ae~D" (without-zeros text) power)))
 
 (defun mean-text (value decimals)
   "Return VALUE, a mean or a difference, in DECIMALS; with a power of ten if it is far from 1."
@@ -42,7 +35,7 @@
           ;; Beside very large numbers a small one is not nothing.
           ((and (zerop number) (minusp decimals) (not (zerop value))) (figure-text value :digits 2))
           ((or (zerop number) (<= -6 (power-of-ten number) 14))
-           (fixed-text number (max 0 decimals)))
+           (decimal-text number (max 0 decimals)))
           (t (power-text number decimals)))))
 
 (defun number-writer (difference)

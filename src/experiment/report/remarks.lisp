@@ -128,7 +128,7 @@ see one of each."
                   for look = (look-after count)
                   collect (format nil "after ~D trials intervals have a confidence of ~A %" count
                                   (if look
-                                      (fixed-text (* 100 (confidence-at-look look)) 2)
+                                      (decimal-text (* 100 (confidence-at-look look)) 2)
                                       "95"))))))
 
 (defun write-notes (results summaries stream)

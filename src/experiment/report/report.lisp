@@ -17,12 +17,7 @@ they are too large or small for that."
   "Return a function that writes each of NUMBERS."
   (let ((decimals (decimals-for numbers)))
     (lambda (number)
-      (if decimals (fixed-text number decimals) (figure-text number)))))
-
-(defun percent-writer (trials)
-  "Return a function that writes a share seen in TRIALS in hundredths."
-  (let ((decimals (max 0 (- (length (integer-text (max 0 (1- trials)))) 2))))
-    (lambda (share) (fixed-text (* 100 (rational share)) decimals))))
+      (if decimals (decimal-text number decimals) (figure-text number)))))
 
 ;;; Columns of estimates.
 
@@ -32,7 +27,8 @@ they are too large or small for that."
 (defun writer-for (estimates)
   "Return a function that writes the numbers of ESTIMATES, which are of one kind."
   (if (eq :rate (estimate-kind (first estimates)))
-      (percent-writer (reduce #'max estimates :key #'estimate-count))
+      (let ((trials (reduce #'max estimates :key #'estimate-count)))
+        (lambda (share) (hundredths-text share trials)))
       (number-writer-for (mapcan #'estimate-numbers estimates))))
 
 (defun aligned-texts (numbers writer)

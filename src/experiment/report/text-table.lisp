@@ -86,3 +86,20 @@ other as are needed, each with KEY."
   (loop for (block . more) on (blocks key columns)
         do (write-block block stream)
            (when more (terpri stream))))
+
+;;; Numbers and counts in a cell.
+
+(defun hundredths-text (share trials)
+  "Return SHARE, seen in TRIALS, in hundredths."
+  (decimal-text (* 100 share)
+              (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
+
+(defun tally-text (tally most)
+  "Return TALLY, an alist from texts to counts, in one line, the MOST commonest first."
+  (flet ((counted (text count)
+           (unbroken (format nil "~A (~D)" (cut text 60) count))))
+    (let ((rest (nthcdr most tally)))
+      (format nil "~{~A~^, ~}"
+              (append (loop for (text . count) in tally
+                            repeat most collect (counted text count))
+                      (and rest (list (counted "others" (reduce #'+ rest :key #'cdr)))))))))
