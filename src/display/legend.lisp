@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(sample-of robot-entry sample-of-name jump-entry))
+(export '(grouped sample-of robot-entry sample-of-name jump-entry))
 
 ;;; An entry is a text with a function of a canvas and a place, X and Y in pixels, that draws the
 ;;; sample around there, no more than 16 pixels high and as wide as the entry says.

@@ -44,17 +44,6 @@
         (or (find text levels :test #'string-equal)
             (reject-name "value" text levels)))))
 
-(defun grouped (items key)
-  "Return lists of ITEMS with equal KEY, in order of appearance."
-  (let ((groups '()))
-    (dolist (item items (mapcar #'reverse (reverse groups)))
-      (let ((group (find (funcall key item) groups
-                         :key (lambda (group) (funcall key (first group))) :test #'equal)))
-        (if group
-            (setf (cdr group) (list* (first group) (rest group))
-                  (car group) item)
-            (push (list item) groups))))))
-
 ;;; What levels are called. What two conditions have in common need not be said of each.
 
 (defun full-level-name (factor text) (format nil "~A=~A" factor text))
