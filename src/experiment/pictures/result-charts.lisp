@@ -96,21 +96,26 @@ estimate for a sample."
 
 (defconstant +most-rows+ 30 "How many rows a picture has at most.")
 
-(defun spread-pictures (results summaries place)
-  "Return pictures of how the numbers of the measure at PLACE lie."
-  (loop with rows = (loop for sample in (results-samples results)
-                          for summary in summaries
-                          collect (spread-row results sample
-                                              (nth place (summary-measures summary))))
-        with name = (nth place (results-measures results))
-        with chunks = (in-chunks rows +most-rows+)
+(defun pictures-of-rows (name rows chart)
+  "Return pictures called NAME of ROWS, as many as they fill, which the function CHART draws."
+  (loop with chunks = (in-chunks rows +most-rows+)
         for chunk in chunks
         for number from 1
-        collect (make-picture (format nil "spread-of-~A" name)
-                              (and (rest chunks) (integer-text number))
-                              (measure-chart chunk :middle-label "mean" :title (title-of results)
-                                                   :x-label name
-                                                   :subtitle (intervals-words :mean summaries)))))
+        collect (make-picture name (and (rest chunks) (integer-text number))
+                              (funcall chart chunk))))
+
+(defun spread-pictures (results summaries place)
+  "Return pictures of how the numbers of the measure at PLACE lie."
+  (let ((name (nth place (results-measures results))))
+    (pictures-of-rows (format nil "spread-of-~A" name)
+                      (loop for sample in (results-samples results)
+                            for summary in summaries
+                            collect (spread-row results sample
+                                                (nth place (summary-measures summary))))
+                      (lambda (rows)
+                        (measure-chart rows :middle-label "mean" :title (title-of results)
+                                            :x-label name
+                                            :subtitle (intervals-words :mean summaries))))))
 
 (defun measure-pictures (results summaries)
   (loop for name in (results-measures results)
@@ -216,11 +221,9 @@ makes; NIL if there is nothing to compare."
                  (all-contrasts comparison)))
 
 (defun difference-charts (comparison measure name)
-  (loop with chunks = (in-chunks (contrasts-in measure comparison) +most-rows+)
-        for chunk in chunks
-        for number from 1
-        collect (make-picture name (and (rest chunks) (integer-text number))
-                              (comparison-chart comparison measure :contrasts chunk))))
+  (pictures-of-rows name (contrasts-in measure comparison)
+                    (lambda (contrasts)
+                      (comparison-chart comparison measure :contrasts contrasts))))
 
 (defun difference-pictures (results summaries)
   (declare (ignore summaries))
