@@ -42,14 +42,12 @@ Signals MISUSE for rows of other code."
   "Return a table of how many of the first TRIALS of each condition of EXPERIMENT succeeded."
   (let* ((columns (columns experiment)) (seed (seed-column columns))
          (counts (make-hash-table :test 'eq)))
-    (map-rows (lambda (texts line start number)
-                (declare (ignore line start number))
-                (let ((condition (condition-of-texts experiment texts)))
-                  (when (and condition
-                             (<= (parse-integer (nth (1+ seed) texts)) trials)
-                             (string= "success" (nth (+ 2 seed) texts)))
-                    (incf (gethash condition counts 0)))))
-              (rows-file directory))
+    (do-rows (texts (rows-file directory))
+      (let ((condition (condition-of-texts experiment texts)))
+        (when (and condition
+                   (<= (parse-integer (nth (1+ seed) texts)) trials)
+                   (string= "success" (nth (+ 2 seed) texts)))
+          (incf (gethash condition counts 0)))))
     counts))
 
 (defun wide-conditions (experiment conditions look width directory)

@@ -48,16 +48,20 @@ from 1. Return where the last one ends."
                         (cut text 200) header))))))
 
 (defun map-rows (function file)
-  "Call FUNCTION with the texts of each row of the table FILE, its line of octets, where that begins
-and its number. Return where the last whole line ends, and the names of the columns. Signals
-DAMAGED-TABLE."
+  "Call FUNCTION with the texts of each row of the table FILE, where its line begins, and the number
+of that. Signals DAMAGED-TABLE."
   (let ((columns (header-of file)))
-    (values
-     (map-lines (lambda (line start number)
-                  (when (> number 1)
-                    (funcall function (row-texts line columns file number) line start number)))
-                file)
-     columns)))
+    (map-lines (lambda (line start number)
+                 (when (> number 1)
+                   (funcall function (row-texts line columns file number) start number)))
+               file)))
+
+(defmacro do-rows ((texts file &optional (start (gensym)) (number (gensym))) &body body)
+  "Run BODY with the TEXTS of each row of the table FILE, whose line begins at START and has NUMBER."
+  `(map-rows (lambda (,texts ,start ,number)
+               (declare (ignorable ,start ,number))
+               ,@body)
+             ,file))
 
 ;;; Order: by condition, and within that by trial.
 
@@ -86,17 +90,14 @@ their groups."
     (dolist (file files)
       (unless (equal columns (header-of file))
         (reject-table file nil "its columns are not those of ~A" (native-name (first files))))
-      (map-rows (lambda (texts line start number)
-                  (declare (ignore line))
-                  (let* ((seed (seed-column columns))
-                         (key (subseq texts 0 seed))
-                         (group (or (gethash key groups)
-                                    (setf (gethash key groups) (make-group key)))))
-                    (vector-push-extend
-                     (make-indexed-row group (parse-integer (nth (1+ seed) texts))
-                                       file start number)
-                     rows)))
-                file))
+      (do-rows (texts file start number)
+        (let* ((seed (seed-column columns))
+               (key (subseq texts 0 seed))
+               (group (or (gethash key groups)
+                          (setf (gethash key groups) (make-group key)))))
+          (vector-push-extend
+           (make-indexed-row group (parse-integer (nth (1+ seed) texts)) file start number)
+           rows))))
     (values rows (hash-table-values groups))))
 
 (defun group-before-p (a b)

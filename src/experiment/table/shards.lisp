@@ -55,14 +55,11 @@ whether its series is there. Tables with other columns have none."
              (own-p (equal columns (header-of file)))
              (series (and own-p (series-there experiment (directory-called name)))))
         (when own-p
-          (map-rows (lambda (texts line start number)
-                      (declare (ignore line start number))
-                      (let ((condition (condition-of-texts experiment texts)))
-                        (when condition
-                          (funcall function condition
-                                   (parse-integer (nth (1+ seed) texts))
-                                   (second texts) name (series-complete-p series texts)))))
-                    file))))))
+          (do-rows (texts file)
+            (let ((condition (condition-of-texts experiment texts)))
+              (when condition
+                (funcall function condition (parse-integer (nth (1+ seed) texts))
+                         (second texts) name (series-complete-p series texts))))))))))
 
 (defun own-fingerprint-p (condition fingerprint)
   (string= fingerprint (condition-fingerprint condition)))
