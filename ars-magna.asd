@@ -216,7 +216,7 @@
    (:module "src/experiment/question" :serial t
     :components ((:file "values") (:file "condition") (:file "experiment") (:file "designs")
                  (:file "clauses")
-                 (:file "defexperiment") (:file "question") (:file "facts")))
+                 (:file "defexperiment") (:file "question")))
    (:module "src/experiment/trial" :serial t
     :components ((:file "outcome") (:file "data") (:file "forms") (:file "sampling") (:file "trial")
                  (:file "version") (:file "reaching") (:file "fingerprint")))
@@ -226,8 +226,8 @@
                  (:file "origin") (:file "description") (:file "results") (:file "merging")
                  (:file "shards")))
    (:module "src/experiment/running" :serial t
-    :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "guarding")
-                 (:file "rounds") (:file "stopping") (:file "repeatable") (:file "running")))
+    :components ((:file "workers") (:file "progress") (:file "guarding")
+                 (:file "rounds") (:file "repeatable") (:file "running")))
    (:module "src/experiment/report" :serial t
     :components ((:file "scaling") (:file "estimates") (:file "summary") (:file "text-table")
                  (:file "remarks") (:file "report")))
@@ -237,8 +237,7 @@
                  (:file "comparing") (:file "changes") (:file "comparing-versions")
                  (:file "comparison-picture")))
    (:module "src/experiment/pictures" :serial t
-    :components ((:file "panels") (:file "result-charts") (:file "pictures") (:file "ways")
-                 (:file "ways-picture")))
+    :components ((:file "panels") (:file "result-charts") (:file "pictures") (:file "ways-picture")))
    (:module "src/experiment/replay" :serial t
     :components ((:file "aside") (:file "replaying") (:file "failures") (:file "trial-series")))
    (:module "src" :components ((:file "all"))))

@@ -1,4 +1,4 @@
-;;;; question.lisp -- what an experiment asks, as it stands above tables and pictures.
+;;;; question.lisp -- what an experiment asks, and what people want to know of it.
 
 (in-package :ars-magna.experiment)
 
@@ -16,3 +16,12 @@
   (let* ((experiment (find-experiment name nil))
          (text (and experiment (experiment-documentation experiment))))
     (and text (string/= "" (one-line text)) (first-sentence text))))
+
+(define-facts (experiment experiment)
+  "Robots" (listed (experiment-robots experiment))
+  "Varies" (listed (factor-names experiment))
+  "Conditions" (length (experiment-conditions experiment))
+  "Trials of each" (experiment-trials experiment)
+  "Ends at tick" (experiment-limit experiment)
+  "Measures" (listed (mapcar #'first (experiment-measures experiment)))
+  "Each tick" (listed (mapcar #'first (experiment-series experiment))))

@@ -6,6 +6,16 @@
 
 ;;; On a terminal there is one line that changes; elsewhere a line now and then.
 
+(defun moment ()
+  "Return this moment, for SECONDS-SINCE."
+  (real-microseconds))
+
+(defun seconds-since (moment)
+  (/ (- (moment) moment) 1d6))
+
+(defun milliseconds-since (moment)
+  (* 1000 (seconds-since moment)))
+
 (defstruct (progress (:constructor make-progress
                                (stream terminal-p total workers
                                 &aux (under-way (make-array (1+ workers) :initial-element nil))))
