@@ -192,9 +192,9 @@
    (:module "src/floors" :serial t
     :components ((:file "package") (:file "trouble") (:file "decimals") (:file "yaml")
                  (:file "description") (:file "images") (:file "pgm") (:file "inflating")
-                 (:file "png-chunks") (:file "png-rows") (:file "png")
-                 (:file "reading-images") (:file "occupancy") (:file "runs") (:file "lines")
-                 (:file "frames") (:file "importing") (:file "exporting")))
+                 (:file "png-chunks") (:file "png-rows") (:file "png") (:file "occupancy")
+                 (:file "runs") (:file "lines") (:file "frames") (:file "importing")
+                 (:file "exporting")))
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "task-tree") (:file "saving")))
@@ -203,7 +203,7 @@
                  (:file "words") (:file "page") (:file "series") (:file "legend")
                  (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
-                 (:file "measure-chart") (:file "saving")))
+                 (:file "measure-chart")))
    (:module "src/trails" :serial t
     :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")
                  (:file "spots") (:file "run-picture")))

@@ -1,6 +1,8 @@
-;;;; page.lisp -- what all charts have: a margin, a title, and a document that they become.
+;;;; page.lisp -- what all charts have: a margin, a title, and a document that is saved.
 
 (in-package :ars-magna.plots)
+
+(export '(save-chart))
 
 (defconstant +margin+ 16 "How much is left free around a chart, in pixels.")
 
@@ -39,3 +41,10 @@
       (with-canvas (canvas)
         (funcall draw canvas)
         (values width height)))))
+
+(defun save-chart (file chart)
+  "Save CHART, an SVG document that a function such as LINE-CHART has returned, in FILE, replacing
+it: SVG or, where the program rsvg-convert is installed, PNG, as its name ends. Return the file's
+truename. Signals WRONG-ARGUMENT, and MISUSE without that program."
+  (check-argument save-chart chart (stringp chart) "what a function such as LINE-CHART returns")
+  (save-svg chart file (picture-kind 'save-chart file)))
