@@ -182,23 +182,17 @@ these, the images of robots, and the entries of lines, of both the latest first.
           (write-text (entry-text entry) out)
           (format out "</li>~%"))))))
 
-(defun film-layers (layers)
-  "Return those of LAYERS that the picture in a film has: its legend and title are HTML."
-  (set-difference layers '(:legend :title)))
-
 (defun film-scale (scale snapshot layers)
   "Return how many pixels a cell has in a film that begins as SNAPSHOT shows. The page magnifies the
 picture itself, as far as there is room: more than suits the map would only make its text small."
   (min (suitable-scale scale snapshot layers) (fitting-scale snapshot layers)))
 
-(defun film-moments (journal seen until kinds own)
-  (in-order (append (of-kinds kinds (append seen (remarked-moments journal until))) own)))
-
 (defun shoot (journal every until watch part layers in-color scale)
   "Replay JOURNAL. Return the reel of it, the ticks of its frames, stills of the first and the last
 frame, and the cast; WATCH is called with the simulation after each tick."
   (let ((reel (make-reel)) (ticks '()) (cast nil) (first nil) (last nil)
-        (shown (film-layers layers)))
+        ;; The legend and the title of a page are HTML.
+        (shown (set-difference layers '(:legend :title))))
     (call-with-frames (lambda (snapshot)
                         (unless cast
                           (setf cast (make-cast snapshot)
@@ -221,7 +215,9 @@ frame, and the cast; WATCH is called with the simulation after each tick."
         (write-film out (or title (film-title journal ticks)) first last
                     (if (member :legend layers) (legend-text cast layers in-color) "")
                     reel ticks rate
-                    (film-moments journal (funcall seen) until kinds moments)
+                    (in-order (append (of-kinds kinds (append (funcall seen)
+                                                              (remarked-moments journal until)))
+                                      moments))
                     (and (rest (snapshot-robots (cast-opening cast))) t))))))
 
 (defun animation-kind (file series)
@@ -324,26 +320,21 @@ also if its definitions are not those at hand. Signals what REPLAY does."
       (reject "rate" rate "a number of frames a second, from 0.001 to 1000"))
     (check-map-options 'save-animation :title title :layers layers :scale scale)))
 
-(defun older-frames (file count)
-  "Return the files that a longer series called FILE has left behind one of COUNT files."
-  (loop for number from (1+ count)
-        for frame = (numbered-file file number)
-        while (probe-file frame) collect frame))
-
-(defun warn-of-older-frames (file count)
-  "Say so if an older series called FILE, of which COUNT files were written anew, had more. They are
-left alone: nobody said that they may go."
-  (let ((older (older-frames file count)))
-    (when older
-      (warning-set (format nil "~A~@[ to ~A~] are of an older series, which was longer than this ~
-                                one of ~D. Delete them before you make a film of the files."
-                           (shown-name (first older))
-                           (and (rest older) (name-in-directory (first (last older)))) count)))))
-
 (defun files-in-words (files)
   "Return what FILES, one or more of a series, the last first, are called."
   (format nil "~A~@[ to ~A~]" (shown-name (first (last files)))
           (and (rest files) (name-in-directory (first files)))))
+
+(defun warn-of-older-frames (file count)
+  "Say so if an older series called FILE, of which COUNT files were written anew, had more. They are
+left alone: nobody said that they may go."
+  (let ((older (loop for number from (1+ count)
+                     for frame = (numbered-file file number)
+                     while (probe-file frame) collect frame)))
+    (when older
+      (warning-set (format nil "~A are of an older series, which was longer than this one of ~D. ~
+                                Delete them before you make a film of the files."
+                           (files-in-words (reverse older)) count)))))
 
 (defun call-for-series (function files)
   "Call FUNCTION, which writes the next file of a series of which FILES, the last first, are there.

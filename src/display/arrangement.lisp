@@ -18,11 +18,6 @@ MISUSE if that is no scale."
                         ~D: then pictures have the scale that suits their map."
                        graphics-scale* (argument-type-text 'picture-scale) +usual-scale+))))
 
-(defun check-scale (operator scale)
-  "Signal WRONG-ARGUMENT if SCALE, an argument of OPERATOR, is neither a scale nor NIL."
-  (unless (or (null scale) (argument-of-type-p scale 'picture-scale))
-    (reject-argument operator "scale" scale (argument-type-text 'picture-scale))))
-
 ;;; Where nobody says how many pixels a cell has, there are as many as make the map, with title,
 ;;; coordinates and scale bar, no larger than +WIDEST+ by +HIGHEST+. The legend comes on top of
 ;;; that, beside the map or below it, where it makes the page less large: the map does not shrink
@@ -131,10 +126,6 @@ LAYERS is drawn, and how much that is then to be magnified as a whole."
 (defun columns-height (columns)
   (* +line-height+ (length (first columns))))
 
-(defun columns-beside (entries height)
-  "Return ENTRIES in columns no higher than HEIGHT pixels, if that can be."
-  (columns-of entries (max 8 (floor height +line-height+))))
-
 (defun columns-below (entries width)
   "Return ENTRIES in columns, as low as can be, that together are no wider than WIDTH pixels."
   (loop for rows from 1
@@ -167,7 +158,8 @@ the least room."
     (flet ((with (columns below-p)
              (arrangement-with (room-for layers) (right-edge width layers) (to-pixels height)
                                columns below-p)))
-      (let ((beside (with (columns-beside entries (to-pixels height)) nil))
+      (let ((beside (with (columns-of entries (max 8 (floor (to-pixels height) +line-height+)))
+                          nil))
             (below (with (columns-below entries (max (to-pixels width) 480)) t)))
         (if (< (area below) (area beside)) below beside)))))
 

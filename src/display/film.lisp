@@ -26,15 +26,13 @@ a vector of such numbers."
         for end = (position #\Newline text :start start)
         while end collect (subseq text start (1+ end))))
 
-(defun number-of-line (line reel)
-  (let ((numbers (reel-numbers reel)))
-    (or (gethash line numbers)
-        (setf (gethash line numbers) (hash-table-count numbers)))))
-
 (defun add-frame (text reel)
   "Let the frame that is drawn by TEXT, in SVG, be the next of REEL."
-  (push (cl:map 'vector (lambda (line) (number-of-line line reel)) (lines-of text))
-        (reel-frames reel)))
+  (let ((numbers (reel-numbers reel)))
+    (flet ((number-of (line)
+             (or (gethash line numbers)
+                 (setf (gethash line numbers) (hash-table-count numbers)))))
+      (push (cl:map 'vector #'number-of (lines-of text)) (reel-frames reel)))))
 
 (defun reel-lines (reel)
   "Return a vector of the lines of REEL, by number."

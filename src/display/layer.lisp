@@ -120,9 +120,3 @@
 (defun layer-words (name)
   "Return what lines of the prompt call the layer NAME: one name or two."
   (format nil "~A~@[ or ~A~]" name (%layer-text-name (layer-called name))))
-
-(defun check-layers (operator layers)
-  "Signal WRONG-ARGUMENT unless LAYERS, an argument of OPERATOR, is a list of layers."
-  (unless (and (proper-list-p layers) (subsetp layers (picture-layers)))
-    (reject-argument operator "layers" layers
-                     (format nil "a list of some of ~{~(~S~)~^, ~}" (picture-layers)))))

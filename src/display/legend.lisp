@@ -273,18 +273,16 @@ than the line."
                                 (with-opacity (canvas opacity) (funcall sample canvas x y)))
                               :whole (entry-whole entry) :width (entry-width entry)))))
 
-(defun terrain-entries (snapshot layers)
-  (append (wall-entries snapshot)
-          (further-entries (append (layers-at :under-walls layers) (layers-at :on-walls layers))
-                           snapshot)))
-
 (defun legend-entries (snapshot layers
                        &key (lines (line-entries snapshot layers))
                             (robots (robot-entries snapshot))
                             (opacity 1))
   "Return the entries of the legend of a picture of SNAPSHOT with LAYERS, the map in which has
 OPACITY; LINES are those of lines, and ROBOTS those of robots."
-  (let* ((terrain (terrain-entries snapshot layers))
+  (let* ((terrain (append (wall-entries snapshot)
+                          (further-entries (append (layers-at :under-walls layers)
+                                                   (layers-at :on-walls layers))
+                                           snapshot)))
          (entries (append robots
                           (if (= 1 opacity) terrain (paled terrain opacity))
                           lines

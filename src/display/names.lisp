@@ -201,11 +201,6 @@ can be, one to which a clear line leads; that of a thing must be clear."
       (or (best (lambda (box) (leader-clear-p spot box taken rivals)))
           (and (spot-robot spot) (best (constantly t)))))))
 
-(defun draw-leader (canvas spot box)
-  "Draw the line from SPOT to its name in BOX."
-  (inked (black*)
-    (draw-segments canvas draw-gcontext* (leader-ends spot box))))
-
 ;;; Writing names.
 
 (define-constant +apart+ 6
@@ -287,5 +282,6 @@ of robots, and of things right beside one or on another, where there is none at 
                     taken marks index robot-spots)
         (when box
           (let ((box (widened box +apart+))) (enter-box box box taken))
-          (when led-p (draw-leader canvas spot box))
+          (when led-p
+            (inked (black*) (draw-segments canvas draw-gcontext* (leader-ends spot box))))
           (write-name canvas (spot-name spot) box))))))

@@ -20,8 +20,11 @@
 above it, its layers and its scale."
   (unless (typep title '(or null string))
     (reject-argument operator :title title "a string or NIL"))
-  (check-layers operator layers)
-  (check-scale operator scale))
+  (unless (and (proper-list-p layers) (subsetp layers (picture-layers)))
+    (reject-argument operator "layers" layers
+                     (format nil "a list of some of ~{~(~S~)~^, ~}" (picture-layers))))
+  (unless (or (null scale) (argument-of-type-p scale 'picture-scale))
+    (reject-argument operator "scale" scale (argument-type-text 'picture-scale))))
 
 (defun check-picture (operator robot display layers scale title)
   (unless (robot-p robot)
@@ -81,9 +84,6 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
                         librsvg2-bin: apt-get install librsvg2-bin. Or save the picture as .svg."))
           ((plusp status) (reject-png file words)))))
 
-(defun convert-to-png (svg file)
-  (write-file-anew (lambda (out) (write-png svg out file)) file "the picture" :kind :image))
-
 (defun picture-kind (operator file &optional (kinds '(:svg :png)) (endings ".svg or .png"))
   "Return which of KINDS the name of FILE ends in. Signals WRONG-ARGUMENT if OPERATOR cannot save a
 picture there; then it says that a name has one of ENDINGS."
@@ -101,7 +101,9 @@ picture there; then it says that a name has one of ENDINGS."
   "Write the SVG document SVG to FILE, as SVG or PNG by KIND. Return the truename."
   (ecase kind
     (:svg (save-text svg file))
-    (:png (convert-to-png svg (merge-pathnames file)))))
+    (:png (let ((file (merge-pathnames file)))
+            (write-file-anew (lambda (out) (write-png svg out file)) file "the picture"
+                             :kind :image)))))
 
 (defun save-snapshot (snapshot robot file &rest look &key (display :all) &allow-other-keys)
   "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it. LOOK

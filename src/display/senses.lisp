@@ -98,12 +98,6 @@ WIDTH."
   (destructuring-bind (x y) (believed-place robot designator)
     (list (box-around x y (+ 2 (track-radius))))))
 
-(defun designator-box (robot designator)
-  "Return the box (left top right bottom) of the cross and the number of DESIGNATOR, in pixels."
-  (destructuring-bind (x y) (believed-place robot designator)
-    (let ((text (princ-to-string (designator-image-number designator))))
-      (list (- x 5) (- y 13) (+ x 9 (words-width text)) (+ y 5)))))
-
 (defun draw-designator-on-map (canvas robot designator)
   "Draw a cross with the number of DESIGNATOR where ROBOT believes it to be, and a line from there
 to what it denotes."
@@ -121,9 +115,12 @@ to what it denotes."
                               (princ-to-string (designator-image-number designator))))))))
 
 (defun designator-boxes (designators robot snapshot)
-  "Return the boxes of the crosses and numbers of DESIGNATORS."
+  "Return the boxes (left top right bottom) of the crosses and numbers of DESIGNATORS, in pixels."
   (declare (ignore snapshot))
-  (mapcar (lambda (designator) (designator-box robot designator)) designators))
+  (loop for designator in designators
+        for (x y) = (believed-place robot designator)
+        for text = (princ-to-string (designator-image-number designator))
+        collect (list (- x 5) (- y 13) (+ x 9 (words-width text)) (+ y 5))))
 
 (defun draw-designators-on-map (canvas designators robot snapshot)
   (declare (ignore snapshot))

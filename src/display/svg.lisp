@@ -59,12 +59,6 @@
     (dolist (part parts)
       (if (stringp part) (write-string part stream) (write-number part stream)))))
 
-(defun write-fill (canvas gcontext)
-  (write-svg canvas " fill=\"")
-  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
-  (write-svg canvas "\"/>
-"))
-
 (defun interposed (separator dashes)
   "Return the list of DASHES, an integer or a list, with SEPARATOR between them."
   (if (listp dashes)
@@ -86,7 +80,11 @@
 
 (defun write-paint (canvas gcontext fill-p)
   "Finish an element that is filled, or outlined."
-  (if fill-p (write-fill canvas gcontext) (write-stroke canvas gcontext)))
+  (cond (fill-p (write-svg canvas " fill=\"")
+                (write-color (gcontext-foreground gcontext) (svg-stream canvas))
+                (write-svg canvas "\"/>
+"))
+        (t (write-stroke canvas gcontext))))
 
 (defun write-text (text stream)
   "Write TEXT with the characters that mean something in SVG replaced."

@@ -85,16 +85,12 @@ its parameter; plain black on a display without colours."
   (let ((width (/ (rational graphics-scale*) (max 1 (round graphics-scale* 7)))))
     (and (<= +least-tile+ width) width)))
 
-(defun texture-ink (color)
-  "Return the colour of textures on COLOR."
-  (mix color white* 6/10))
-
 (defun draw-wall-look (canvas look rectangles &optional (tile (tile-width)))
   "Fill RECTANGLES, a list x y width height ..., with LOOK, in tiles TILE pixels wide."
   (with-color (wall-look-color look)
     (draw-rectangles canvas draw-gcontext* rectangles t))
   (when tile
-    (with-color (texture-ink (wall-look-color look))
+    (with-color (mix (wall-look-color look) white* 6/10)
       (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
 
 (defun wall-pixels (from to)
@@ -127,9 +123,6 @@ its parameter; plain black on a display without colours."
                     x y graphics-scale* graphics-scale* x y)
       (draw-mark canvas x y graphics-scale* graphics-scale*)))
 
-(defun draw-place (canvas type column row)
-  (draw-place-at canvas type (* column graphics-scale*) (* row graphics-scale*)))
-
 ;; As reading 210 says.
 (defun drawn-place-type-p (type)
   (and type (place-type-graphics type) (not (place-type-invisible-p type))))
@@ -142,7 +135,8 @@ its parameter; plain black on a display without colours."
                    for number = (aref places (+ x (* y width)))
                    unless (zerop number)
                      do (let ((type (svref types number)))
-                          (when (drawn-place-type-p type) (draw-place canvas type x y)))))))
+                          (when (drawn-place-type-p type)
+                            (draw-place-at canvas type (to-pixels x) (to-pixels y))))))))
 
 ;;; The grid: on the floor only, so that it lies on white.
 

@@ -74,32 +74,29 @@ large things are their initials, as far as can be. There may be more kinds than 
 
 ;;; Walls, by their substance.
 
-(defun wall-glyph (map index colored-p)
-  "Return the glyph of the wall in the cell INDEX of MAP; if COLORED-P, by its substance."
-  (let ((name (and colored-p (svref (map-substance-types map) (aref (map-substances map) index)))))
-    (make-glyph :wall #\# (if name (string-downcase name) "wall") (and name (substance-ink name)))))
-
 (defun wall-glyphs (map indices colored-p)
-  "Return a list of the glyph of the first wall of MAP in the cells INDICES, if any."
+  "Return a list of the glyph of the first wall of MAP in the cells INDICES, if any; if COLORED-P,
+by its substance."
   (let ((index (find-if (lambda (index) (logtest +wall+ (aref (map-flags map) index))) indices)))
-    (and index (list (wall-glyph map index colored-p)))))
+    (when index
+      (let ((name (and colored-p
+                       (svref (map-substance-types map) (aref (map-substances map) index)))))
+        (list (make-glyph :wall #\# (if name (string-downcase name) "wall")
+                          (and name (substance-ink name))))))))
 
 ;;; Places.
 
 (define-constant +place-glyphs+ "=:.;,'~\"|-/\\_" :test #'equal
   :documentation "What place types look like, by their rank; the rest look like the last.")
 
-(defun place-glyph (type)
-  (make-glyph :place
-              (char +place-glyphs+ (min (place-type-rank type) (1- (length +place-glyphs+))))
-              (string-downcase (place-type-name type))
-              :grey))
-
 (defun place-glyphs (map indices)
   "Return a list of the glyph of the first place of MAP in the cells INDICES, if any."
   (let ((index (find-if (lambda (index) (plusp (aref (map-places map) index))) indices)))
-    (and index (list (place-glyph (svref (map-place-types map)
-                                         (aref (map-places map) index)))))))
+    (when index
+      (let* ((type (svref (map-place-types map) (aref (map-places map) index)))
+             (last (1- (length +place-glyphs+))))
+        (list (make-glyph :place (char +place-glyphs+ (min (place-type-rank type) last))
+                          (string-downcase (place-type-name type)) :grey))))))
 
 ;;; Robots.
 

@@ -2,11 +2,6 @@
 
 (in-package :ars-magna.display)
 
-(defun way-entry (text color position)
-  "Return an entry of a legend for a way."
-  (sample-of-name (canvas x y) (text "" 38)
-    (draw-way-sample canvas (list (- x 18) y (+ x 18) y) color position)))
-
 ;;; Ways as points.
 
 (defun coordinates-of (point)
@@ -14,14 +9,11 @@
   (list (to-pixels (if (pt-p point) (pt-x point) (first point)))
         (to-pixels (if (pt-p point) (pt-y point) (second point)))))
 
-(defun way-line-on-map (way position)
-  "Return the line of WAY, a list of points, the one at POSITION of several."
-  (make-way-line position (list (mapcan #'coordinates-of way))))
-
 (defun draw-ways-on-map (canvas ways)
   "Draw WAYS, lists of points, with what marks where they begin and end."
   (draw-way-lines canvas (loop for way in ways for position from 0
-                               collect (way-line-on-map way position)))
+                               collect (make-way-line position
+                                                      (list (mapcan #'coordinates-of way)))))
   (draw-way-marks canvas
                   (loop for way in ways for position from 0
                         for color = (turn-ink position)
@@ -56,9 +48,12 @@
 
 (defun ways-entries (ways)
   "Return the entries of the legend for WAYS."
-  (append (loop for nil in ways for position from 0
-                collect (way-entry (format nil "way~:[~; ~D~]" (rest ways) (1+ position))
-                                   (turn-ink position) position))
+  (append (loop for nil in ways for number from 0
+                collect (let ((position number))
+                          (sample-of-name (canvas x y)
+                              ((format nil "way~:[~; ~D~]" (rest ways) (1+ position)) "" 38)
+                            (draw-way-sample canvas (list (- x 18) y (+ x 18) y)
+                                             (turn-ink position) position))))
           (and ways (list (sample-of (canvas x y) "start" (draw-start canvas x y black*))
                           (sample-of (canvas x y) "end" (draw-goal canvas x y black*))))))
 
