@@ -17,13 +17,10 @@ of, if that is one factor."
 
 ;;; Factors.
 
-(defun numeric-factor-p (results place)
-  (every #'number-in (levels results place)))
-
 (defun factor-across (results)
   "Return the factor that runs along pictures of RESULTS, or NIL if nothing varies."
   (let ((free (free-factors results)))
-    (or (find-if (lambda (place) (numeric-factor-p results place)) free)
+    (or (find-if (lambda (place) (every #'number-in (levels results place))) free)
         (first free))))
 
 (defun factors-beside (results)

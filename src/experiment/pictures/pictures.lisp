@@ -10,16 +10,14 @@
 ;;; Files are called by what is in them.
 
 (defun file-word (text)
-  "Return TEXT as the part of a file's name: letters, digits, points and single dashes."
-  (let ((text (substitute-if #\- (lambda (char)
-                                   (not (or (and (< (char-code char) 128) (alphanumericp char))
-                                            (char= #\. char))))
-                             (string-downcase text))))
-    (cut-name (format nil "~{~A~^-~}"
-                      (remove "" (uiop:split-string text :separator "-") :test #'string=)))))
-
-(defun cut-name (name)
-  (subseq name 0 (min 100 (length name))))
+  "Return TEXT as the part of a file's name: at most 100 letters, digits, points and single dashes."
+  (let* ((text (substitute-if #\- (lambda (char)
+                                    (not (or (and (< (char-code char) 128) (alphanumericp char))
+                                             (char= #\. char))))
+                              (string-downcase text)))
+         (words (remove "" (uiop:split-string text :separator "-") :test #'string=))
+         (name (format nil "~{~A~^-~}" words)))
+    (subseq name 0 (min 100 (length name)))))
 
 (defun new-name (picture names)
   "Return the name for PICTURE, which is none of NAMES."
@@ -40,12 +38,6 @@
           collect (save-chart (file-in directory (format nil "~A.~(~A~)" name kind))
                               (picture-chart picture)))))
 
-(defun check-which (which)
-  (check-argument save-result-pictures which
-                  (and (proper-list-p which)
-                       (every (lambda (key) (assoc key *pictures*)) which))
-                  (format nil "a list of some of ~{~(~S~)~^, ~}" (mapcar #'first *pictures*))))
-
 (addition save-result-pictures)
 (define-with-keywords save-result-pictures
     (results directory &key (kind :svg) (which (mapcar #'first *pictures*)))
@@ -64,7 +56,10 @@ show. Signals WRONG-ARGUMENT, and MISUSE without that program or if there is no 
   (check-argument save-result-pictures directory (typep directory '(or string pathname))
                   "the name of a directory")
   (check-argument save-result-pictures kind (member kind '(:svg :png)) ":svg or :png")
-  (check-which which)
+  (check-argument save-result-pictures which
+                  (and (proper-list-p which)
+                       (every (lambda (key) (assoc key *pictures*)) which))
+                  (format nil "a list of some of ~{~(~S~)~^, ~}" (mapcar #'first *pictures*)))
   (when (results-samples results)
     (let ((summaries (summarize-results results)))
       (save-pictures (loop for (key . function) in *pictures*

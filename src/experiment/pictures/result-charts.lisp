@@ -88,12 +88,6 @@ estimate for a sample."
 
 ;;; What was measured.
 
-(defun spread-row (results sample estimate)
-  "Return the row of MEASURE-CHART for all numbers of SAMPLE that ESTIMATE is of."
-  (list (sample-condition sample)
-        (remove-if-not #'finite-value-p (sample-measure results sample (estimate-name estimate)))
-        (estimate-value estimate) (estimate-low estimate) (estimate-high estimate)))
-
 (defconstant +most-rows+ 30 "How many rows a picture has at most.")
 
 (defun pictures-of-rows (name rows chart)
@@ -110,8 +104,12 @@ estimate for a sample."
     (pictures-of-rows (format nil "spread-of-~A" name)
                       (loop for sample in (results-samples results)
                             for summary in summaries
-                            collect (spread-row results sample
-                                                (nth place (summary-measures summary))))
+                            for estimate = (nth place (summary-measures summary))
+                            for values = (sample-measure results sample name)
+                            collect (list (sample-condition sample)
+                                          (remove-if-not #'finite-value-p values)
+                                          (estimate-value estimate) (estimate-low estimate)
+                                          (estimate-high estimate)))
                       (lambda (rows)
                         (measure-chart rows :middle-label "mean" :title (title-of results)
                                             :x-label name
