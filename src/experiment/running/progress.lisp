@@ -13,9 +13,6 @@
 (defun seconds-since (moment)
   (/ (- (moment) moment) 1d6))
 
-(defun milliseconds-since (moment)
-  (* 1000 (seconds-since moment)))
-
 (defstruct (progress (:constructor make-progress
                                (stream terminal-p total workers
                                 &aux (under-way (make-array (1+ workers) :initial-element nil))))

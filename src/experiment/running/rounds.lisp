@@ -47,10 +47,6 @@
                     ((not (present-p condition trial (queue-presence queue)))
                      (return (values condition trial)))))))))
 
-(defun close-queue (queue)
-  "Let nobody get another trial of QUEUE."
-  (setf (queue-closed-p queue) t))
-
 (defun count-in-shard (first last shard)
   "Return how many numbers from FIRST to LAST are of trials in SHARD."
   (if shard
@@ -79,7 +75,7 @@ PROGRESS."
           (list condition trial begun (trial-seed experiment trial)))
     (let ((result (run-guarded experiment condition trial (lambda () (queue-closed-p queue))
                                (queue-time-limit queue))))
-      (funcall keep result (milliseconds-since begun) worker))
+      (funcall keep result (* 1000 (seconds-since begun)) worker))
     (setf (svref (progress-under-way progress) worker) nil)
     (atomic-incf (progress-done progress))))
 
@@ -99,4 +95,5 @@ those under way are given a moment."
   (call-by-workers (lambda (worker) (work-off experiment queue keep progress worker))
                    workers
                    :pulse (lambda () (tell-progress progress))
-                   :stop (lambda () (close-queue queue))))
+                   ;; Nobody gets another trial.
+                   :stop (lambda () (setf (queue-closed-p queue) t))))

@@ -94,10 +94,6 @@ Signals MISUSE for rows of other code."
                  progress workers)
       (tell-progress progress t))))
 
-(defun run-all (experiment trials presence shard store workers time-limit stream)
-  (run-round experiment (experiment-conditions experiment) trials presence shard store workers
-             time-limit stream))
-
 (defun run-until-narrow (experiment width most directory store workers time-limit stream)
   "Run trials until each interval is at most WIDTH wide, or there are MOST of each condition."
   (loop with conditions = (experiment-conditions experiment)
@@ -138,7 +134,8 @@ Signals MISUSE for rows of other code."
            (if until
                (run-until-narrow experiment until trials directory store workers time-limit
                                  stream)
-               (run-all experiment trials presence shard store workers time-limit stream))
+               (run-round experiment (experiment-conditions experiment) trials presence shard
+                          store workers time-limit stream))
            (check-run-again store parts (seconds-since begun))))
        experiment directory)
       (put-in-order experiment directory))))

@@ -21,6 +21,15 @@
 (defun reject-row (file number control &rest arguments)
   (reject-table file number "~? Delete the line; its trial will be run again." control arguments))
 
+(defun call-writing (function file
+                     &optional (trouble "it cannot be written (~A). Is it, or its directory, ~
+                                         read-only?"))
+  "Call FUNCTION, which opens or changes FILE. If the system refuses, signal DAMAGED-TABLE, which
+says TROUBLE, with the reason."
+  (handler-case (funcall function)
+    (ars-magna-error (condition) (error condition))
+    (error (condition) (reject-table file nil trouble (unwritten-reason condition)))))
+
 ;;; The header.
 
 (defparameter *rows-layout* (list *columns-between* *columns-after*)

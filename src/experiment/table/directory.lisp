@@ -71,14 +71,6 @@
 
 ;;; Writing.
 
-(defun call-writing (function file)
-  "Call FUNCTION, which opens or changes FILE. Signals DAMAGED-TABLE if the system refuses."
-  (handler-case (funcall function)
-    (ars-magna-error (condition) (error condition))
-    (error (condition)
-      (reject-table file nil "it cannot be written (~A). Is it, or its directory, read-only?"
-                    (unwritten-reason condition)))))
-
 (defun cut-broken-line (file columns)
   "Cut off what a process that was killed has begun to write to FILE, a table with COLUMNS. True if
 anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as it was."

@@ -162,11 +162,8 @@ fingerprint and one value of each thing that varies."
 (defun call-replacing-table (function file &optional (check #'identity))
   "Call FUNCTION with a stream to a file that takes the place of the table FILE, once CHECK has been
 called with its path. Signals DAMAGED-TABLE if that cannot be written; FILE is then as it was."
-  (handler-case (call-replacing-file function file :check check)
-    (ars-magna-error (condition) (error condition))
-    (error (condition)
-      (reject-table file nil "it cannot be written anew (~A). It is as it was."
-                    (unwritten-reason condition)))))
+  (call-writing (lambda () (call-replacing-file function file :check check))
+                file "it cannot be written anew (~A). It is as it was."))
 
 (defun call-with-line-reader (function files)
   "Call FUNCTION with a function that returns the line in one of FILES that begins at a place."
