@@ -69,11 +69,6 @@
   (let ((parameter (find-parameter name nil)))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 
-(defun start-value (parameter clean)
-  (if (and clean (eq :noise (parameter-kind parameter)))
-      (parameter-clean parameter)
-      (parameter-default parameter)))
-
 (defun parameters-with (settings clean)
   "Return the values of all parameters, in a vector: as SETTINGS, lists (name value), say, the last
 one first, or as in a noiseless world if CLEAN is true, or else the manual's."
@@ -81,5 +76,8 @@ one first, or as in a noiseless world if CLEAN is true, or else the manual's."
           (lambda (parameter)
             (let ((setting (find (parameter-symbol parameter) settings
                                  :key #'first :from-end t)))
-              (if setting (second setting) (start-value parameter clean))))
+              (cond (setting (second setting))
+                    ((and clean (eq :noise (parameter-kind parameter)))
+                     (parameter-clean parameter))
+                    (t (parameter-default parameter)))))
           (all-parameters)))

@@ -85,18 +85,20 @@ PARAMETERS, lists (name value), that all have."
                                              (and case (factor-case-name case))
                                              others clean parameters))))
 
+(defun called (text things name)
+  "Return those of THINGS whose name, by the function NAME, is TEXT; if there are none, those that
+have it in their names."
+  (or (remove text things :key name :test-not #'string-equal)
+      (remove-if-not (lambda (thing) (search text (funcall name thing) :test #'char-equal))
+                     things)))
+
 (addition find-condition)
 (defun find-condition (experiment designator)
   "Return the condition of EXPERIMENT, or of the one so named, that DESIGNATOR means: a condition,
 its number, from 1, or what it is called, as far as that is unambiguous. Signals UNKNOWN-NAME."
   (let* ((conditions (experiment-conditions (find-experiment experiment)))
          (text (if (typep designator '(or symbol string)) (string designator) ""))
-         (called (and (string/= text "")
-                      (or (remove text conditions :key #'condition-name :test-not #'string-equal)
-                          (remove-if-not (lambda (condition)
-                                           (search text (condition-name condition)
-                                                   :test #'char-equal))
-                                         conditions)))))
+         (called (and (string/= text "") (called text conditions #'condition-name))))
     (cond ((member designator conditions) designator)
           ((and (integerp designator) (<= 1 designator (length conditions)))
            (nth (1- designator) conditions))
@@ -127,15 +129,15 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
   (append (and (experiment-cases experiment) (list "case"))
           (mapcar #'column-name (factor-names experiment))))
 
-(defun measure-columns (experiment)
-  (mapcar (lambda (measure) (column-name (first measure))) (experiment-measures experiment)))
+(defun part-columns (parts)
+  (mapcar (lambda (part) (column-name (first part))) parts))
 
 (defun columns (experiment)
   "Return the names of the columns of the table of EXPERIMENT."
   (append *columns-before* (factor-columns experiment) *columns-between*
-          (measure-columns experiment) *columns-after*))
+          (part-columns (experiment-measures experiment)) *columns-after*))
 
 (defun series-columns (experiment)
   "Return the names of the columns of the table of series of EXPERIMENT."
   (append *columns-before* (factor-columns experiment) *series-columns*
-          (mapcar (lambda (part) (column-name (first part))) (experiment-series experiment))))
+          (part-columns (experiment-series experiment))))

@@ -133,10 +133,8 @@ and is the same in each run."
   "True if the text A comes before B in a table: numbers by size, and before words."
   (let ((number (number-in a)) (other (number-in b)))
     (cond ((and number other (/= number other)) (< number other))
-          ((and number other) (string< a b))
-          (number t)
-          (other nil)
-          (t (string< a b)))))
+          ((eq (null number) (null other)) (string< a b))
+          (t number))))
 
 (defun texts-before-p (a b)
   "True if the list of texts A comes before B, which is as long."

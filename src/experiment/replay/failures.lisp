@@ -67,14 +67,11 @@ experiment that has been run here, or its name. Signals MISUSE and DAMAGED-TABLE
 (defun samples-meant (results condition)
   "Return those samples of RESULTS whose conditions are called CONDITION, or have that in their
 names; all if it is NIL. Signals UNKNOWN-NAME."
-  (let* ((samples (results-samples results)) (text (and condition (string condition))))
-    (flet ((those (test)
-             (remove-if-not (lambda (sample) (funcall test text (sample-condition sample)))
-                            samples)))
-      (cond ((null condition) samples)
-            ((those #'string-equal))
-            ((those (lambda (text name) (search text name :test #'char-equal))))
-            (t (reject-name "condition" text (mapcar #'sample-condition samples)))))))
+  (let ((samples (results-samples results)))
+    (cond ((null condition) samples)
+          ((called (string condition) samples #'sample-condition))
+          (t (reject-name "condition" (string condition)
+                          (mapcar #'sample-condition samples))))))
 
 (addition trial-failures)
 (defun trial-failures (results &optional condition)
