@@ -106,8 +106,8 @@ picture there; then it says that a name has one of ENDINGS."
                              :kind :image)))))
 
 (defun save-snapshot (snapshot robot file &rest look &key (display :all) &allow-other-keys)
-  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it. LOOK
-are options of WRITE-PICTURE."
+  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it.
+LOOK are options of WRITE-PICTURE."
   (save-svg (telling-what-breaks
               (with-output-to-string (stream)
                 (apply #'write-picture stream snapshot robot :display display look)))

@@ -57,7 +57,7 @@ of that. Signals DAMAGED-TABLE."
                file)))
 
 (defmacro do-rows ((texts file &optional (start (gensym)) (number (gensym))) &body body)
-  "Run BODY with the TEXTS of each row of the table FILE, whose line begins at START and has NUMBER."
+  "Run BODY with the TEXTS of each row of the table FILE, the line NUMBER, which begins at START."
   `(map-rows (lambda (,texts ,start ,number)
                (declare (ignorable ,start ,number))
                ,@body)
