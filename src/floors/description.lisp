@@ -26,9 +26,6 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
     ("negate" . "0") ("occupied_thresh" . "0.65") ("free_thresh" . "0.196"))
   "The keys that must be there, each with a value as map savers write it.")
 
-(defun find-entry (key entries)
-  (find key entries :key #'entry-key :test #'string=))
-
 (defun required-entry (file key entries)
   "Return the entry for KEY. Signals UNUSABLE-FLOOR if there is none."
   (or (find-entry key entries)

@@ -50,21 +50,12 @@ stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals 
               (code-char (aref +shades+ (aref (grid-cells grid) (+ x (* y (grid-width grid))))))))
       (write-string row out))))
 
-(defun plain-name-p (name)
-  "True if NAME needs no quotes in YAML."
-  (and (alpha-char-p (char name 0))
-       (every (lambda (char) (or (alphanumericp char) (find char "._-"))) name)))
-
 (defun name-as-value (name)
-  "Return NAME, that of a file, as a value of YAML."
-  (if (plain-name-p name)
+  "Return NAME, that of a file, as a value of YAML: without quotes if it needs none."
+  (if (and (alpha-char-p (char name 0))
+           (every (lambda (char) (or (alphanumericp char) (find char "._-"))) name))
       name
-      (with-output-to-string (out)
-        (write-char #\' out)
-        (loop for char across name
-              do (when (char= #\' char) (write-char char out))
-                 (write-char char out))
-        (write-char #\' out))))
+      (format nil "'~{~A~^''~}'" (uiop:split-string name :separator "'"))))
 
 (defun image-name (path)
   "Return how a description beside it calls the image PATH."

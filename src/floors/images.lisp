@@ -5,6 +5,9 @@
 (deftype octets () '(simple-array (unsigned-byte 8) (*)))
 (deftype samples () '(simple-array (unsigned-byte 16) (*)))
 
+(defun make-octets (size)
+  (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
+
 (defstruct (image (:constructor make-image (width height white samples)) (:copier nil))
   "An image in grey of WIDTH by HEIGHT pixels, whose SAMPLES, row by row from the top, go from 0,
 black, to WHITE. One more than WHITE is a pixel of which nobody knows."
@@ -40,6 +43,6 @@ black, to WHITE. One more than WHITE is a pixel of which nobody knows."
       (reject-floor file nil "the image has ~D bytes, too many for the limit of ~D pixels; cut out ~
                               what you need, or give IMPORT-MAP a higher :limit"
                     (file-length in) limit))
-    (let ((octets (make-array (file-length in) :element-type '(unsigned-byte 8))))
+    (let ((octets (make-octets (file-length in))))
       (read-sequence octets in)
       octets)))

@@ -35,13 +35,6 @@ defined the substance."
       (list (substance-name substance)
             (if given parameter (plain-number (substance-parameter substance)))))))
 
-(defun sort-of-unknown (value walls)
-  "Return a list (substance parameter) for VALUE of :unknown, or NIL; WALLS is that of walls."
-  (case value
-    (:walls walls)
-    ((nil) nil)
-    (t (sort-of-wall :unknown value))))
-
 (defun name-in (text)
   "Return what a map from a file called TEXT is called: letters and digits, with dashes between."
   (let ((words (substitute-if #\Space (complement #'alphanumericp) (string-upcase text))))
@@ -90,11 +83,6 @@ those that are not known, of the sort UNKNOWN, unless that is NIL."
           (t (append (clauses unknown (list +unknown+) (list +unknown+ +occupied+))
                      (clauses walls (list +occupied+)))))))
 
-(defun frame-of (description side)
-  "Return the frame of a map with cells of SIDE pixels: see MAP-FRAME."
-  (mapcar #'double (cons (* side (description-resolution description))
-                         (description-origin description))))
-
 (defun check-grid-size (description image side)
   "Signal UNUSABLE-FLOOR if IMAGE is too wide or high for a map with cells of SIDE pixels."
   (let ((most (ceiling (max (image-width image) (image-height image)) side)))
@@ -129,14 +117,18 @@ of it. Nothing is defined. Signals the same."
   (check-argument imported-map-form limit (whole-p limit 1 1000000000) "an integer from 1 to 1e9")
   (check-option :share (probability-p share) share "a number from 0 to 1")
   (let* ((walls (sort-of-wall :substance substance))
-         (unknown (sort-of-unknown unknown walls))
+         (unknown (case unknown
+                    (:walls walls)
+                    ((nil) nil)
+                    (t (sort-of-wall :unknown unknown))))
          (description (read-description file))
          (name (name-for name (description-file description)))
          (side (side-in-pixels description pixels cell))
          (image (read-image (description-image description) limit (description-mode description))))
     (check-grid-size description image side)
     (let* ((grid (image-grid image description side (rational share)))
-           (frame (frame-of description side))
+           (frame (mapcar #'double (cons (* side (description-resolution description))
+                                         (description-origin description))))
            (lines (grid-clauses grid walls unknown)))
       (warn-of-nothing-free description grid)
       (values `(defmap ,name (,(grid-width grid) ,(grid-height grid) :frame ,frame

@@ -11,15 +11,13 @@
 (defconstant +occupied+ 1 "Stands for a cell where something is.")
 (defconstant +unknown+ 2 "Stands for a cell of which nobody knows.")
 
-(defstruct (grid (:constructor make-grid (width height &optional (cells (make-cells width height))))
+(defstruct (grid (:constructor make-grid
+                     (width height &optional (cells (make-octets (* width height)))))
                  (:copier nil))
   "WIDTH by HEIGHT cells, row by row from the top: +FREE+, +OCCUPIED+ or +UNKNOWN+ each."
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
   (cells (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t))
-
-(defun make-cells (width height)
-  (make-array (* width height) :element-type '(unsigned-byte 8) :initial-element +free+))
 
 (defun count-of (state grid)
   "Return how many cells of GRID are in STATE."
@@ -45,7 +43,7 @@ that is not known."
 (defun state-table (description white)
   "Return a vector of the states of pixels, by their values from 0 to WHITE; what is one more than
 that is unknown."
-  (let ((table (make-cells (+ 2 white) 1)))
+  (let ((table (make-octets (+ 2 white))))
     (setf (aref table (1+ white)) +unknown+)
     (dotimes (sample (1+ white) table)
       (setf (aref table sample) (state-of description sample white)))))

@@ -163,7 +163,7 @@ needed."
 (defun join-pieces (octets pieces)
   "Return the octets of OCTETS that PIECES, conses of start and end, the last one first, have."
   (let* ((size (loop for (start . end) in pieces sum (- end start)))
-         (joined (make-array size :element-type '(unsigned-byte 8))) (place size))
+         (joined (make-octets size)) (place size))
     (loop for (start . end) in pieces
           do (decf place (- end start))
              (replace joined octets :start1 place :start2 start :end2 end))

@@ -7,9 +7,6 @@
 ;;; to the left is that of the same channel, STEP before. Here a row has STEP zeros in front, so
 ;;; that there always is one. (www.w3.org/TR/png-3, 9)
 
-(defun octets-of-size (size)
-  (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
-
 (defun png-step (png)
   "Return how many octets there are to a pixel of PNG, at least 1."
   (max 1 (floor (* (png-channels png) (png-depth png)) 8)))
@@ -76,7 +73,7 @@ filter."
 
 (defun check-all-inflated (png inflater)
   "Signal UNUSABLE-FLOOR unless INFLATER, of PNG, ends behind the last row."
-  (when (eql 1 (inflate-into (octets-of-size 1) 1 inflater))
+  (when (eql 1 (inflate-into (make-octets 1) 1 inflater))
     (reject-damaged (png-tape png) "its pixels go on behind the last row"))
   (unless (inflated-p inflater)
     (reject-damaged (png-tape png) "the check sum of its pixels is missing or wrong")))
@@ -97,8 +94,8 @@ with Y and it."
 behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
   (let* ((size (1+ (png-row-size png))) (height (png-height png))
          (most (min height (max 1 (floor 65536 size))))
-         (buffer (octets-of-size (* most size))) (inflater (make-inflater (png-pixels png)))
-         (row (octets-of-size (+ (png-step png) size -1))) (above (octets-of-size (length row))))
+         (buffer (make-octets (* most size))) (inflater (make-inflater (png-pixels png)))
+         (row (make-octets (+ (png-step png) size -1))) (above (make-octets (length row))))
     (loop for top from 0 below height by most
           for count = (min most (- height top))
           do (fill-with-rows png inflater buffer (* count size))

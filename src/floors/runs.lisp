@@ -14,7 +14,7 @@
   "The runs of a grid in which STEP leads from a cell to the next: OF has the run of each cell, by
 index, -1 for none; COUNT of them begin at the STARTS and have so many cells as LENGTHS say."
   (step 1 :type fixnum :read-only t)
-  (cells (make-cells 0 0) :type octets :read-only t)
+  (cells (make-octets 0) :type octets :read-only t)
   (of (make-numbers 0) :type numbers :read-only t)
   (count 0 :type fixnum)
   (starts (make-numbers 0) :type numbers)

@@ -13,6 +13,9 @@
   (line 1 :type (integer 1) :read-only t)
   (value "" :type (or string list)))
 
+(defun find-entry (key entries)
+  (find key entries :key #'entry-key :test #'string=))
+
 (defun trim (text)
   (string-trim '(#\Space #\Tab #\Return) text))
 
@@ -58,17 +61,11 @@ quotes, or behind a backslash in double ones, does not close them."
       (reject-floor file line "there is more behind the closing quote; leave that out"))
     (unquoted file line text end)))
 
-(defun split-at-commas (text)
-  (loop for start = 0 then (1+ end)
-        for end = (position #\, text :start start)
-        collect (trim (subseq text start end))
-        while end))
-
 (defun read-list (file line text)
   (let ((text (without-comment text)))
     (unless (eql (position #\] text) (1- (length text)))
       (reject-floor file line "a list is written on one line and ends it, as in [0.0, 0.0, 0.0]"))
-    (split-at-commas (subseq text 1 (1- (length text))))))
+    (mapcar #'trim (uiop:split-string (subseq text 1 (1- (length text))) :separator ","))))
 
 (defun value-at (file line text)
   "Return the value that TEXT, the rest of LINE of FILE, stands for: a string or list of strings."
@@ -114,14 +111,8 @@ quotes, or behind a backslash in double ones, does not close them."
         (append (and (consp (entry-value entry)) (entry-value entry))
                 (list (without-comment (trim (subseq (trim text) 1)))))))
 
-(defun text-lines (text)
-  (loop for start = 0 then (1+ end)
-        for end = (position #\Newline text :start start)
-        collect (string-right-trim '(#\Return) (subseq text start end))
-        while end))
-
 (defun check-new-key (file entry entries)
-  (let ((other (find (entry-key entry) entries :key #'entry-key :test #'string=)))
+  (let ((other (find-entry (entry-key entry) entries)))
     (when other
       (reject-floor file (entry-line entry) "~A is on line ~D already; leave one of the two out"
                     (entry-key entry) (entry-line other)))))
@@ -130,7 +121,8 @@ quotes, or behind a backslash in double ones, does not close them."
   "Return the entries, in order, that TEXT, which FILE has, consists of. Signals UNUSABLE-FLOOR."
   (let ((entries '()))
     (loop for line from 1
-          for text in (text-lines text)
+          for whole in (uiop:split-string text :separator '(#\Newline))
+          for text = (string-right-trim '(#\Return) whole)
           until (string= "..." (trim text))
           do (cond ((string= "" (without-comment text)))
                    ((and (null entries) (string= "---" (without-comment text))))
