@@ -63,8 +63,7 @@ these, but no more than a sixth of it."
 (defconstant +text-size+ 12 "How high the font of charts is, in pixels.")
 (defconstant +text-step+ 15 "How far lines of text are apart, in pixels.")
 
-(defun mark-width (mark)
-  (reduce #'max (rest mark) :key (lambda (line) (text-width line +text-size+)) :initial-value 0))
+(defun mark-width (mark) (lines-width (rest mark)))
 
 (defun marks-width (axis)
   "Return how wide the widest text at AXIS is."

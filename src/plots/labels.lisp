@@ -17,11 +17,6 @@
                 words all)
          all)))
 
-(defun numbered-marks (all)
-  (loop for lines in all
-        for number from 0
-        collect (cons number lines)))
-
 (defun word-axis (words from to)
   "Return an axis with a mark for each of WORDS: 0, 1, 2 .... It may reach beyond the pixel TO."
   (let* ((count (max 1 (length words)))
@@ -29,7 +24,8 @@
          (all (or across (mapcar (lambda (word) (wrapped word +longest-upward+)) words)))
          (least (if across 0 (+ 1 (reduce #'max all :key #'lines-height :initial-value 0)))))
     (make-axis :low -1/2 :high (- count 1/2) :from from :to (max to (+ from (* count least)))
-               :marks (numbered-marks all) :upward-p (null across))))
+               :marks (loop for lines in all for number from 0 collect (cons number lines))
+               :upward-p (null across))))
 
 (defun marks-height (axis)
   "Return how much room the marks of AXIS take below it, in pixels."

@@ -13,9 +13,6 @@
   (width 0 :type real)
   (height 0 :type real))
 
-(defun bold-width (lines)
-  (reduce #'max lines :key (lambda (line) (text-width line +text-size+ t)) :initial-value 0))
-
 (defun title-height (title)
   "Return how much room TITLE, lines, takes above the entries."
   (if title (+ +entry-gap+ (lines-height title)) 0))
@@ -31,7 +28,7 @@ one of no width if all are empty. CONNECT: lines belong to the samples."
                             for index from 0
                             collect (cons index (wrapped name room)))))
         (make-legend :title title :entries entries :connect connect
-                     :width (max (+ 24 (bold-width title))
+                     :width (max (+ 24 (lines-width title +text-size+ t))
                                  (+ +sample-width+ 24
                                     (reduce #'max entries :key (lambda (entry)
                                                                  (lines-width (rest entry))))))

@@ -71,9 +71,6 @@
       (each (lambda (series shift) (draw-intervals canvas series plane shift)))
       (each (lambda (series shift) (draw-spots canvas series plane shift words percent))))))
 
-(defun series-entry (series)
-  (legend-name (series-name series) (some #'spot-y (series-spots series))))
-
 (defun plan-line-chart (all words values log-x upward options)
   "Return the plane for ALL series, whose X are VALUES, in the order of WORDS if there are any."
   (apply #'plan-plane
@@ -82,7 +79,10 @@
                (word-axis words from to)
                (axis-across values from to log-x
                             :inset (room-beside all values from to log-x))))
-         upward (mapcar #'series-entry all) options))
+         upward
+         (loop for series in all
+               collect (legend-name (series-name series) (some #'spot-y (series-spots series))))
+         options))
 
 (defun line-chart (series &rest options &key percent range log-x (connect nil connect-given-p)
                                           title subtitle x-label y-label legend-title

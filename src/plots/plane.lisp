@@ -49,11 +49,6 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
              (draw-line canvas draw-gcontext* left y (plane-right plane) y))
            (write-lines canvas (- left 8) (+ y 4) lines :anchor :end)))
 
-(defun draw-frame (canvas left top right bottom)
-  "Draw the lines that are the axes."
-  (with-ink (+line-ink+ 1.2)
-    (draw-lines canvas draw-gcontext* (list left top left bottom right bottom))))
-
 (defun draw-no-data (canvas left top right bottom)
   (write-lines canvas (/ (+ left right) 2) (/ (+ top bottom) 2) '("no data") :anchor :middle
                :color +faint-ink+))
@@ -66,7 +61,8 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
     (write-lines canvas +margin+ (- top 2 (lines-height (plane-y-lines plane)))
                  (plane-y-lines plane))
     (draw-upward canvas plane)
-    (draw-frame canvas left top right bottom)
+    (with-ink (+line-ink+ 1.2)
+      (draw-lines canvas draw-gcontext* (list left top left bottom right bottom)))
     (draw-marks-across canvas across bottom)
     (write-lines canvas (/ (+ left right) 2) (+ bottom (marks-height across) 15)
                  (plane-x-lines plane) :anchor :middle)

@@ -15,15 +15,12 @@
   (index 0 :read-only t)
   (spots '() :type list :read-only t))
 
-(defun checked-x (x words-p)
-  (if words-p (name-text x) (exact x)))
-
 (defun make-checked-spot (point words-p)
   (check-argument chart point (and (consp point) (ignore-errors (<= 2 (length point) 4)))
                   "a list (x y) or (x y low high)")
   (destructuring-bind (x y &optional low high) point
     (check-argument chart x (not (null x)) "a number, or a word such as the name of a condition")
-    (make-spot (checked-x x words-p) (exact y) (exact low) (exact high))))
+    (make-spot (if words-p (name-text x) (exact x)) (exact y) (exact low) (exact high))))
 
 (defun words-p (all)
   "True if some point in the lists ALL has an X that is no number."

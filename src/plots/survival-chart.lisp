@@ -78,9 +78,6 @@ time END."
 
 ;;; Below: how many are left.
 
-(defun risk-height (curves)
-  (if (some #'curve-times curves) (+ 10 (* +text-step+ (1+ (length curves)))) 0))
-
 (defun risk-width (curves)
   "Return how wide the numbers of those at risk are at most."
   (text-width (figure-text (reduce #'max curves :key (lambda (curve) (length (curve-times curve)))
@@ -117,7 +114,9 @@ other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
                        (axis-upward '() t '(0 1))
                        (mapcar (lambda (curve) (legend-name (curve-name curve) (known-p curve)))
                                curves)
-                       :extra (risk-height curves)
+                       :extra (if (some #'curve-times curves)
+                                  (+ 10 (* +text-step+ (1+ (length curves))))
+                                  0)
                        :least-left (+ +margin+ +sample-width+ 14 (/ (risk-width curves) 2))
                        options)))
     (plane-svg plane (some #'known-p curves)

@@ -65,9 +65,9 @@ broken, else between words; within a word longer than a line behind a dash, else
        (loop for paragraph in (split text (lambda (character) (char= #\Newline character)))
              append (wrapped-words (split paragraph #'space-p) width size bold-p))))
 
-(defun lines-width (lines &optional (size +text-size+))
+(defun lines-width (lines &optional (size +text-size+) bold-p)
   "Return how wide LINES are at most, in pixels."
-  (reduce #'max lines :key (lambda (line) (text-width line size)) :initial-value 0))
+  (reduce #'max lines :key (lambda (line) (text-width line size bold-p)) :initial-value 0))
 
 (defun lines-height (lines) (* +text-step+ (length lines)))
 
