@@ -48,38 +48,27 @@ of conditions that one of them lacks."
                   (first names) (second names)))
     (first names)))
 
-(defun contrasts-of-versions (pairs before after first second names)
-  "Return contrasts of PAIRS, lists of samples of AFTER and BEFORE, which are called FIRST and
-SECOND."
-  (loop for (sample other) in pairs
-        collect (contrast-samples (make-contrast (sample-condition sample) first second)
-                                  after sample before other names)))
-
-(defun reject-lack-of-pairs (contrasts before-name after-name)
-  (when (every (lambda (contrast) (zerop (contrast-trials contrast))) contrasts)
-    (reject-use "~A and ~A have no trials of equal condition and seed." before-name after-name)))
-
-(defun lacking-notes (conditions)
-  "Return a sentence on CONDITIONS that only one table has, in a list; NIL if there are none."
-  (and conditions
-       (list (format nil "Only one of them has the condition~P ~{~A~^, ~}."
-                     (length conditions) conditions))))
-
-(defun comparison-of-versions (before after before-name after-name names)
-  "Return the comparison of the results BEFORE and AFTER, which are called so, in what NAMES say."
+(defun comparison-of-versions (before after before-name after-name names stream)
+  "Return the comparison of the results BEFORE and AFTER, which are called so, in what NAMES say,
+and print it to STREAM, if any."
   (multiple-value-bind (first second) (short-names after-name before-name)
     (multiple-value-bind (pairs lacking) (condition-pairs after before)
       (let* ((experiment (check-one-experiment before after))
-             (contrasts (contrasts-of-versions pairs before after first second names)))
-        (reject-lack-of-pairs contrasts before-name after-name)
-        (finish-comparison
+             (contrasts (loop for (sample other) in pairs
+                              for contrast = (make-contrast (sample-condition sample) first second)
+                              collect (contrast-samples contrast after sample before other
+                                                        names))))
+        (end-comparison
          (make-comparison
           experiment (format nil "~A against ~A, before" after-name before-name)
           :versions contrasts
           :overall (and (worth-overall-p contrasts)
                         (list (overall-contrast first second pairs names after before)))
           :changes (changes-between pairs (results-directory after) (results-directory before))
-          :notes (lacking-notes lacking)))))))
+          :notes (and lacking
+                      (list (format nil "Only one of them has the condition~P ~{~A~^, ~}."
+                                    (length lacking) lacking))))
+         stream "~A and ~A have no trials of equal condition and seed." before-name after-name)))))
 
 (addition compare-results)
 (defun compare-results (before after &key measure (stream *standard-output*))
@@ -94,8 +83,6 @@ different experiments."
   (check-stream 'compare-results stream)
   (multiple-value-bind (old old-name) (results-given 'compare-results 'before before)
     (multiple-value-bind (new new-name) (results-given 'compare-results 'after after)
-      (let ((comparison (comparison-of-versions
-                         old new old-name new-name
-                         (compared-names 'compare-results (list new old) measure))))
-        (when stream (print-comparison comparison stream))
-        comparison))))
+      (comparison-of-versions old new old-name new-name
+                              (compared-names 'compare-results (list new old) measure)
+                              stream))))

@@ -45,11 +45,6 @@ where, and the rest their names."
                                        (level-names factors firsts)
                                        (level-names factors seconds)))))
 
-(defun contrasts-of-conditions (results pairs place names)
-  (loop for (first second) in pairs
-        collect (contrast-samples (contrast-of-conditions results first second place)
-                                  results first results second names)))
-
 (defun pairs-by-levels (results pairs place)
   "Return lists (level base pair...) of PAIRS that compare the same two levels at PLACE."
   (loop with factor = (nth place (results-factors results))
@@ -79,22 +74,30 @@ KIND says what those are that are several."
             ((null (rest seconds)) (format nil "each ~A against ~A" kind (first seconds)))
             ((null (rest firsts)) (format nil "~A against each other ~A" (first firsts) kind))))))
 
+(defun end-comparison (comparison stream control &rest arguments)
+  "Let COMPARISON know what its tests are worth, print it to STREAM, if any, and return it. Signals
+MISUSE, as CONTROL and ARGUMENTS say, if nothing in it could be compared."
+  (when (every (lambda (contrast) (zerop (contrast-trials contrast)))
+               (comparison-contrasts comparison))
+    (reject-use "~?" control arguments))
+  (finish-comparison comparison)
+  (when stream (print-comparison comparison stream))
+  comparison)
+
 (defun comparison-of-conditions (results pairs place names stream)
   "Return the comparison of PAIRS, of RESULTS, in what NAMES say, and print it to STREAM, if any."
-  (let* ((contrasts (contrasts-of-conditions results pairs place names))
-         (comparison
-           (make-comparison
-            (sample-experiment (first (first pairs)))
-            (sides-words contrasts (if place (nth place (results-factors results)) "condition"))
-            :conditions contrasts
-            :overall (and place (worth-overall-p contrasts)
-                          (overall-contrasts results pairs place names)))))
-    (when (every (lambda (contrast) (zerop (contrast-trials contrast))) contrasts)
-      (reject-use "These conditions have no seeds in common. Run more trials of the experiment in ~
-                   the same directory."))
-    (finish-comparison comparison)
-    (when stream (print-comparison comparison stream))
-    comparison))
+  (let ((contrasts (loop for (first second) in pairs
+                         for contrast = (contrast-of-conditions results first second place)
+                         collect (contrast-samples contrast results first results second names))))
+    (end-comparison
+     (make-comparison
+      (sample-experiment (first (first pairs)))
+      (sides-words contrasts (if place (nth place (results-factors results)) "condition"))
+      :conditions contrasts
+      :overall (and place (worth-overall-p contrasts)
+                    (overall-contrasts results pairs place names)))
+     stream "These conditions have no seeds in common. Run more trials of the experiment in the ~
+             same directory.")))
 
 (defun check-stream (operator stream)
   (unless (or (null stream) (and (streamp stream) (output-stream-p stream)))

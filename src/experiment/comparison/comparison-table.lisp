@@ -41,10 +41,6 @@
           do (format stream "~A~%" (contrast-heading contrast))
              (write-columns rows widths stream))))
 
-(defun comparison-title (comparison)
-  (format nil "The experiment ~A, seed by seed~@[: ~A~]." (comparison-experiment comparison)
-          (comparison-sides comparison)))
-
 (defun method-words (comparison)
   (format nil "Differences are first less second, seed by seed, each with its own 95 % interval: ~
                of rates Newcombe's and McNemar's exact test, of means Student's and a permutation ~
@@ -64,7 +60,9 @@ many trials succeeded in both, one and neither of them, and below it a row for e
 how many seeds, both rates or means, the difference (of rates in points) with its 95 % interval, and
 p after and before Holm's correction for all tests. Return COMPARISON."
   (check-argument print-comparison comparison (comparison-p comparison) "a comparison")
-  (write-wrapped (comparison-title comparison) stream)
+  (write-wrapped (format nil "The experiment ~A, seed by seed~@[: ~A~]."
+                         (comparison-experiment comparison) (comparison-sides comparison))
+                 stream)
   (let ((question (question-of (comparison-experiment comparison))))
     (when question (write-wrapped question stream)))
   (when (comparison-changes comparison) (terpri stream))

@@ -81,11 +81,6 @@ of booleans, are true."
 
 ;;; Means.
 
-(defun draws-for (trials)
-  "Return how many draws the test of so many TRIALS is worth: with many, fewer will do. How small p
-can be does not depend on it."
-  (max 1000 (min 10000 (floor 200000000 (max 1 trials)))))
-
 ;; Who adds the same floats in another order gets other last digits. That is told as what it is, and
 ;; not tested. Whole numbers have no rounding.
 (defconstant +grain+ (* 4 double-float-epsilon)
@@ -110,8 +105,10 @@ equal; or NIL."
     (if (some #'floatp numbers) (nearest-float mean) mean)))
 
 (defun test-mean (numbers)
-  "Return how likely so large a mean of the differences NUMBERS is by chance."
-  (values (permutation-test numbers :resamples (draws-for (length numbers)) :rare-too t)))
+  "Return how likely so large a mean of the differences NUMBERS is by chance. With many, fewer draws
+will do; how small this can be does not depend on these."
+  (let ((draws (clamp (floor 200000000 (length numbers)) 1000 10000)))
+    (values (permutation-test numbers :resamples draws :rare-too t))))
 
 (defun mean-difference (measure firsts seconds &optional (kind :mean))
   "Return how large MEASURE is on average, by FIRSTS and SECONDS, lists of numbers."

@@ -79,9 +79,6 @@
           (t (format nil "~A is ~:[less~;more~] with ~A than with ~A"
                      measure more first second)))))
 
-(defun leaves-out-zero-p (difference)
-  (not (<= (paired-low difference) 0 (paired-high difference))))
-
 (defun seeds-needed (tests)
   "Return over how many seeds the smallest p, as one of so many TESTS, is at most .05."
   (loop for seeds from 1
@@ -111,9 +108,9 @@
 
 (defun doubt-words (difference)
   "Return how large DIFFERENCE can be if there is one; or why it is none in spite of its interval."
-  (if (leaves-out-zero-p difference)
-      (format nil "~A~@[~A~]" (zero-words difference) (few-seeds-words difference))
-      (bound-words difference)))
+  (if (<= (paired-low difference) 0 (paired-high difference))
+      (bound-words difference)
+      (format nil "~A~@[~A~]" (zero-words difference) (few-seeds-words difference))))
 
 (defun verdict (difference contrast)
   "Return in words what DIFFERENCE, of CONTRAST, tells."
@@ -211,15 +208,11 @@ alone."
                  (list (format nil "Broke off with an error, and counted as not succeeded: ~A."
                                errors))))))
 
-(defun seeds-note (comparison)
-  "Return how seeds count in what COMPARISON says over all, in a list; NIL if it does not."
-  (and (comparison-overall comparison)
-       (list "Over all, each seed counts once, with its mean over the conditions."
-             "What is tested over all counts apart from what is tested in each condition.")))
-
 (defun comparison-remarks (comparison)
   "Return sentences on what COMPARISON had to leave out, and how seeds count."
-  (append (seeds-note comparison)
+  (append (and (comparison-overall comparison)
+               (list "Over all, each seed counts once, with its mean over the conditions."
+                     "What is tested over all counts apart from what is tested in each condition."))
           (comparison-notes comparison)
           (loop for contrast in (comparison-contrasts comparison)
                 append (left-out-notes contrast))))
