@@ -23,23 +23,21 @@
             (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
             (same-runs-p contrast) table)))
 
-(defun write-columns (rows widths stream)
-  (dolist (row rows)
-    (format stream "  ~VA~{  ~V@A~}~%" (first widths) (first row)
-            (loop for text in (rest row)
-                  for width in (rest widths)
-                  collect width collect text))))
-
 (defun write-table (comparison stream)
   (let* ((groups (loop for contrast in (all-contrasts comparison)
                        collect (mapcar #'table-row (contrast-differences contrast))))
-         (widths (apply #'mapcar (lambda (&rest texts) (reduce #'max texts :key #'length))
-                        *headings* (apply #'append groups))))
-    (write-columns (list *headings*) widths stream)
+         (columns (apply #'mapcar (lambda (heading &rest texts)
+                                    (make-text-column heading texts
+                                                      :whole-p t
+                                                      :anchor (if (string= "measure" heading)
+                                                                  :start
+                                                                  :end)))
+                         *headings* (apply #'append groups))))
+    (write-cells (mapcar #'list *headings*) columns stream)
     (loop for contrast in (all-contrasts comparison)
           for rows in groups
           do (format stream "~A~%" (contrast-heading contrast))
-             (write-columns rows widths stream))))
+             (dolist (row rows) (write-cells (mapcar #'list row) columns stream)))))
 
 (defun method-words (comparison)
   (format nil "Differences are first less second, seed by seed, each with its own 95 % interval: ~
