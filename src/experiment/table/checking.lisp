@@ -91,11 +91,6 @@ again."
        (every #'digit-char-p (string-left-trim "-" text))
        (ignore-errors (parse-integer text))))
 
-(defun writable-p (text)
-  "True if the simulator may have written TEXT into a table."
-  (declare (type simple-string text))
-  (every #'writable-char-p text))
-
 (defun check-cells (cells columns file number)
   "Signal DAMAGED-TABLE unless CELLS, from the seed's on, of the line NUMBER of FILE, can be so."
   (flet ((check (test column)
@@ -104,7 +99,7 @@ again."
                          (nth (position column columns :test #'string=)
                               (append (make-list (seed-column columns)) cells))
                          column))))
-    (unless (every #'writable-p cells)
+    (unless (every (lambda (cell) (every #'writable-char-p (the simple-string cell))) cells)
       (reject-row file number "This is no row: it has bytes that are no text."))
     (destructuring-bind (seed trial outcome reason ticks &rest rest) cells
       (declare (ignore reason))

@@ -13,14 +13,10 @@
     (let ((*package* package) (*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 90))
       (prin1-to-string form))))
 
-(defun file-of-experiment (experiment)
-  "Return the name of the file that EXPERIMENT is from, without its directory, or NIL."
-  (let ((file (experiment-file experiment)))
-    (and file (short-name file))))
-
 (defun repetition-text (experiment trials until)
   "Return how to run EXPERIMENT again."
-  (let ((file (file-of-experiment experiment)) (name (experiment-name experiment)))
+  (let* ((path (experiment-file experiment)) (file (and path (short-name path)))
+         (name (experiment-name experiment)))
     (format nil "At a shell~:[, once its text is in a file~;~]:~%  ./cli/ars-magna experiment ~
                  ~:*~:[FILE~;~:*~A~] ~(~A~) ~:[--trials ~D~;--until ~:*~A~*~] --out DIRECTORY~%~
                  In Lisp, once it is loaded:~%  (run-experiment '~(~A~) ~:[:trials ~D~;:until ~

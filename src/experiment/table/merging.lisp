@@ -9,12 +9,6 @@
     (when (and file (not (equal file own)))
       (call-writing (lambda () (check-unprotected own) (uiop:copy-file file own)) own))))
 
-(defun order-of-conditions (directories)
-  "Return the names of all conditions in the tables in DIRECTORIES, in order."
-  (remove-duplicates (loop for directory in directories
-                           append (conditions-described directory))
-                     :test #'string= :from-end t))
-
 (defun join-series (directories target rows)
   "Put the series in DIRECTORIES, if any has some, into one table in TARGET, for the trials in the
 table ROWS."
@@ -56,7 +50,8 @@ directories has series of a condition, TO has none of it."
        (call-plainly
         (lambda ()
           (write-in-order (mapcar #'rows-file sources) (rows-file target)
-                          (order-of-conditions sources)
+                          (remove-duplicates (mapcan #'conditions-described sources)
+                                             :test #'string= :from-end t)
                           (lambda (rows) (join-series sources target rows)))))
        (join-machine-tables sources target)
        (copy-description sources target))

@@ -6,14 +6,13 @@
 
 ;;; None of it decides a trial, so it is in no fingerprint.
 
-(defun version-of-system (name)
-  (let ((system (asdf:registered-system name)))
-    (format nil "~A~@[ ~A~]" name (and system (asdf:component-version system)))))
-
 (defparameter *libraries*
   (let ((system (asdf:find-system "ars-magna" nil)))
-    (and system (mapcar #'version-of-system
-                        (remove-if-not #'stringp (asdf:system-depends-on system)))))
+    (and system
+         (loop for name in (remove-if-not #'stringp (asdf:system-depends-on system))
+               for library = (asdf:registered-system name)
+               collect (format nil "~A~@[ ~A~]" name
+                               (and library (asdf:component-version library))))))
   "The names of the libraries that the simulator is built with, with their versions.")
 
 (defun git-says (directory &rest arguments)

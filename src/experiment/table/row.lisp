@@ -47,11 +47,9 @@ none."
             do (write-string beginning out)
                (write-string (csv-line (cons (integer-text tick) texts)) out)))))
 
-(defun series-mark (text)
-  "Return a check sum of TEXT, the lines of a trial's series."
-  (format nil "~8,'0X" (text-checksum text)))
-
 (defun texts-with-mark (texts experiment series)
   "Return TEXTS, of a row of EXPERIMENT, and if that records anything the check sum of SERIES, the
 trial's lines."
-  (if (experiment-series experiment) (append texts (list (series-mark series))) texts))
+  (if (experiment-series experiment)
+      (append texts (list (format nil "~8,'0X" (text-checksum series))))
+      texts))

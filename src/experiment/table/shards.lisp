@@ -13,13 +13,13 @@
   (native-name (file-in (directory-called directory)
                         (format nil "shard-~D-of-~D/" index count))))
 
-(defun shard-directory-p (path)
-  (starts-with-subseq "shard-" (car (last (pathname-directory path)))))
-
 (defun directories-with-rows (directory)
   "Return the names of DIRECTORY and the directories of shards below it, those that have rows."
   (let* ((path (directory-called directory))
-         (shards (remove-if-not #'shard-directory-p (uiop:subdirectories path))))
+         (shards (remove-if-not (lambda (path)
+                                  (starts-with-subseq "shard-"
+                                                      (car (last (pathname-directory path)))))
+                                (uiop:subdirectories path))))
     (loop for directory in (cons path (sort (mapcar #'native-name shards) #'string<))
           for file = (existing-path (rows-file (directory-called directory)))
           when (and file (plusp (count-whole-lines file)))

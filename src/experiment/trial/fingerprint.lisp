@@ -19,11 +19,6 @@
 (defun short-name (file)
   (name-in-directory (native-path file)))
 
-(defun reject-newer-file (file)
-  (reject-use "~A has been changed since it was loaded. Load it again, so that what runs is what ~
-               it says."
-              file))
-
 (defun digest-of-file (file written)
   "Return a number for the code in FILE, which was loaded as WRITTEN at that time. Signals MISUSE if
 it has been changed since."
@@ -32,7 +27,9 @@ it has been changed since."
           ((and now (or (null written) (= now written)))
            (setf (gethash file *file-digests*) (file-digest (native-path file) "defexperiment")))
           ((gethash file *file-digests*))
-          (now (reject-newer-file file))
+          (now (reject-use "~A has been changed since it was loaded. Load it again, so that what ~
+                            runs is what it says."
+                           file))
           (t 0))))
 
 (defun file-parts (files)
