@@ -49,16 +49,14 @@ where nobody is to answer it is an error of the trial."
                              (unless somebody-p (throw 'broken-off condition))))
         (funcall function)))))
 
-(defun reject-ticks (simulation)
-  "What a trial that is over has for a gate."
-  (reject-use "The trial is over, at tick ~D; no more ticks of it pass."
-              (simulation-tick simulation)))
-
 (defun run-to-end (experiment result then)
   "Do in the current simulation what EXPERIMENT says, and call THEN with RESULT, what came of it."
   (keep-history)
   (conduct-to-end experiment result)
-  (setf (simulation-gate (current-simulation)) #'reject-ticks)
+  (setf (simulation-gate (current-simulation))
+        (lambda (simulation)
+          (reject-use "The trial is over, at tick ~D; no more ticks of it pass."
+                      (simulation-tick simulation))))
   (funcall then result))
 
 (defun run-again (experiment condition trial &key gate (then #'identity) journal)

@@ -13,9 +13,6 @@
   (error "" :type string :read-only t)
   (trials '() :type list))
 
-(defun flawless-p (outcome error)
-  (and (string= "success" outcome) (string= "" error)))
-
 (defun flaw-count (flaw)
   (length (flaw-trials flaw)))
 
@@ -27,7 +24,7 @@
           for reason across (sample-reasons sample)
           for error across (sample-errors sample)
           for key = (list outcome reason error)
-          do (unless (flawless-p outcome error)
+          do (unless (and (string= "success" outcome) (string= "" error))
                (unless (gethash key known)
                  (push (setf (gethash key known) (make-flaw outcome reason error)) flaws))
                (push trial (flaw-trials (gethash key known)))))
@@ -45,11 +42,6 @@
 
 ;;; Which results are meant.
 
-(defun results-of-experiment (experiment)
-  (or (experiment-results experiment)
-      (reject-use "~(~A~) has not been run here. Run it, or give the directory of its results."
-                  (experiment-name experiment))))
-
 (defun existing-results (designator)
   "Return the results that DESIGNATOR means: results, the name of a directory that has some, or an
 experiment that has been run here, or its name. Signals MISUSE and DAMAGED-TABLE."
@@ -60,7 +52,11 @@ experiment that has been run here, or its name. Signals MISUSE and DAMAGED-TABLE
           ((and directory-p
                 (or (null experiment) (existing-path (rows-file (directory-called designator)))))
            (read-results designator))
-          (experiment (results-of-experiment experiment))
+          (experiment
+           (or (experiment-results experiment)
+               (reject-use "~(~A~) has not been run here. Run it, or give the directory of its ~
+                            results."
+                           (experiment-name experiment))))
           (t (reject-argument "trial-failures" "results" designator
                               "results, an experiment, or the name of a directory")))))
 

@@ -8,8 +8,7 @@
   "Return how many decimals NUMBERS are written with, so that the largest has four digits; NIL if
 they are too large or small for that."
   (let ((largest (reduce #'max numbers :key #'abs :initial-value 0)))
-    (cond ((every #'integerp numbers) (if (< largest 1e9) 0 nil))
-          ((every (lambda (number) (= number (round number))) numbers) (if (< largest 1e9) 0 nil))
+    (cond ((every (lambda (number) (= number (round number))) numbers) (if (< largest 1e9) 0 nil))
           ((not (< 1/1000 largest 1e9)) nil)
           (t (max 0 (- 3 (power-of-ten (rational largest))))))))
 

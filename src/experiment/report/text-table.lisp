@@ -20,10 +20,11 @@
   "Return TEXT so that no line ends in it, unless it is longer than a line."
   (substitute #\No-break_space #\Space (coerce text '(simple-array character (*)))))
 
-(defun write-wrapped (text stream &key (first "") (indent (length first)))
-  "Write TEXT to STREAM in lines that fit the page, the first one after FIRST, the others after
-INDENT spaces."
-  (loop for line in (wrapped-text text (- *page-width* (max indent (length first))))
+(defun write-wrapped (text stream &key (first ""))
+  "Write TEXT to STREAM in lines that fit the page, the first one after FIRST, the others after as
+many spaces."
+  (loop with indent = (length first)
+        for line in (wrapped-text text (- *page-width* indent))
         for start = first then (make-string indent :initial-element #\Space)
         do (format stream "~A~A~%" start line)))
 
