@@ -96,7 +96,6 @@ WATCH with the simulation at the beginning and after each tick. Signals what FUN
 ;;; has what is to be seen in any of the frames.
 
 (defun movers-text (snapshot layers in-color scale)
-  "Return what moves in SNAPSHOT as lines of SVG."
   (with-output-to-string (out)
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
@@ -151,7 +150,6 @@ these, the images of robots, and the entries of lines, of both the latest first.
       (pushnew entry (cast-lines cast) :key #'entry-text :test #'string=))))
 
 (defun cast-entries (cast layers)
-  "Return the entries of the legend for all that CAST has."
   (let ((opening (cast-opening cast)))
     (legend-entries (make-snapshot :map (snapshot-map opening) :part (snapshot-part opening)
                                    :robots (sort (copy-list (cast-robots cast)) #'<
@@ -285,7 +283,6 @@ does."
                             file)))))))
 
 (defun animation-text (journal &key every until rate layers in-color scale title part)
-  "Return the animated SVG document of JOURNAL."
   (let ((snapshots '()))
     (call-with-frames (lambda (snapshot) (push snapshot snapshots))
                       journal (frame-step journal every until) until :part part)

@@ -25,7 +25,6 @@
         finally (return color)))
 
 (defun shades (count dark light)
-  "Return a vector of COUNT colours from DARK to LIGHT."
   (coerce (loop for index below count collect (mix dark light (/ index (1- count))))
           'simple-vector))
 
@@ -93,7 +92,6 @@ attribute. Black if NAME is none (manual B; reading 212)."
         (power (/ (+ value 0.055d0) 1.055d0) 2.4d0))))
 
 (defun byte-of-light (light)
-  "Return the value of a primary that means LIGHT."
   (let ((light (clamp light 0d0 1d0)))
     (round (* 255 (if (<= light 0.0031308d0)
                       (* 12.92d0 light)

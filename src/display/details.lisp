@@ -17,7 +17,6 @@
   (max 1 (floor width +character-width+)))
 
 (defun fit-text (text width)
-  "Return as much of TEXT as fits into WIDTH pixels."
   (let ((count (characters-in width)))
     (if (<= (length text) count)
         text
@@ -116,7 +115,6 @@ that their widths are in proportion.")
     (draw-rectangle canvas draw-gcontext* x y width height t)))
 
 (defun draw-object (canvas image x y width)
-  "Draw the thing whose image is IMAGE, and its name."
   (with-subject (canvas image)
     (let ((wide (cond ((draw-by-itself canvas image x y) +object-width+)
                       (t (draw-block canvas image x y)

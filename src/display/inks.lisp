@@ -49,7 +49,6 @@ wide, with DASHES."
   (in-turn position +turn-inks+))
 
 (defun turn-dashes (position)
-  "Return the dashes of what is at POSITION among several of its sort."
   (in-turn position +turn-dashes+))
 
 (defun to-pixels (metres)
@@ -88,7 +87,6 @@ wide, with DASHES."
   (* +character-width+ (length text)))
 
 (defun draw-text-on-plate (canvas x y text)
-  "Write TEXT on a white ground."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* (- x 1) (- y 10) (+ 2 (words-width text)) 13 t))
   (draw-text canvas x y text))

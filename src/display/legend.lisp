@@ -134,7 +134,6 @@ numbers."
 ;;; Places.
 
 (defun place-types-of (snapshot)
-  "Return the place types that are marked on the map of SNAPSHOT."
   (let ((map (snapshot-map snapshot)) (numbers '()))
     (do-cells-shown (index snapshot)
       (pushnew (aref (map-places map) index) numbers))
@@ -200,7 +199,6 @@ than the line."
                    (let ((graphics-scale* 12)) (draw-upright-line canvas x y)))))))
 
 (defun shape-entries (snapshot)
-  "Return entries that say what the shapes of things mean."
   (flet ((plain (text predicate &rest options)
            (when (find-if predicate (snapshot-things snapshot))
              (list (sample-of (canvas x y) text
@@ -237,7 +235,6 @@ than the line."
                        (draw-rectangle canvas draw-gcontext* (+ x at) (- y 4) 3 8 t)))))))
 
 (defun line-entry (layer)
-  "Return the entry for the lines of LAYER."
   (let ((name (%layer-name layer)))
     (sample-of (canvas x y) (%layer-legend layer)
       (inked ((layer-ink name) :dashes (%layer-dashes layer) :width (%layer-width layer))
@@ -255,7 +252,6 @@ than the line."
     (append (remove-if #'%layer-last-p drawn) (remove-if-not #'%layer-last-p drawn))))
 
 (defun line-entries (snapshot layers)
-  "Return the entries for what is drawn of SNAPSHOT for LAYERS."
   (let ((layers (layers-drawn snapshot layers)))
     (append (mapcar #'line-entry (remove nil layers :key #'%layer-legend))
             (further-entries layers snapshot))))

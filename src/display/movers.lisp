@@ -104,7 +104,6 @@ or :DIAMOND."
   (coerce (remove-if-not #'thing-image-moving-p (snapshot-things snapshot)) 'list))
 
 (defun draw-reach (canvas images)
-  "Draw a ring around each of IMAGES, of things."
   (loop for image in images
         do (inked ((layer-ink :reach) :dashes (layer-dashes :reach))
              (draw-circle canvas (to-pixels (thing-image-x image))

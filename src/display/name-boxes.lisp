@@ -29,7 +29,6 @@
     (< (* +most-squares+ (expt +square-side+ 2)) (* (- right left) (- bottom top)))))
 
 (defun enter-box (box item index)
-  "Enter ITEM, which has BOX, into INDEX."
   (let ((entry (cons box item)))
     (if (large-box-p box)
         (push entry (box-index-large index))
@@ -39,7 +38,6 @@
                      box))))
 
 (defun index-boxes (boxes &optional (items boxes))
-  "Return an index of ITEMS that have BOXES."
   (let ((index (make-box-index)))
     (mapc (lambda (box item) (enter-box box item index)) boxes items)
     index))
@@ -53,7 +51,6 @@
         (some-square (lambda (square) (among (gethash square (box-index-squares index)))) box))))
 
 (defun all-overlapping (box index)
-  "Return a list of the items of INDEX whose boxes overlap BOX."
   (let ((items '()))
     (find-overlapping box index (lambda (item) (pushnew item items) nil))
     items))
@@ -105,7 +102,6 @@ others'."
                (name-boxes x y (max half (+ 2 (track-radius))) width))))
 
 (defun within-shown-p (snapshot box)
-  "True if BOX lies within what is to be shown of the map of SNAPSHOT."
   (destructuring-bind ((left top right bottom) (first-x first-y last-x last-y))
       (list box (pixels-of (shown-part snapshot)))
     (and (<= first-x left) (<= first-y top) (<= right last-x) (<= bottom last-y))))
@@ -124,7 +120,6 @@ on it, meets."
   (cells-below map box (lambda (index) (logtest +wall+ (aref (map-flags map) index)))))
 
 (defun on-mark-p (map box)
-  "True if a place that is marked on MAP lies below BOX."
   (cells-below map box (lambda (index)
                          (drawn-place-type-p (svref (map-place-types map)
                                                     (aref (map-places map) index))))))

@@ -23,14 +23,12 @@ have small letters of their own."
     (if (some #'lower-case-p text) text (string-downcase text))))
 
 (defun robot-title (image)
-  "Return what the robot that IMAGE is of is called in pictures."
   (drawn-name (robot-image-name image)))
 
 (defun thing-image-name (image)
   (drawn-name (thing-name (thing-image-thing image))))
 
 (defun robot-spot (robot robots)
-  "Return the spot of ROBOT, the image of one of ROBOTS."
   (make-spot (short-name (robot-title robot))
              (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
              (+ 1 (spot-radius robot robots)) robot))
@@ -216,7 +214,6 @@ can be, one to which a clear line leads; that of a thing must be clear."
         when (%layer-boxes layer) append (apply (%layer-boxes layer) arguments)))
 
 (defun boxes-of-robots (robots)
-  "Return boxes around the lines of the cameras of ROBOTS."
   (loop for robot in robots
         append (loop for (x y to-x to-y)
                        in (camera-lines robot (ring-radius robot robots))

@@ -27,7 +27,6 @@ Signals MISUSE where no window is to be had: see ars-magna/clim."
   "Why no display could be opened, texts, as far as the user has been told.")
 
 (defun tell-once (text)
-  "Print the line TEXT, unless it has been printed before."
   (unless (member text *told-reasons* :test #'string=)
     (push text *told-reasons*)
     (out text t)))

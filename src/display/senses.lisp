@@ -30,7 +30,6 @@ WIDTH."
   (and (null (camera-image-location camera)) camera))
 
 (defun draw-wedge (canvas camera robot snapshot)
-  "Draw the field of view of CAMERA, as far as it can see."
   (let* ((map (snapshot-map snapshot)) (x (robot-image-x robot)) (y (robot-image-y robot))
          (width (camera-image-field-of-view camera))
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2))))

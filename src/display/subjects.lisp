@@ -34,7 +34,6 @@ radians as it is, which are never reduced (reading 50) and so may tell of severa
           (t (subject-title denotation)))))
 
 (defun place-text (image)
-  "Return in words where the thing is whose image is IMAGE."
   (or (thing-image-location image)
       (format nil "at ~,2F, ~,2F" (thing-image-x image) (thing-image-y image))))
 

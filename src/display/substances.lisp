@@ -32,7 +32,6 @@
   (position name (all-substances) :key #'substance-name :test #'same-name-p))
 
 (defun substance-ink (name)
-  "Return the colour of the substance called NAME, or NIL."
   (let ((position (substance-position name)))
     (and position (nth (mod position (length +substance-inks+)) +substance-inks+))))
 

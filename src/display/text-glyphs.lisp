@@ -58,7 +58,6 @@ large things are their initials, as far as can be. There may be more kinds than 
   (gethash name letters +other+))
 
 (defun thing-glyph (image letters)
-  "Return the glyph of the thing, in its own colour."
   (let ((name (symbol-name (thing-name (thing-image-thing image))))
         (color (second (assoc :color (thing-image-attributes image)))))
     (make-glyph :thing (letter-of name letters) name

@@ -72,7 +72,6 @@
 ;;; Beliefs.
 
 (defun own-position-marks (view odometer)
-  "Return where ODOMETER puts its robot."
   (let ((x (odometer-image-x odometer)) (y (odometer-image-y odometer)))
     (mark-at view x y (make-glyph :robot #\@
                                   (format nil "believed (~,2F,~,2F)" (hundredths x) (hundredths y))

@@ -10,7 +10,6 @@
   (position (glyph-kind glyph) '(:robot :layer :wall :several :place :thing)))
 
 (defun glyph< (a b)
-  "True if A comes before B in a legend."
   (let ((rank-a (kind-rank a)) (rank-b (kind-rank b))
         (char-a (glyph-char a)) (char-b (glyph-char b)))
     (cond ((/= rank-a rank-b) (< rank-a rank-b))

@@ -27,7 +27,6 @@ a list of all glyphs that mean something there."
                           (string= (glyph-text a) (glyph-text b)))))))
 
 (defun mark-layer (sheet robot layer)
-  "Mark the blocks of SHEET that LAYER has for ROBOT."
   (let ((table (make-hash-table)))
     (loop for (number . glyph) in (funcall (%layer-text layer) (sheet-view sheet) robot)
           do (push glyph (gethash number table)))
@@ -40,7 +39,6 @@ a list of all glyphs that mean something there."
         when glyphs return (list (first glyphs))))
 
 (defun cell-of (view x y)
-  "Return the index of the cell of the map of VIEW at X, Y."
   (map-index (view-map view) x y))
 
 (defun robots-in (view indices)

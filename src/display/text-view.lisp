@@ -56,7 +56,6 @@ COLUMNS characters of a line and ROWS lines at most; ROWS may be NIL."
 ;;; Blocks.
 
 (defun block-indices (view column row)
-  "Return the indices of the cells of the block at COLUMN and ROW of VIEW."
   (let ((map (view-map view)))
     (loop for y from (+ (view-top view) (* row (view-high view))) repeat (view-high view)
           append (loop for x from (+ (view-left view) (* column (view-wide view)))

@@ -252,7 +252,6 @@ go along a way."
     thereis (/= placements (fourth points))))
 
 (defun trail-line (robot)
-  "Return the line of the trail of ROBOT."
   (make-way-line (robot-image-position robot) (pieces-of-trail (robot-image-trail robot))
                  :dashes (layer-dashes :trail) :width 1 :arrows-p nil))
 
@@ -265,7 +264,6 @@ go along a way."
 ;;; Planned ways.
 
 (defun planned-line (robot)
-  "Return the line of the way that ROBOT is about to go."
   (make-way-line (robot-image-position robot)
                  (list (pixels-of (apply #'append (robot-image-planned-way robot))))
                  :dashes (layer-dashes :planned-way) :arrows-p nil))

@@ -25,7 +25,6 @@
        (every (lambda (point) (or (pt-p point) (number-pair-p point))) way)))
 
 (defun check-ways (ways)
-  "Signal WRONG-ARGUMENT unless WAYS is a list of ways."
   (when (and (proper-list-p ways) (member nil ways))
     (reject-argument 'save-way-picture 'ways ways
                      (format nil "a list of ways. There is a NIL in it, which FIND-WAY returns ~
@@ -38,7 +37,6 @@
     (and (<= 0 x (map-width map)) (<= 0 y (map-height map)))))
 
 (defun check-ways-on (map ways)
-  "Signal WRONG-ARGUMENT unless all points of WAYS are on MAP."
   (dolist (way ways)
     (dolist (point way)
       (unless (point-on-map-p point map)
@@ -47,7 +45,6 @@
                                  (drawn-name (map-name map)) (map-width map) (map-height map)))))))
 
 (defun ways-entries (ways)
-  "Return the entries of the legend for WAYS."
   (append (loop for nil in ways for number from 0
                 collect (let ((position number))
                           (sample-of-name (canvas x y)
@@ -65,7 +62,6 @@
         (make-snapshot :map map))))
 
 (defun way-picture-text (snapshot ways &key layers in-color scale title)
-  "Return an SVG document of SNAPSHOT with WAYS, under TITLE."
   (let ((more (ways-entries ways)))
     (with-output-to-string (stream)
       (with-map-svg (canvas stream snapshot :layers layers :in-color in-color :scale scale)

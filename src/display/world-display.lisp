@@ -39,7 +39,6 @@
   (append (shown-below-things snapshot layers) (shown-above-things snapshot layers)))
 
 (defun draw-shown (canvas shown)
-  "Draw what is SHOWN, as SHOWN-AT returns it."
   (loop for (layer . arguments) in shown
         do (apply (%layer-draw layer) canvas arguments)))
 

@@ -31,13 +31,11 @@ succeed. True if they do."
              nil))))
 
 (defun hold-form (subject at-least trials level workers seed)
-  "Check SUBJECT as IS-SUCCESS-RATE does."
   (let ((experiment (experiment-of subject 'is-success-rate seed)))
     (call-check experiment (first (experiment-conditions experiment)) subject
                 at-least trials level workers)))
 
 (defun hold-experiment (name condition at-least trials level workers)
-  "Check CONDITION of the experiment NAME as IS-SUCCESS-RATE does."
   (let ((experiment (find-experiment name)))
     (call-check experiment (condition-given experiment condition) nil
                 at-least (or trials (experiment-trials experiment)) level workers)))

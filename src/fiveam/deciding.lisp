@@ -37,7 +37,6 @@ TRIALS, of which there may be MOST."
 ;;; How good that is, by going through all that can happen.
 
 (defun check-rates (operator at-least trials level)
-  "Signal WRONG-ARGUMENT, of OPERATOR, unless these can decide."
   (unless (and (finite-p at-least) (<= 1d-9 at-least 1))
     (reject-argument operator 'at-least at-least "a rate above 0 and up to 1, such as .95"))
   (unless (and (integerp trials) (<= 1 trials +largest+))

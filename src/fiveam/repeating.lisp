@@ -8,7 +8,6 @@
 ;;; trial in any Lisp that has the same code, whatever has been set there.
 
 (defun replay-subject (subject seed options)
-  "Run the trial of SUBJECT with SEED as REPLAY-TRIAL does with OPTIONS."
   (unless (integerp seed) (reject-argument 'repeat-trial 'seed seed "an integer"))
   (apply #'replay-trial (experiment-of subject 'repeat-trial (1- seed)) 1 1 options))
 
@@ -49,7 +48,6 @@ too."
       value))
 
 (defun repetition-options (subject seed)
-  "Return the options with which REPEAT-TRIAL repeats the trial of SUBJECT with SEED."
   (let ((robots (subject-robots subject)) (parameters (subject-parameters subject)))
     `(:robots ,(if (rest robots) robots (first robots))
       :seed ,seed

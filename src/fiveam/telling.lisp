@@ -5,7 +5,6 @@
 (defparameter *examples* 5 "How many trials that did not succeed are listed.")
 
 (defun subject-text (check)
-  "Return what CHECK is about."
   (if (check-subject check)
       (text-of (subject-form (check-subject check)) check)
       (format nil "~(~A~), ~A" (experiment-name (check-experiment check))
@@ -16,7 +15,6 @@
     (format nil "~A %" (string-right-trim "." (string-right-trim "0" text)))))
 
 (defun outcome-text (result check)
-  "Return how the trial of CHECK went that RESULT is of."
   (if (string= "limit" (result-outcome result))
       (format nil "not done in ~D ticks" (experiment-limit (check-experiment check)))
       (format nil "~A~:[: ~A~;~*~]~:[: ~A~;~*~]" (result-outcome result)
@@ -37,7 +35,6 @@
   (remove-if #'success-p (reverse (check-results check))))
 
 (defun numbers-text (check)
-  "Return how many trials of CHECK succeeded."
   (let ((trials (length (check-results check))) (successes (check-successes check)))
     (format nil "~D of ~D trial~:P succeeded, ~A" successes trials
             (per-cent (/ successes trials)))))
@@ -50,7 +47,6 @@
               (per-cent (check-at-least check)) (per-cent (check-level check)))))
 
 (defun failure-text (check)
-  "Return why CHECK failed, in lines."
   (let ((bad (bad-results check)))
     (format nil "~A~%succeeds less often than ~A: ~A.~%~A~%Of those that did not:~%~{~A~%~}To see ~
                  one, in the package ~A:~%  ~A"

@@ -37,7 +37,6 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
                       key slip key (cdr (assoc key *example-lines* :test #'string=))))))
 
 (defun reject-entry (file entry expected)
-  "Signal UNUSABLE-FLOOR about the value of ENTRY."
   (reject-floor file (entry-line entry) "~A is ~:[~A~;[~{~A~^, ~}]~]; give ~A"
                 (entry-key entry) (consp (entry-value entry))
                 (if (equal "" (entry-value entry)) "empty" (entry-value entry))
@@ -69,7 +68,6 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
     numbers))
 
 (defun truth-in (file entry)
-  "Return the boolean that ENTRY has."
   (let ((value (entry-value entry)))
     (cond ((member value '("0" "false") :test #'equalp) nil)
           ((member value '("1" "true") :test #'equalp) t)
@@ -112,7 +110,6 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
                           (native-name file) (entry-line entry) key like))))
 
 (defun description-from (file entries)
-  "Return the description that ENTRIES, of FILE, come to."
   (flet ((entry (key) (required-entry file key entries)))
     (dolist (line *example-lines*) (entry (car line)))
     (dolist (entry entries) (warn-of-key file entry))

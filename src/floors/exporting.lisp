@@ -66,7 +66,6 @@ stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals 
         name)))
 
 (defun write-description (map image out)
-  "Write the description of MAP, whose IMAGE is called so, to OUT."
   (destructuring-bind (size &rest origin) (map-frame map)
     (format out "image: ~A~%mode: trinary~%resolution: ~A~%origin: [~{~A~^, ~}]~%negate: 0~%~
                  occupied_thresh: 0.65~%free_thresh: 0.196~%"

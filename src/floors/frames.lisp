@@ -6,7 +6,6 @@
 ;;; angles against the clock. The map's lower left corner is the frame's origin, see MAP-FRAME.
 
 (defun map-from (operator map)
-  "Return the map that MAP, an argument of OPERATOR, is or names."
   (unless (typep map '(or map symbol string))
     (reject-argument operator 'map map "a map or the name of one"))
   (find-map map))

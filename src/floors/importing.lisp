@@ -103,7 +103,6 @@ those that are not known, of the sort UNKNOWN, unless that is NIL."
                         (decimal (description-free description)))))
 
 (defun report-on (grid frame clauses)
-  "Return what is said of an import, a plist."
   (list :width (grid-width grid) :height (grid-height grid) :cell (first frame)
         :free (count-of +free+ grid) :occupied (count-of +occupied+ grid)
         :unknown (count-of +unknown+ grid) :walls (length clauses)))

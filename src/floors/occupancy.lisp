@@ -20,7 +20,6 @@
   (cells (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t))
 
 (defun count-of (state grid)
-  "Return how many cells of GRID are in STATE."
   (count state (grid-cells grid)))
 
 (defun chance-of (description sample white)

@@ -26,7 +26,6 @@ each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed.
   (pixels (make-array 0 :element-type '(unsigned-byte 8)) :type octets))
 
 (defun png-begins-p (tape)
-  "True if TAPE begins as each PNG file does."
   (let ((octets (tape-octets tape)))
     (and (< 8 (length octets)) (equalp +png-signature+ (subseq octets 0 8)))))
 

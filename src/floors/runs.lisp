@@ -39,7 +39,6 @@ of PER-LINE cells; LINE-STEP leads from a line to the next."
     runs))
 
 (defun measure-runs (runs)
-  "Note where each of RUNS begins and how many cells it has."
   (let ((starts (make-numbers (runs-count runs))) (lengths (make-numbers (runs-count runs) 0)))
     (loop for run across (runs-of runs) for index from 0
           unless (minusp run)

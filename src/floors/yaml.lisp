@@ -88,7 +88,6 @@ quotes, or behind a backslash in double ones, does not close them."
          end)))
 
 (defun read-entry (file line text)
-  "Return the entry in TEXT, which is LINE of FILE."
   (let ((end (key-end text)))
     (unless end
       (reject-floor file line "~S is no line such as resolution: 0.05, a key at the left edge, a ~

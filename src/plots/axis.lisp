@@ -27,7 +27,6 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
     (* (expt 10 power) (rational (power 10 rest)))))
 
 (defun place (value axis)
-  "Return the pixel of VALUE."
   (let ((low (axis-low axis)))
     (+ (axis-from axis)
        (* (- (axis-to axis) (axis-from axis))
@@ -66,7 +65,6 @@ these, but no more than a sixth of it."
 (defun mark-width (mark) (lines-width (rest mark)))
 
 (defun marks-width (axis)
-  "Return how wide the widest text at AXIS is."
   (reduce #'max (axis-marks axis) :key #'mark-width :initial-value 0))
 
 (defun marks-fit-p (axis least)

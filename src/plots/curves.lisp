@@ -41,12 +41,10 @@ which somebody left, TIMES those at which anybody did."
         collect (apply #'checked-curve name index options)))
 
 (defun curve-end (curve)
-  "Return the last time that CURVE knows of."
   (reduce #'max (append (mapcar #'first (curve-steps curve)) (curve-censored curve)
                         (curve-times curve))))
 
 (defun step-at (time curve)
-  "Return the step of CURVE that holds at TIME."
   (find time (curve-steps curve) :key #'first :test #'>= :from-end t))
 
 (defun known-p (curve)

@@ -87,7 +87,6 @@ WRONG-ARGUMENT."
   (* step (ceiling (- (/ value step) +slack+))))
 
 (defun multiples (step low high)
-  "Return the multiples of STEP from LOW to HIGH."
   (loop for value from (multiple-above step low) to (multiple-below step high) by step
         collect value))
 

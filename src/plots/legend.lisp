@@ -44,7 +44,6 @@ one of no width if all are empty. CONNECT: lines belong to the samples."
   (draw-marker canvas index (+ x (/ +sample-width+ 2)) y))
 
 (defun draw-legend (canvas legend x y)
-  "Draw LEGEND with its upper left corner at X, Y."
   (write-lines canvas (+ x 16) (+ y 10) (legend-title legend) :bold-p t)
   (incf y (title-height (legend-title legend)))
   (loop for (index . lines) in (legend-entries legend)

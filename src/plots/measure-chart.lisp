@@ -50,7 +50,6 @@
           #'< :key #'car)))
 
 (defun draw-columns (canvas numbers y axis)
-  "Draw NUMBERS as columns that stand on Y."
   (let* ((columns (columns numbers axis))
          (most (reduce #'max columns :key #'cdr :initial-value 1)))
     (with-ink (#x8FB3CC)

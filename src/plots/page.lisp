@@ -20,7 +20,6 @@
   (subtitle '() :type list))
 
 (defun plan-heading (title subtitle width)
-  "Return the heading for a page WIDTH pixels wide."
   (let ((room (- width (* 2 +margin+))))
     (make-heading (wrapped title room :size 15 :bold-p t) (wrapped subtitle room))))
 

@@ -54,7 +54,6 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
                :color +faint-ink+))
 
 (defun draw-plane (canvas plane)
-  "Draw all of PLANE but the data."
   (let ((left (plane-left plane)) (top (plane-top plane)) (right (plane-right plane))
         (bottom (plane-bottom plane)) (across (plane-across plane)))
     (draw-heading canvas (plane-heading plane))

@@ -35,7 +35,6 @@ dash, slash or the like among these, but not one it begins with; or where the li
     (if (and place (plusp place)) (1+ place) count)))
 
 (defun broken (word width size bold-p)
-  "Return WORD in pieces that fit in WIDTH pixels."
   (loop for fitting = (fitting word width size bold-p)
         while (< fitting (length word))
         for count = (place-to-break word fitting)

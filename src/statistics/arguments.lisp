@@ -40,6 +40,5 @@ WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
                    (format nil "an integer from 0 to ~D" ,most)))
 
 (defmacro check-trials (operator successes trials)
-  "Signal WRONG-ARGUMENT unless SUCCESSES of TRIALS can have been."
   `(progn (check-count ,operator ,trials)
           (check-count ,operator ,successes ,trials)))

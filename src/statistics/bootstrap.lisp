@@ -6,7 +6,6 @@
   "In how many groups at most a sample is left out bit by bit: enough to tell how skewed it is.")
 
 (defun statistic-function (statistic)
-  "Return the function of a sample that STATISTIC stands for, or NIL."
   (case statistic
     (:mean #'mean-of)
     (:median #'median-of)

@@ -10,7 +10,6 @@
                     (string= (contrast-second one) (contrast-second contrast)))))
 
 (defun picture-label (contrast comparison)
-  "Return what stands beside the row of CONTRAST, of COMPARISON."
   (if (and (contrast-where contrast) (one-contest-p comparison))
       (contrast-where contrast)
       (format nil "~@[~A: ~]~A against ~A" (contrast-where contrast) (contrast-first contrast)
@@ -64,7 +63,6 @@ may disagree where numbers are few; NIL of rates."
        "The intervals are Student's, p is of a permutation test"))
 
 (defun comparison-subtitle (comparison measure)
-  "Return what is said below the title of the picture of MEASURE in COMPARISON."
   (format nil "~A, seed by seed: first less second, with 95 % intervals~@[; p as ~A (Holm)~].~
                ~@[ ~A.~]~@[ ~A.~]~@[ Over all, each seed counts once; p as ~A.~]"
           (or (comparison-sides comparison) "Conditions")

@@ -5,7 +5,6 @@
 (defparameter *headings* '("measure" "seeds" "first" "second" "difference" "p" "p alone"))
 
 (defun table-row (difference)
-  "Return the texts of the table for DIFFERENCE."
   (let ((write (number-writer difference)) (rate-p (eq :rate (paired-kind difference))))
     (flet ((text (value) (if value (funcall write value) "-")))
       (list (paired-measure difference) (integer-text (paired-trials difference))

@@ -73,7 +73,6 @@ indexes."
     (nreverse pairs)))
 
 (defun both-succeed (first second pairs)
-  "Return those of PAIRS in which the trials of FIRST and SECOND both succeeded."
   (remove-if-not (lambda (pair)
                    (and (success-p (aref (sample-outcomes first) (car pair)))
                         (success-p (aref (sample-outcomes second) (cdr pair)))))
@@ -122,7 +121,6 @@ indexes."
   difference)
 
 (defun difference-in (name results first other-results second pairs)
-  "Return the difference in NAME between FIRST, of RESULTS, and SECOND, of OTHER-RESULTS."
   (let ((pairs (pairs-for name first second pairs)))
     (multiple-value-bind (firsts seconds)
         (paired-values (column-of results first name) (column-of other-results second name) pairs)
@@ -171,7 +169,6 @@ say. Return CONTRAST."
     contrast))
 
 (defun difference-called (name contrast)
-  "Return the difference of CONTRAST in NAME, or NIL."
   (find name (contrast-differences contrast) :key #'paired-measure :test #'string-equal))
 
 (defun all-contrasts (comparison)

@@ -40,7 +40,6 @@
             (and (string/= (p-text p) (p-text adjusted)) (bare-p p)))))
 
 (defun both-words (difference)
-  "Return the two rates or means of DIFFERENCE."
   (let ((write (number-writer difference)))
     (if (eq :rate (paired-kind difference))
         (format nil "~A % against ~A %" (funcall write (paired-first difference))
@@ -101,7 +100,6 @@
         "the interval leaves out 0, but it is an approximation, and p is above .05: p decides")))
 
 (defun bound-words (difference)
-  "Return how large DIFFERENCE can be if there is one."
   (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"
           (amount-words difference (max (abs (paired-low difference))
                                         (abs (paired-high difference))))))
@@ -113,7 +111,6 @@
       (format nil "~A~@[~A~]" (zero-words difference) (few-seeds-words difference))))
 
 (defun verdict (difference contrast)
-  "Return in words what DIFFERENCE, of CONTRAST, tells."
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
     (format nil "~@[~A: ~]~A." (contrast-where contrast)
             (cond ((or (null (paired-p difference)) (null (paired-low difference)))
@@ -209,7 +206,6 @@ alone."
                                errors))))))
 
 (defun comparison-remarks (comparison)
-  "Return sentences on what COMPARISON had to leave out, and how seeds count."
   (append (and (comparison-overall comparison)
                (list "Over all, each seed counts once, with its mean over the conditions."
                      "What is tested over all counts apart from what is tested in each condition."))

@@ -211,7 +211,6 @@ makes; NIL if there is nothing to compare."
            (comparison-of-conditions results pairs (and equal-p place) (list measure) nil)))))
 
 (defun contrasts-in (measure comparison)
-  "Return those contrasts of COMPARISON that say something of MEASURE."
   (remove-if-not (lambda (contrast)
                    (let ((difference (difference-called measure contrast)))
                      (or (same-runs-p contrast)

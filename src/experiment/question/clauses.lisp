@@ -121,7 +121,6 @@ true of; or about CLAUSE if there is none at all."
   (check-factor-name definition range))
 
 (defun check-design (definition part)
-  "Signal MALFORMED-DEFINITION unless PART is a design."
   (let ((ranges (and (proper-list-p part) (> (length part) 2) (design-ranges part))))
     (unless (and ranges (typep (second part) `(integer 1 ,+most-points+))
                  (integerp (design-seed part)))
@@ -154,7 +153,6 @@ true of; or about CLAUSE if there is none at all."
 (defun case-parts (clauses) (clause-called :conditions clauses))
 
 (defun varied-names (clauses)
-  "Return the names of what CLAUSES vary."
   (remove-duplicates (append (loop for case in (case-parts clauses)
                                    append (mapcar #'first (rest case)))
                              (loop for part in (vary-parts clauses) append (part-names part)))
@@ -288,7 +286,6 @@ CLAUSES vary, and what the clause KEY names."
     nil))
 
 (defun check-clause (definition clause)
-  "Signal MALFORMED-DEFINITION unless CLAUSE has the right shape."
   (ecase (first clause)
     (:robots (check-each definition clause (lambda (name) (and name (typep name 'symbol)))))
     (:parameters
@@ -344,7 +341,6 @@ CLAUSES vary, and what the clause KEY names."
                           definition (first part) name (or name (second (second part))))))))
 
 (defun check-whole (definition name clauses)
-  "Signal MALFORMED-DEFINITION unless CLAUSES make an experiment."
   (check-clauses definition clauses)
   (dolist (clause clauses) (check-clause definition clause))
   (flet ((given-p (key) (nth-value 1 (clause-called key clauses))))

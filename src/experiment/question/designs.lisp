@@ -14,7 +14,6 @@
    (:sobol n :seed integer ...), and :integer or :log behind a range")
 
 (defun design-part-p (part)
-  "True if PART, of :vary, is a design."
   (member (first part) *designs*))
 
 (defun design-ranges (part)
@@ -24,7 +23,6 @@
   (if (eq :seed (third part)) (fourth part) 0))
 
 (defun part-names (part)
-  "Return the names of what PART, of :vary, lets vary."
   (if (design-part-p part)
       (mapcar #'first (design-ranges part))
       (list (first part))))

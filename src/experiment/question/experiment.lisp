@@ -69,7 +69,6 @@ PARAMETERS, lists (name value), that all have."
                       collect (second (assoc name settings))))))
 
 (defun factor-names (experiment)
-  "Return the names of all that varies in EXPERIMENT, in order."
   (remove-duplicates
    (append (loop for case in (experiment-cases experiment)
                  append (mapcar #'first (factor-case-settings case)))
@@ -77,7 +76,6 @@ PARAMETERS, lists (name value), that all have."
    :from-end t))
 
 (defun all-conditions (experiment clean parameters)
-  "Return the conditions of EXPERIMENT, in order."
   (loop for case in (or (experiment-cases experiment) (list nil))
         append (loop for others in (combinations (experiment-axes experiment))
                      collect (condition-from experiment
@@ -133,11 +131,9 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
   (mapcar (lambda (part) (column-name (first part))) parts))
 
 (defun columns (experiment)
-  "Return the names of the columns of the table of EXPERIMENT."
   (append *columns-before* (factor-columns experiment) *columns-between*
           (part-columns (experiment-measures experiment)) *columns-after*))
 
 (defun series-columns (experiment)
-  "Return the names of the columns of the table of series of EXPERIMENT."
   (append *columns-before* (factor-columns experiment) *series-columns*
           (part-columns (experiment-series experiment))))

@@ -3,7 +3,6 @@
 (in-package :ars-magna.experiment)
 
 (defun first-sentence (text)
-  "Return the first sentence of TEXT, in one line."
   (let* ((paragraph (search (format nil "~2%") text))
          (line (one-line (subseq text 0 paragraph)))
          (end (loop for mark in '(". " "? " "! ")

@@ -93,7 +93,6 @@ count, too. REPLAY-TRIAL opens one. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT
           (word-text (sample-condition sample)) (first (last (flaw-trials flaw)))))
 
 (defun flaw-text (flaw)
-  "Return in words how the trials of FLAW went wrong."
   (format nil "~A~@[: ~A~]~@[; ~A~]" (flaw-outcome flaw)
           (and (string/= "" (flaw-reason flaw)) (flaw-reason flaw))
           (and (string/= "" (flaw-error flaw)) (flaw-error flaw))))

@@ -124,7 +124,6 @@ there is none."
           trial))
 
 (defun run-replaying (replaying until rate step)
-  "Run the trial of REPLAYING. Return its result."
   (let* ((experiment (replaying-experiment replaying))
          (condition (replaying-condition replaying))
          (trial (replaying-trial replaying))
@@ -165,7 +164,6 @@ from the row in DIRECTORY, if that is given."
         collect (cons tick (loop for text in texts collect (value-in text shared)))))
 
 (defun replaying-plist (replaying result differences)
-  "Return what REPLAY-TRIAL does."
   (let ((over-p (not (replaying-stopped-p replaying))))
     (list :outcome (and over-p (result-outcome result))
           :reason (if over-p (result-reason result) "")

@@ -81,7 +81,6 @@
     (make-estimate name :median (length numbers) :value (median numbers) :low low :high high)))
 
 (defun estimate-of-values (name kind column confidence)
-  "Return the estimate of KIND of what stands in COLUMN, of the measure NAME."
   (let ((values (remove :none column)))
     (ecase kind
       (:nothing (make-estimate name kind 0))

@@ -38,7 +38,6 @@ the index of a trial, and returns a text, or NIL if nothing did."
                      (string< (occurrence-text a) (occurrence-text b))))))))
 
 (defun replay-text (occurrence)
-  "Return how to see the first trial of OCCURRENCE again."
   (format nil "(replay-trial '~A ~A ~D)" (sample-experiment (occurrence-sample occurrence))
           (unbroken (prin1-to-string (sample-condition (occurrence-sample occurrence))))
           (occurrence-trial occurrence)))
@@ -105,7 +104,6 @@ see one of each."
                  (estimate-name (first estimates)) count))))
 
 (defun kinds-text (summaries)
-  "Return in words which intervals there are in SUMMARIES."
   (flet ((kind-p (kind)
            (some (lambda (summary)
                    (find kind (summary-measures summary) :key #'estimate-kind))

@@ -13,7 +13,6 @@ they are too large or small for that."
           (t (max 0 (- 3 (power-of-ten (rational largest))))))))
 
 (defun number-writer-for (numbers)
-  "Return a function that writes each of NUMBERS."
   (let ((decimals (decimals-for numbers)))
     (lambda (number)
       (if decimals (decimal-text number decimals) (figure-text number)))))
@@ -24,7 +23,6 @@ they are too large or small for that."
   (remove nil (list (estimate-value estimate) (estimate-low estimate) (estimate-high estimate))))
 
 (defun writer-for (estimates)
-  "Return a function that writes the numbers of ESTIMATES, which are of one kind."
   (if (eq :rate (estimate-kind (first estimates)))
       (let ((trials (reduce #'max estimates :key #'estimate-count)))
         (lambda (share) (hundredths-text share trials)))
@@ -61,7 +59,6 @@ they are too large or small for that."
     ((:texts :nothing) "")))
 
 (defun estimates-column (estimates trials)
-  "Return the column of ESTIMATES, one for each condition, which have TRIALS."
   (let ((heading (format nil "~A~A" (cut (estimate-name (first estimates)) 60)
                          (kind-heading (first estimates)))))
     (case (estimate-kind (first estimates))
@@ -137,7 +134,6 @@ is none of them."
     (and (set-difference summaries former) former)))
 
 (defun write-summaries (results summaries stream)
-  "Write the table of SUMMARIES, of RESULTS."
   (terpri stream)
   (write-text-table (key-columns (results-factors results) summaries)
                     (value-columns summaries) stream))

@@ -64,7 +64,6 @@ TEST."
         when (= count trials) return look))
 
 (defun confidence-for (results sample)
-  "Return which confidence intervals of SAMPLE, of RESULTS, have."
   (let ((look (and (results-until results) (look-after (length (sample-trials sample))))))
     (if look (confidence-at-look look) .95d0)))
 

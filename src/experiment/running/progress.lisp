@@ -28,7 +28,6 @@
   (told (moment) :type integer))
 
 (defun duration-text (seconds)
-  "Return SECONDS in words."
   (cond ((< seconds 100) (format nil "~D s" (round seconds)))
         ((< seconds 6000) (format nil "~D min" (round seconds 60)))
         (t (format nil "~,1F h" (/ seconds 3600)))))

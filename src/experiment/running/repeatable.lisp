@@ -63,7 +63,6 @@ least one is tried, and others as long as less than SECONDS have passed."
         until (> (seconds-since begun) seconds)))
 
 (defun part-name (part)
-  "Return PART, of a fingerprint, without its number."
   (format nil "~(~A~) ~A" (first part) (second part)))
 
 (defun parts-changed (before now)
@@ -78,7 +77,6 @@ least one is tried, and others as long as less than SECONDS have passed."
         :key (lambda (variable) (qualified (first variable))) :test #'string=))
 
 (defun without-package (name)
-  "Return NAME, a qualified one, as it is written in its package."
   (subseq name (1+ (or (position #\: name) -1))))
 
 (defun shared-variable-advice (before now condition)

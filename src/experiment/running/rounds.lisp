@@ -48,7 +48,6 @@
                      (return (values condition trial)))))))))
 
 (defun count-in-shard (first last shard)
-  "Return how many numbers from FIRST to LAST are of trials in SHARD."
   (if shard
       (flet ((up-to (number)
                (destructuring-bind (index . count) shard
@@ -80,7 +79,6 @@ PROGRESS."
     (atomic-incf (progress-done progress))))
 
 (defun work-off (experiment queue keep progress worker)
-  "Run trials of QUEUE until there are none left."
   (flet ((work ()
            (loop (multiple-value-bind (condition trial) (next-trial queue)
                    (unless condition (return))

@@ -111,7 +111,6 @@ Signals MISUSE for rows of other code."
   "How many trials of a condition are run at most to make its interval narrow, unless one says.")
 
 (defun put-in-order (experiment directory)
-  "Put the tables of EXPERIMENT in DIRECTORY in order."
   (let ((file (series-file directory)))
     (write-in-order (list (rows-file directory)) (rows-file directory)
                     (mapcar #'condition-name (experiment-conditions experiment))

@@ -11,7 +11,6 @@
     (max 1 (or (and text (parse-integer text :junk-allowed t)) 1))))
 
 (defun trouble-of (function)
-  "Call FUNCTION. Return the error that it ended in, or NIL."
   (handler-case (progn (funcall function) nil)
     ((or error storage-condition) (condition) condition)))
 

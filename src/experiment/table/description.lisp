@@ -14,7 +14,6 @@
       (prin1-to-string form))))
 
 (defun repetition-text (experiment trials until)
-  "Return how to run EXPERIMENT again."
   (let* ((path (experiment-file experiment)) (file (and path (short-name path)))
          (name (experiment-name experiment)))
     (format nil "At a shell~:[, once its text is in a file~;~]:~%  ./cli/ars-magna experiment ~
@@ -59,7 +58,6 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
          (string= (check-line (subseq text 0 place)) (subseq text place)))))
 
 (defun note-damaged-description (directory)
-  "Warn if the text in DIRECTORY is not as it was written."
   (let ((file (description-file directory)))
     (unless (or (not (existing-path file))
                 (whole-description-p (description-text directory)))
@@ -114,7 +112,6 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
         (write-checked-text text (description-file directory))))))
 
 (defun check-not-refused (directory)
-  "Signal MISUSE if the rows in DIRECTORY were refused."
   (let ((reason (refusal-in directory)))
     (when reason
       (reject-use "The rows in ~A were refused when they were run. Delete rows.csv there, or give ~

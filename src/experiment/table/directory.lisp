@@ -56,7 +56,6 @@
         (setf *stores-in-use* (remove path *stores-in-use* :test #'equal))))))
 
 (defun new-directory ()
-  "Return the path of a new directory among the system's temporary ones."
   (loop for number from 0
         for path = (directory-called (format nil "~Atrials-~D-~D/"
                                              (native-name (uiop:temporary-directory))
@@ -98,7 +97,6 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
   "The columns of the table of what differs from run to run.")
 
 (defun call-with-store (function experiment directory)
-  "Call FUNCTION with a store for EXPERIMENT in DIRECTORY."
   (let ((store (make-store directory experiment)))
     (unwind-protect
          (progn

@@ -69,7 +69,6 @@ was up."
 ;;; Columns.
 
 (defun columns-between (columns before after)
-  "Return those of COLUMNS that stand between those called BEFORE and AFTER."
   (subseq columns (1+ (position before columns :test #'string=))
           (position after columns :test #'string=)))
 
@@ -137,7 +136,6 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
     (vector-push-extend (shared-text (nth (1+ measures) rest) shared) (sample-errors sample))))
 
 (defun of-sample-p (sample texts)
-  "True if the row TEXTS is one of SAMPLE."
   (loop for text in (list* (sample-experiment sample) (sample-fingerprint sample)
                            (sample-condition sample) (sample-texts sample))
         for other in texts

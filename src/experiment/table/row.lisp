@@ -3,14 +3,12 @@
 (in-package :ars-magna.experiment)
 
 (defun digest-text (digest)
-  "Return DIGEST as 16 hexadecimal digits."
   (let ((text (make-string 16)))
     (dotimes (place 16 text)
       (setf (char text place)
             (char "0123456789ABCDEF" (ldb (byte 4 (* 4 (- 15 place))) digest))))))
 
 (defun result-digest-text (result)
-  "Return how the digest of RESULT stands in its row."
   (let ((digest (result-digest result)))
     (if digest (digest-text digest) "")))
 

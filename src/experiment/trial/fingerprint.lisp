@@ -98,13 +98,11 @@ reach."
      reach)))
 
 (defun part-text (part)
-  "Return PART as one line."
   (destructuring-bind (kind name number) part
     (format nil "~(~A~) ~A ~16,'0X" kind (plain-text (princ-to-string name))
             (if (integerp number) number (text-checksum (princ-to-string number))))))
 
 (defun fingerprint-of (parts)
-  "Return the fingerprint that PARTS make up, a string."
   (format nil "~16,'0X"
           (let ((digest (make-digest)))
             (dolist (part parts)

@@ -37,7 +37,6 @@
   "What RUN-PLAN returns as its second value.")
 
 (defun reason-of-failure (failure)
-  "Return the word for FAILURE, of a plan."
   (value-text (or (and (typep failure 'plan-failure) (failure-class failure))
                   (type-of failure))))
 

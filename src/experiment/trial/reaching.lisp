@@ -104,7 +104,6 @@ empty table count as no data, since they often stand where a table or structure 
           (visit-slots object reach)))))
 
 (defun visit-slots (object reach)
-  "Visit the functions that the slots of OBJECT, a definition, hold."
   (dolist (slot (class-slot-names (class-of object)))
     (let ((value (slot-value object slot)))
       (cond ((functionp value) (visit-function value nil reach))
@@ -125,7 +124,6 @@ empty table count as no data, since they often stand where a table or structure 
           (symbol-name symbol)))
 
 (defun visit-name (symbol reach)
-  "Visit what SYMBOL names."
   (let ((entries (entries-meant symbol)))
     (dolist (entry entries) (visit-definition entry reach))
     (cond ((special-operator-p symbol))

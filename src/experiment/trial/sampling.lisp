@@ -58,7 +58,6 @@ one; of the first time SAMPLER keeps the error."
 
 ;; A form may be left, as by THROW. Then the rest of its sample is empty.
 (defun take-sample (sampler simulation)
-  "Let SAMPLER have a sample of SIMULATION as it is now."
   (let* ((functions (experiment-series (sampler-experiment sampler)))
          (tick (simulation-tick simulation))
          (texts (make-list (length functions) :initial-element "")))

@@ -74,7 +74,6 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
   *trial-values*)
 
 (defun pass-until (function condition)
-  "Let ticks pass until FUNCTION returns true."
   (loop until (truth-of :until function condition) do (run-ticks 1))
   t)
 
@@ -120,7 +119,6 @@ took for a success and :success does not is one that was only believed."
           (t (values outcome reason)))))
 
 (defun note-end (result)
-  "Enter into RESULT how far the current simulation has come."
   (note-series result)
   (setf (result-ticks result) (simulation-tick)
         (result-digest result) (state-digest)))
@@ -206,7 +204,6 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
               collect text)))
 
 (defun call-noting-errors (function result)
-  "Call FUNCTION. If it breaks off, enter that into RESULT."
   (let ((trouble (trouble-text function)))
     (when trouble (note-error result trouble))))
 
