@@ -80,7 +80,10 @@ MISUSE, as CONTROL and ARGUMENTS say, if nothing in it could be compared."
   (when (every (lambda (contrast) (zerop (contrast-trials contrast)))
                (comparison-contrasts comparison))
     (reject-use "~?" control arguments))
-  (finish-comparison comparison)
+  ;; What is so over all is one question, and where it is so another: who asks in twelve conditions
+  ;; as well need not be less sure of the whole.
+  (dolist (contrasts (list (comparison-contrasts comparison) (comparison-overall comparison)))
+    (adjust-for-all (loop for contrast in contrasts append (contrast-differences contrast))))
   (when stream (print-comparison comparison stream))
   comparison)
 

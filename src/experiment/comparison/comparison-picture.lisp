@@ -56,19 +56,15 @@
          (format nil "~A seeds each~:[~;, those where both succeeded~]" (range-text trials)
                  (string-equal "ticks" measure)))))
 
-(defun methods-words (comparison measure)
-  "Return by which methods the intervals and p of MEASURE in the picture of COMPARISON are, which
-may disagree where numbers are few; NIL of rates."
-  (and (not (rate-compared-p measure comparison))
-       "The intervals are Student's, p is of a permutation test"))
-
 (defun comparison-subtitle (comparison measure)
   (format nil "~A, seed by seed: first less second, with 95 % intervals~@[; p as ~A (Holm)~].~
                ~@[ ~A.~]~@[ ~A.~]~@[ Over all, each seed counts once; p as ~A.~]"
           (or (comparison-sides comparison) "Conditions")
           (tests-words (comparison-contrasts comparison) measure)
           (seeds-words comparison measure)
-          (methods-words comparison measure)
+          ;; These may disagree where numbers are few.
+          (and (not (rate-compared-p measure comparison))
+               "The intervals are Student's, p is of a permutation test")
           (tests-words (comparison-overall comparison) measure)))
 
 (defun comparison-chart (comparison measure &key (contrasts (all-contrasts comparison)))

@@ -72,15 +72,14 @@ indexes."
                (when (>= seed other) (incf j))))
     (nreverse pairs)))
 
-(defun both-succeed (first second pairs)
-  (remove-if-not (lambda (pair)
-                   (and (success-p (aref (sample-outcomes first) (car pair)))
-                        (success-p (aref (sample-outcomes second) (cdr pair)))))
-                 pairs))
-
 (defun pairs-for (name first second &optional (pairs (common-trials first second)))
   "Return those of PAIRS of trials of FIRST and SECOND in which NAME can be compared."
-  (if (string-equal name "ticks") (both-succeed first second pairs) pairs))
+  (if (string-equal name "ticks")
+      (remove-if-not (lambda (pair)
+                       (and (success-p (aref (sample-outcomes first) (car pair)))
+                            (success-p (aref (sample-outcomes second) (cdr pair)))))
+                     pairs)
+      pairs))
 
 (defun column-of (results sample name)
   (if (string-equal name "success")
@@ -173,14 +172,6 @@ say. Return CONTRAST."
 
 (defun all-contrasts (comparison)
   (append (comparison-contrasts comparison) (comparison-overall comparison)))
-
-;; What is so over all is one question, and where it is so another: who asks in twelve conditions as
-;; well need not be less sure of the whole.
-(defun finish-comparison (comparison)
-  "Let all differences of COMPARISON know among how many their tests count. Return it."
-  (dolist (contrasts (list (comparison-contrasts comparison) (comparison-overall comparison))
-                     comparison)
-    (adjust-for-all (loop for contrast in contrasts append (contrast-differences contrast)))))
 
 (defun tested-differences (contrasts)
   "Return the differences of CONTRASTS that count as tests: see ADJUST-FOR-ALL."
