@@ -68,9 +68,6 @@ least one is tried, and others as long as less than SECONDS have passed."
 (defun parts-changed (before now)
   (set-exclusive-or before now :test #'equal))
 
-(defun changed-names (before now)
-  (remove-duplicates (mapcar #'part-name (parts-changed before now)) :test #'string=))
-
 (defun bound-in-trials-p (name condition)
   "True if each trial of CONDITION binds the variable whose qualified name is NAME."
   (find name (condition-variables condition)
@@ -79,15 +76,20 @@ least one is tried, and others as long as less than SECONDS have passed."
 (defun without-package (name)
   (subseq name (1+ (or (position #\: name) -1))))
 
-(defun shared-variable-advice (before now condition)
-  "Return what to do if trials of CONDITION changed what a variable holds, or NIL."
-  (let ((name (second (find :variable (parts-changed before now) :key #'first))))
-    (and name
-         (format nil "~:[No trial can bind the global variable ~A: define it with DEFVAR instead. ~
-                      ~;~*~]If trials change what ~A holds, give each its own: ~
-                      (:run (let ((~:*~A ...)) ...))."
-                 (bound-in-trials-p name condition) (without-package name)
-                 (without-package name)))))
+(defun sharing-advice (before now condition)
+  "Return what to do if trials of CONDITION changed what a variable holds, or else a function or
+what it has closed over; or NIL."
+  (flet ((changed (kind) (second (find kind (parts-changed before now) :key #'first))))
+    (let ((variable (changed :variable)) (function (changed :function)))
+      (cond (variable
+             (format nil "~:[No trial can bind the global variable ~A: define it with DEFVAR ~
+                          instead. ~;~*~]If trials change what ~A holds, give each its own: ~
+                          (:run (let ((~:*~A ...)) ...))."
+                     (bound-in-trials-p variable condition) (without-package variable)
+                     (without-package variable)))
+            (function
+             (format nil "If trials replace ~A, or leave something in it for others, keep that in ~
+                          a variable, which each trial binds." (without-package function)))))))
 
 (defun check-unchanged (experiment parts directory)
   "Signal MISUSE if the fingerprints of EXPERIMENT, of PARTS, are no longer what they were."
@@ -103,21 +105,14 @@ least one is tried, and others as long as less than SECONDS have passed."
                                                     directory))
                                   directory)))
 
-(defun shared-function-advice (before now)
-  "Return what to do if trials changed a function or what it has closed over, or NIL."
-  (let ((name (second (find :function (parts-changed before now) :key #'first))))
-    (and name
-         (format nil "If trials replace ~A, or leave something in it for others, keep that in a ~
-                      variable, which each trial binds." (without-package name)))))
-
 (defun reject-changed (before now condition directory)
   "Signal MISUSE: the parts BEFORE of what decides the rows of CONDITION in DIRECTORY are NOW
 others."
   (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
                ~A~] may be of either. ~@[~A ~]~@(~A~)."
-              (changed-names before now) (and *directory-given-p* (native-name directory))
-              (or (shared-variable-advice before now condition)
-                  (shared-function-advice before now))
+              (remove-duplicates (mapcar #'part-name (parts-changed before now)) :test #'string=)
+              (and *directory-given-p* (native-name directory))
+              (sharing-advice before now condition)
               (way-to-begin-again)))
 
 (defun call-noting-refusal (function directory)
