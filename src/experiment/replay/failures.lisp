@@ -97,16 +97,14 @@ count, too. REPLAY-TRIAL opens one. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT
           (and (string/= "" (flaw-reason flaw)) (flaw-reason flaw))
           (and (string/= "" (flaw-error flaw)) (flaw-error flaw))))
 
-(defun print-flaw (flaw sample stream)
-  (format stream "  ~5D  ~5,1F %  ~A~%                  ~A~%" (flaw-count flaw)
-          (* 100d0 (/ (flaw-count flaw) (length (sample-trials sample))))
-          (flaw-text flaw) (example-text flaw sample)))
-
 (defun print-flaws (sample stream)
   (let* ((flaws (flaws-of sample)) (count (reduce #'+ flaws :key #'flaw-count)))
     (format stream "~A: ~D trials, ~:[~D with something wrong~;nothing wrong~]~%"
             (sample-condition sample) (length (sample-trials sample)) (zerop count) count)
-    (dolist (flaw flaws) (print-flaw flaw sample stream))))
+    (dolist (flaw flaws)
+      (format stream "  ~5D  ~5,1F %  ~A~%                  ~A~%" (flaw-count flaw)
+              (* 100d0 (/ (flaw-count flaw) (length (sample-trials sample))))
+              (flaw-text flaw) (example-text flaw sample)))))
 
 (addition print-failures)
 (defun print-failures (results &optional condition (stream *standard-output*))

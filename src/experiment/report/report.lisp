@@ -80,17 +80,18 @@ they are too large or small for that."
 
 ;;; The table.
 
-(defun factor-column (name texts)
-  (make-text-column name texts :widest 40 :anchor (if (every #'number-in texts) :end :start)))
-
 (defun key-columns (factors summaries)
   "Return columns that say of which condition a row is: the values of FACTORS if these fit, else its
 name."
   (let ((columns (loop for name in factors
                        for place from 0
-                       collect (factor-column name (loop for summary in summaries
-                                                         collect (nth place
-                                                                      (summary-texts summary)))))))
+                       for texts = (loop for summary in summaries
+                                         collect (nth place (summary-texts summary)))
+                       collect (make-text-column name texts
+                                                 :widest 40
+                                                 :anchor (if (every #'number-in texts)
+                                                             :end
+                                                             :start)))))
     (if (and columns (<= (reduce #'+ columns :key (lambda (column)
                                                     (+ 2 (text-column-width column))))
                          44))

@@ -130,10 +130,3 @@ with COLUMNS. Signals DAMAGED-TABLE."
     (unless (hexadecimal-p (second texts))
       (reject-row file number "This is no row: ~A is no fingerprint." (plain-text (second texts))))
     texts))
-
-(defun row-texts (line columns file number)
-  "Return the texts of LINE, of octets, which is the line NUMBER of FILE, a table with COLUMNS.
-Signals DAMAGED-TABLE."
-  (let ((texts (cells-of-line line columns file number)))
-    (check-cells (nthcdr (seed-column columns) texts) columns file number)
-    texts))

@@ -53,7 +53,9 @@ of that. Signals DAMAGED-TABLE."
   (let ((columns (header-of file)))
     (map-lines (lambda (line start number)
                  (when (> number 1)
-                   (funcall function (row-texts line columns file number) start number)))
+                   (let ((texts (cells-of-line line columns file number)))
+                     (check-cells (nthcdr (seed-column columns) texts) columns file number)
+                     (funcall function texts start number))))
                file)))
 
 (defmacro do-rows ((texts file &optional (start (gensym)) (number (gensym))) &body body)

@@ -72,13 +72,12 @@ was up."
   (subseq columns (1+ (position before columns :test #'string=))
           (position after columns :test #'string=)))
 
-(defun factor-columns-of (columns) (columns-between columns "condition" "seed"))
 (defun measure-columns-of (columns) (columns-between columns "ticks" "digest"))
 
 (addition results-factors results-measures)
 (defun results-factors (results)
   "Return the names of what varies in RESULTS, a list of strings, in the order of SAMPLE-TEXTS."
-  (factor-columns-of (results-columns results)))
+  (columns-between (results-columns results) "condition" "seed"))
 
 (defun results-measures (results)
   "Return the names of what RESULTS have measures of, a list of strings."

@@ -55,12 +55,10 @@ PATH are the compound parts that it is in, by how deep they are."
     (fixnum (mark-word 1 walk) (mark-word atom walk))
     (double-float (mark-word 2 walk) (mark-word (double-to-bits atom) walk))
     (plain-atom (mark-text (prin1-to-string atom) walk))
-    (t (mark-text (prin1-to-string (type-of-other atom)) walk)))
+    ;; It is no data: its type counts.
+    (t (mark-text (prin1-to-string (if (functionp atom) 'function (class-name (class-of atom))))
+                  walk)))
   (funcall (walk-atom walk) atom))
-
-(defun type-of-other (object)
-  "Return a name for the type of OBJECT, which is no data."
-  (if (functionp object) 'function (class-name (class-of object))))
 
 (defun count-compound (walk)
   "Leave WALK if it has met more than data may have."

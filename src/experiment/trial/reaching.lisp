@@ -64,9 +64,6 @@ there, as by a trial, or it has closed over something."
                 (and (eq name own-name) (null values)))
       (note-part :function (qualified name) (data-number values) reach))))
 
-(defun has-global-value-p (symbol)
-  (ignore-errors (global-value symbol) t))
-
 (defun note-weak (object symbol reach)
   "Note what OBJECT, which is in the value of the variable SYMBOL, holds if it is weak."
   (when (and (weak-p object) (first-visit-p object reach))
@@ -86,10 +83,6 @@ empty table count as no data, since they often stand where a table or structure 
             ((no-data-p value) (note-weak value symbol reach))
             (t (let ((number (call-walking value #'visit-atom)))
                  (when number (note-part :variable (qualified symbol) number reach))))))))
-
-(defun used-as-variable-p (symbol)
-  "True if SYMBOL is a variable, perhaps one that was set and never declared."
-  (member (variable-kind symbol) '(nil :special :global)))
 
 ;; What an experiment varies, and how often it is tried, decides no trial.
 (defun visit-definition (entry reach)
@@ -134,7 +127,10 @@ empty table count as no data, since they often stand where a table or structure 
     (dolist (method (methods-on-class symbol)) (visit-function (method-code method) symbol reach))
     (loop for (file written) in (files-besides-functions symbol)
           do (note-file file written reach))
-    (when (and (null entries) (used-as-variable-p symbol) (has-global-value-p symbol))
+    ;; Some variables are set and never declared.
+    (when (and (null entries)
+               (member (variable-kind symbol) '(nil :special :global))
+               (ignore-errors (global-value symbol) t))
       (visit-variable symbol reach))))
 
 (defun visit-symbol (symbol reach)
