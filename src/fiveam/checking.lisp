@@ -25,7 +25,7 @@ succeed. True if they do."
   (let ((check (run-check (make-check experiment condition subject (exact-rate at-least) trials
                                       (exact-rate level) workers))))
     (cond ((eq :passed (check-verdict check))
-           (pass "~A" (success-text check))
+           (pass "~A: ~A" (subject-text check) (numbers-text check))
            t)
           (t (fail "~A" (failure-text check))
              nil))))

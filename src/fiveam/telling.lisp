@@ -30,10 +30,6 @@
           (when (> (length bad) *examples*)
             (list (format nil "  and ~D more" (- (length bad) *examples*))))))
 
-(defun bad-results (check)
-  "Return what came of those trials of CHECK that did not succeed, in order."
-  (remove-if #'success-p (reverse (check-results check))))
-
 (defun numbers-text (check)
   (let ((trials (length (check-results check))) (successes (check-successes check)))
     (format nil "~D of ~D trial~:P succeeded, ~A" successes trials
@@ -47,13 +43,10 @@
               (per-cent (check-at-least check)) (per-cent (check-level check)))))
 
 (defun failure-text (check)
-  (let ((bad (bad-results check)))
+  (let ((bad (remove-if #'success-p (reverse (check-results check)))))
     (format nil "~A~%succeeds less often than ~A: ~A.~%~A~%Of those that did not:~%~{~A~%~}To see ~
                  one, in the package ~A:~%  ~A"
             (subject-text check) (per-cent (check-at-least check)) (numbers-text check)
             (meaning-text check) (example-lines bad check)
             (package-name (experiment-package (check-experiment check)))
             (repetition-text check (first bad)))))
-
-(defun success-text (check)
-  (format nil "~A: ~A" (subject-text check) (numbers-text check)))

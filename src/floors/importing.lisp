@@ -35,15 +35,12 @@ defined the substance."
       (list (substance-name substance)
             (if given parameter (plain-number (substance-parameter substance)))))))
 
-(defun name-in (text)
-  "Return what a map from a file called TEXT is called: letters and digits, with dashes between."
-  (let ((words (substitute-if #\Space (complement #'alphanumericp) (string-upcase text))))
-    (substitute #\- #\Space (one-line (string-trim " " words)))))
-
 (defun name-for (name file)
   "Return the symbol that the map from FILE is called: NAME, or if that is NIL, one of the current
-package that FILE is called like."
-  (let ((own (name-in (or (pathname-name file) ""))))
+package that FILE is called like: letters and digits, with dashes between."
+  (let* ((words (substitute-if #\Space (complement #'alphanumericp)
+                               (string-upcase (or (pathname-name file) ""))))
+         (own (substitute #\- #\Space (one-line (string-trim " " words)))))
     (check-option :name (and (symbolp name) (not (keywordp name)) (not (eq name t))
                              (or name (some #'alpha-char-p own)))
                   name

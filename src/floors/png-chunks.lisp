@@ -77,12 +77,6 @@ each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed.
     (and (every (lambda (char) (or (char<= #\A char #\Z) (char<= #\a char #\z))) name)
          name)))
 
-(defun check-chunk (tape name start end)
-  "Signal UNUSABLE-FLOOR if the chunk of TAPE with the content from START to END is damaged."
-  (let ((octets (tape-octets tape)))
-    (unless (and name (= (number-at octets end) (crc-32 octets (- start 4) end)))
-      (reject-damaged tape "the chunk at byte ~D has a wrong name or check sum" (- start 8)))))
-
 (defun next-chunk (tape)
   "Return name, start and end of the content of the chunk that comes next in TAPE."
   (let* ((octets (tape-octets tape)) (start (+ 8 (tape-position tape)))
@@ -91,7 +85,8 @@ each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed.
       (reject-damaged tape "it has ~D bytes, and ends before its last chunk, IEND"
                       (length octets)))
     (let ((name (chunk-name octets (- start 4))))
-      (check-chunk tape name start end)
+      (unless (and name (= (number-at octets end) (crc-32 octets (- start 4) end)))
+        (reject-damaged tape "the chunk at byte ~D has a wrong name or check sum" (- start 8)))
       (setf (tape-position tape) (+ end 4))
       (values name start end))))
 

@@ -64,16 +64,14 @@ time END."
         do (draw-marker canvas (curve-index curve) (place time (plane-across plane))
                         (place (second (step-at time curve)) (plane-upward plane)))))
 
-(defun draw-curve (canvas curve plane)
-  (with-look ((curve-index curve) 1.8)
-    (draw-lines canvas draw-gcontext*
-                (stairs (curve-steps curve) (curve-end curve) #'second plane)))
-  (draw-censored canvas curve plane))
-
 (defun draw-curves (canvas curves plane)
   (let ((known (remove-if-not #'known-p curves)))
     (dolist (curve known) (draw-bands canvas curve plane))
-    (dolist (curve known) (draw-curve canvas curve plane))
+    (dolist (curve known)
+      (with-look ((curve-index curve) 1.8)
+        (draw-lines canvas draw-gcontext*
+                    (stairs (curve-steps curve) (curve-end curve) #'second plane)))
+      (draw-censored canvas curve plane))
     (dolist (curve known) (draw-markers-along canvas curve curves plane))))
 
 ;;; Below: how many are left.

@@ -7,12 +7,6 @@
 ;;; Each dimension has dice of its own: one more leaves the others as they are. More points of
 ;;; :RANDOM and :SOBOL begin with those that there were; those of a Latin hypercube are all others.
 
-(defun design-dice (kind dimension seed)
-  (make-dice seed (format nil "~(~A~) ~D" kind dimension)))
-
-(defun random-numbers (count dice)
-  (loop repeat count collect (roll dice)))
-
 (defun latin-numbers (count dice)
   "Return COUNT numbers, one in each of as many equal parts of [0, 1), in an order by DICE."
   (let ((places (make-array count)))
@@ -36,8 +30,8 @@ Beckman and Conover 1979). :SOBOL: by Sobol's sequence, shifted by SEED, which f
 evenly if COUNT is a power of two."
   (apply #'mapcar #'list
          (loop for dimension below dimensions
-               for dice = (design-dice kind dimension seed)
+               for dice = (make-dice seed (format nil "~(~A~) ~D" kind dimension))
                collect (ecase kind
-                         (:random (random-numbers count dice))
+                         (:random (loop repeat count collect (roll dice)))
                          (:latin-hypercube (latin-numbers count dice))
                          (:sobol (shifted-sobol-numbers count dimension dice))))))
