@@ -26,21 +26,17 @@ Signals MISUSE where no window is to be had: see ars-magna/clim."
 (defvar *told-reasons* '()
   "Why no display could be opened, texts, as far as the user has been told.")
 
-(defun tell-once (text)
-  (unless (member text *told-reasons* :test #'string=)
-    (push text *told-reasons*)
-    (out text t)))
-
-(defun plain-note (text)
-  "Return TEXT, why there is no display, as what it is: the run needs none."
-  (format nil "Note: the run goes on without a window. ~A" text))
-
 (defun announce-display (robot options)
   "When SIMULATOR has started ROBOT, open its display, or say in a line, once, that there is none
 and how to get one. The option :DISPLAY NIL of SIMULATOR leaves both out."
   (when (getf options :display t)
     (handler-case (open-display robot)
-      (error (condition) (tell-once (plain-note (one-line (text-of-condition condition))))))))
+      (error (condition)
+        (let ((text (format nil "Note: the run goes on without a window. ~A"
+                            (one-line (text-of-condition condition)))))
+          (unless (member text *told-reasons* :test #'string=)
+            (push text *told-reasons*)
+            (out text t)))))))
 
 (pushnew 'announce-display *simulator-hooks*)
 (pushnew 'display *hook-options*)

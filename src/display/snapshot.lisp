@@ -55,7 +55,7 @@ thing, the name of a place type, or NIL if the designator is false; X and Y are 
 
 (define-image odometer-image "What a snapshot knows of an odometer: where, seen from outside, it
 puts the robot, and how uncertain it is."
-  (name nil) (x 0d0) (y 0d0) (heading 0d0) (width 0d0) (height 0d0) (axis 0d0) (spread 0d0))
+  (x 0d0) (y 0d0) (heading 0d0) (width 0d0) (height 0d0) (axis 0d0) (spread 0d0))
 
 (document-functions
   snapshot-tick "Return the tick at which the snapshot was taken."
@@ -191,7 +191,7 @@ what it holds of each."
     (multiple-value-bind (x y heading) (odometer-estimate odometer)
       (flet ((width (interval) (- (interval-max interval) (interval-min interval))))
         (make-odometer-image
-         :name (odometer-name odometer) :x x :y y :heading heading
+         :x x :y y :heading heading
          :width (width (pt-interval-x position)) :height (width (pt-interval-y position))
          :axis (odometer-origin-angle odometer)
          :spread (width angle))))))

@@ -33,14 +33,11 @@ radians as it is, which are never reduced (reading 50) and so may tell of severa
           ((stringp denotation) denotation)
           (t (subject-title denotation)))))
 
-(defun place-text (image)
-  (or (thing-image-location image)
-      (format nil "at ~,2F, ~,2F" (thing-image-x image) (thing-image-y image))))
-
 (defgeneric describe-subject (subject stream)
   (:documentation "Write to STREAM what is known of SUBJECT, the image of something, in lines.")
   (:method ((image thing-image) stream)
-    (format stream "~A ~A~%" (subject-title image) (place-text image))
+    (format stream "~A ~:[at ~,2F, ~,2F~;~:*~A~]~%" (subject-title image)
+            (thing-image-location image) (thing-image-x image) (thing-image-y image))
     (loop for (name value) in (thing-image-attributes image)
           do (format stream "  ~(~S~) ~A~%" name (plain-text value)))
     (let ((contents (thing-contents (thing-image-thing image))))

@@ -73,16 +73,13 @@
     (or (find-if-not (lambda (texture) (member texture taken)) all)
         (first all))))
 
-(defun by-definition (names)
-  "Return the list NAMES of substances, those first that were defined first."
-  (stable-sort (copy-list names) #'< :key (lambda (name)
-                                            (or (substance-position name)
-                                                most-positive-fixnum))))
-
 (defun textures-for (names)
-  "Return a list (name texture) for each of NAMES, the substances of a map."
+  "Return a list (name texture) for each of NAMES, the substances of a map, those first that were
+defined first."
   (let ((taken '()))
-    (loop for name in (by-definition names)
+    (loop for name in (stable-sort (copy-list names) #'<
+                                   :key (lambda (name)
+                                          (or (substance-position name) most-positive-fixnum)))
           collect (list name (first (push (free-texture name taken) taken))))))
 
 (defun materials-of (map)
