@@ -142,7 +142,7 @@
 (test layers.each-has-a-title-and-a-sentence
   (dolist (layer (display:picture-layers))
     (is (plusp (length (display:layer-title layer))))
-    (is (char= #\. (char (reverse (display:layer-documentation layer)) 0)))
+    (is (char= #\. (char (reverse (display::%layer-sentence (display::layer-called layer))) 0)))
     (is (mentions-p (documentation 'display:*picture-layers* 'variable)
                     (display:layer-title layer))))
   (is (subsetp display:*picture-layers* (display:picture-layers)))

@@ -12,13 +12,9 @@
 (defvar *calls-left* nil
   "How many times more the code that draws may do so; NIL if nobody counts.")
 
-(defun count-call ()
-  (when *calls-left*
-    (when (minusp (decf *calls-left*))
-      (reject-use "It has drawn too many things for one place. Mend what goes on without end."))))
-
 (defun check-drawing (operator canvas gcontext numbers)
-  (count-call)
+  (when (and *calls-left* (minusp (decf *calls-left*)))
+    (reject-use "It has drawn too many things for one place. Mend what goes on without end."))
   (unless (canvas-p canvas)
     (reject-argument operator "drawable" canvas "the window that the body was given"))
   (unless (gcontext-p gcontext)

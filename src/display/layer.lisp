@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(text-layers picture-layers layer-title layer-documentation define-layer layer-named
+(export '(text-layers picture-layers layer-title define-layer layer-named
           text-layer-named layer-words))
 
 ;;; All there is to know of a layer stands in its DEFINE-LAYER. The menus, the prompt, the
@@ -84,10 +84,6 @@
 (defun layer-title (name)
   "Return what menus call the layer NAME, a keyword."
   (%layer-title (layer-called name)))
-
-(defun layer-documentation (name)
-  "Return a sentence that says what the layer NAME, a keyword, shows."
-  (%layer-sentence (layer-called name)))
 
 (defun layer-ink (name)
   "Return the colour of lines of the layer NAME; for lines in the colours of robots, the first."

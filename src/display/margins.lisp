@@ -120,7 +120,9 @@ that come first; LEGEND are options of LEGEND-ENTRIES for the others."
   "Draw the world of SNAPSHOT and around it what LAYERS lists, with TITLE as DRAW-FRAMED has it;
 return width and height of that."
   (draw-framed canvas snapshot layers
-               (lambda () (draw-world canvas snapshot :layers layers))
+               (lambda ()
+                 (draw-terrain canvas (snapshot-map snapshot) :layers layers)
+                 (draw-movers canvas snapshot layers))
                :title title))
 
 (defun call-with-map-svg (function stream snapshot &key layers in-color scale)

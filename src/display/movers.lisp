@@ -157,16 +157,14 @@ them before it that are on the same spot."
   "True if the arrowhead of the robot at POSITION among its world's is drawn hollow."
   (and (not in-color*) (oddp (floor position (length +turn-dashes+)))))
 
-(defun camera-line (x y radius angle)
-  "Return the ends of the line, x y x y in pixels, of a camera that looks in direction ANGLE."
-  (append (around x y angle (+ radius 1)) (around x y angle (* 8/5 radius))))
-
 (defun camera-lines (image radius)
-  "Return the lines of those cameras that the robot of IMAGE, a ring of RADIUS, has with it."
-  (loop for camera in (robot-image-cameras image)
+  "Return the lines, x y x y in pixels, of those cameras that the robot of IMAGE, a ring of RADIUS,
+has with it."
+  (loop with x = (to-pixels (robot-image-x image)) and y = (to-pixels (robot-image-y image))
+        for camera in (robot-image-cameras image)
+        for angle = (+ (robot-image-angle image) (camera-image-angle camera))
         unless (camera-image-location camera)
-          collect (camera-line (to-pixels (robot-image-x image)) (to-pixels (robot-image-y image))
-                               radius (+ (robot-image-angle image) (camera-image-angle camera)))))
+          collect (append (around x y angle (+ radius 1)) (around x y angle (* 8/5 radius)))))
 
 (defun draw-ring (canvas x y radius angle position)
   "Draw the ring and the arrowhead of the robot at POSITION among its world's, which looks in

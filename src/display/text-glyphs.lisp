@@ -54,13 +54,10 @@ large things are their initials, as far as can be. There may be more kinds than 
             (setf (gethash name letters) letter
                   free (remove letter free))))))))
 
-(defun letter-of (name letters)
-  (gethash name letters +other+))
-
 (defun thing-glyph (image letters)
   (let ((name (symbol-name (thing-name (thing-image-thing image))))
         (color (second (assoc :color (thing-image-attributes image)))))
-    (make-glyph :thing (letter-of name letters) name
+    (make-glyph :thing (gethash name letters +other+) name
                 (and (typep color '(or symbol string)) color))))
 
 (defun things-glyphs (images letters)

@@ -251,22 +251,18 @@ go along a way."
   (do-trail (points nil nil nil placements)
     thereis (/= placements (fourth points))))
 
-(defun trail-line (robot)
-  (make-way-line (robot-image-position robot) (pieces-of-trail (robot-image-trail robot))
-                 :dashes (layer-dashes :trail) :width 1 :arrows-p nil))
-
 (defun robots-with-trails (snapshot)
   (remove-if-not (lambda (robot) (cddddr (robot-image-trail robot))) (snapshot-robots snapshot)))
 
 (defun draw-trails (canvas robots)
-  (draw-way-lines canvas (mapcar #'trail-line robots)))
+  (draw-way-lines canvas
+                  (loop for robot in robots
+                        collect (make-way-line (robot-image-position robot)
+                                               (pieces-of-trail (robot-image-trail robot))
+                                               :dashes (layer-dashes :trail) :width 1
+                                               :arrows-p nil))))
 
 ;;; Planned ways.
-
-(defun planned-line (robot)
-  (make-way-line (robot-image-position robot)
-                 (list (pixels-of (apply #'append (robot-image-planned-way robot))))
-                 :dashes (layer-dashes :planned-way) :arrows-p nil))
 
 (defun robots-with-plans (snapshot)
   "Return the images of those robots in SNAPSHOT of which it is known where they are about to go."
@@ -285,7 +281,12 @@ go along a way."
 
 (defun draw-planned-ways (canvas robots)
   "Draw the ways that ROBOTS are about to go, with a ring where each ends."
-  (draw-way-lines canvas (mapcar #'planned-line robots))
+  (draw-way-lines canvas
+                  (loop for robot in robots
+                        for way = (apply #'append (robot-image-planned-way robot))
+                        collect (make-way-line (robot-image-position robot) (list (pixels-of way))
+                                               :dashes (layer-dashes :planned-way)
+                                               :arrows-p nil)))
   (draw-way-marks canvas
                   (loop for robot in robots
                         collect `(draw-start ,@(end-of-planned-way robot)

@@ -66,9 +66,3 @@ than all margins have.")
       (draw-things canvas (snapshot-things snapshot))
       (draw-shown canvas (shown-above-things snapshot layers))
       (when (member :names layers) (draw-names canvas snapshot layers)))))
-
-(defun draw-world (canvas snapshot &key (layers *picture-layers*))
-  "Draw the map of SNAPSHOT on CANVAS, GRAPHICS-SCALE* pixels to a metre, with what LAYERS lists
-that lies on it (manual B)."
-  (draw-terrain canvas (snapshot-map snapshot) :layers layers)
-  (draw-movers canvas snapshot layers))

@@ -217,18 +217,15 @@ makes; NIL if there is nothing to compare."
                          (and difference (paired-estimate difference)))))
                  (all-contrasts comparison)))
 
-(defun difference-charts (comparison measure name)
-  (pictures-of-rows name (contrasts-in measure comparison)
-                    (lambda (contrasts)
-                      (comparison-chart comparison measure :contrasts contrasts))))
-
 (defun difference-pictures (results summaries)
   (declare (ignore summaries))
   (loop for place in (free-factors results)
         append (loop for measure in '("success" "ticks")
                      for comparison = (comparison-by results place measure)
                      when comparison
-                       append (difference-charts comparison measure
-                                                 (format nil "difference-in-~A-by-~A" measure
-                                                         (nth place
-                                                              (results-factors results)))))))
+                       append (pictures-of-rows
+                               (format nil "difference-in-~A-by-~A" measure
+                                       (nth place (results-factors results)))
+                               (contrasts-in measure comparison)
+                               (lambda (contrasts)
+                                 (comparison-chart comparison measure :contrasts contrasts))))))
