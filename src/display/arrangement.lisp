@@ -62,7 +62,6 @@ legend."
       1))
 
 (defun metres-text (metres)
-  "Return what stands beside a scale bar of METRES."
   (format nil "~D m" metres))
 
 (defun scale-bar-width (width)

@@ -96,7 +96,6 @@ known; NIL if none of it is. Where a fork has gone nobody notes, but it came to 
           (t (trail-points trail)))))
 
 (defun trail-until (tick trail)
-  "Return the part of TRAIL up to TICK."
   (loop for points on (trail-points trail) by #'cddddr
         for count downfrom (trail-count trail)
         while (> (the fixnum (third points)) tick)
@@ -147,7 +146,6 @@ OPAQUE-P is a function of the index of a cell."
 ;;; Keeping.
 
 (defun note-moment (history simulation)
-  "Let HISTORY know of what is so in SIMULATION now."
   (declare #.*hot* (type history history))
   (dolist (robot (simulation-robots simulation))
     (declare (type robot robot))

@@ -37,7 +37,6 @@
   (mapcar #'%layer-name *layers*))
 
 (defun document-layers ()
-  "Let the documentation of *PICTURE-LAYERS* list all layers."
   (setf (documentation '*picture-layers* 'variable)
         (format nil "A list of what pictures of the world show besides walls, things and robots, ~
                      unless their :LAYERS say otherwise: some of the following. By default those ~

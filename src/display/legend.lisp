@@ -78,7 +78,6 @@ that they are the names of."
 ;;; Walls: the substances, with the range of their parameters.
 
 (defun call-with-cells-shown (function snapshot)
-  "Call FUNCTION with the index of each cell that is to be shown of the map of SNAPSHOT."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (loop with width = (map-width (snapshot-map snapshot))
           for row from top below bottom

@@ -126,8 +126,6 @@ return width and height of that."
                :title title))
 
 (defun call-with-map-svg (function stream snapshot &key layers in-color scale)
-  "Call FUNCTION with a canvas, then write what it has drawn, a picture of SNAPSHOT with LAYERS, to
-STREAM as an SVG document, magnified as SCALE demands. FUNCTION returns its width and height."
   (multiple-value-bind (scale zoom) (drawn-scale scale snapshot layers)
     (with-svg (canvas stream :color-p in-color :zoom zoom)
       (with-canvas (canvas :scale scale) (funcall function canvas)))))

@@ -62,7 +62,6 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
   (write-file-anew (lambda (out) (write-string text out)) file "the picture"))
 
 (defun png-remedy (words)
-  "Return what can be done where rsvg-convert says WORDS."
   (cond ((search "larger than" words) "Choose a smaller scale, or save it as .svg")
         ((search "No space" words) "Make room there, or choose another directory")
         (t "Choose a smaller scale if it is very large, or save it as .svg")))

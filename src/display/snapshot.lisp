@@ -256,7 +256,6 @@ snapshot of WORLD, makes it cheaper."
     (values (- right left) (- bottom top))))
 
 (defun check-part (operator part map)
-  "Signal WRONG-ARGUMENT unless PART, an argument of OPERATOR, is NIL or a part of MAP in cells."
   (let ((width (map-width map)) (height (map-height map)))
     (unless (or (null part)
                 (and (proper-list-p part) (= 4 (length part)) (every #'integerp part)

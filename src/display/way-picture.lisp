@@ -10,7 +10,6 @@
         (to-pixels (if (pt-p point) (pt-y point) (second point)))))
 
 (defun draw-ways-on-map (canvas ways)
-  "Draw WAYS, lists of points, with what marks where they begin and end."
   (draw-way-lines canvas (loop for way in ways for position from 0
                                collect (make-way-line position
                                                       (list (mapcan #'coordinates-of way)))))

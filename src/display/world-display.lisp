@@ -47,7 +47,6 @@
 than all margins have.")
 
 (defun call-on-map (function canvas map beyond)
-  "Call FUNCTION; what it draws on CANVAS more than BEYOND pixels outside of MAP stays invisible."
   (with-clipping (canvas (- beyond) (- beyond)
                   (+ (to-pixels (map-width map)) (* 2 beyond))
                   (+ (to-pixels (map-height map)) (* 2 beyond)))

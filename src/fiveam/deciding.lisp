@@ -23,7 +23,6 @@
         ((nil) nil))))
 
 (defun last-verdict (successes trials rate level)
-  "Return :PASSED or :FAILED for SUCCESSES of TRIALS, which are all."
   (if (< (nth-value 1 (exact-interval successes trials :confidence (- 1 level))) rate)
       :failed
       :passed))

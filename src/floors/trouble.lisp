@@ -44,7 +44,6 @@ UNUSABLE-FLOOR for ~user."
   (path-called name))
 
 (defun check-readable (file)
-  "Signal UNUSABLE-FLOOR unless FILE, a pathname, is a file of bytes."
   (let ((trouble (unusable-file-text file)))
     (when trouble
       (reject-floor file nil "~A (relative names begin in ~A)"

@@ -82,7 +82,6 @@
                                              (- x 3) high (+ x 3) high)))
 
 (defun draw-interval-across (canvas y low high)
-  "Draw a bar across at Y from the pixel LOW to HIGH, with caps."
   (draw-segments canvas draw-gcontext* (list low y high y
                                              low (- y 3) low (+ y 3)
                                              high (- y 3) high (+ y 3))))

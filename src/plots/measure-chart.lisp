@@ -28,7 +28,6 @@
                 (exact middle) (exact low) (exact high))))
 
 (defun group-values (group)
-  "Return all that the axis is to show of GROUP."
   (append (remove nil (list (group-middle group) (group-low group) (group-high group)))
           (group-numbers group)))
 

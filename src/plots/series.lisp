@@ -47,7 +47,6 @@
   (remove-duplicates (mapcar #'spot-x (all-spots series)) :test #'equal :from-end t))
 
 (defun all-y (series)
-  "Return all numbers that the axis upward is to show."
   (loop for spot in (all-spots series)
         append (remove nil (list (spot-y spot) (spot-low spot) (spot-high spot)))))
 

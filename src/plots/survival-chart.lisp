@@ -77,7 +77,6 @@ time END."
 ;;; Below: how many are left.
 
 (defun risk-width (curves)
-  "Return how wide the numbers of those at risk are at most."
   (text-width (figure-text (reduce #'max curves :key (lambda (curve) (length (curve-times curve)))
                                                 :initial-value 0))
               +text-size+))

@@ -73,7 +73,6 @@ WRONG-ARGUMENT unless TIMES are from 0 to 1e15, EVENTS as many, and CONFIDENCE b
     (nreverse steps)))
 
 (defun curve-p (value)
-  "True if VALUE looks like what SURVIVAL-CURVE returns."
   (and (proper-list-p value)
        (every (lambda (step) (and (proper-list-p step) (= 6 (length step)) (every #'realp step)))
               value)))

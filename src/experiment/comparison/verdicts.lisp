@@ -25,7 +25,6 @@
             (member text '("1" "-1") :test #'string=))))
 
 (defun interval-words (difference)
-  "Return by how much DIFFERENCE is, with its interval, as a verdict says it."
   (let ((write (number-writer difference)))
     (format nil "difference ~A (95 % interval ~A to ~A)"
             (amount-words difference (paired-estimate difference))
@@ -66,7 +65,6 @@
 ;;; Verdicts.
 
 (defun direction-words (difference first second)
-  "Return that FIRST is above or below SECOND, as DIFFERENCE says."
   (let ((more (plusp (paired-estimate difference))) (measure (paired-measure difference)))
     (cond ((string= measure "success")
            (format nil "~A succeeds ~:[less~;more~] often than ~A" first more second))

@@ -141,7 +141,6 @@ true of; or about CLAUSE if there is none at all."
   (mapc (lambda (part) (check-factor-name definition part)) (rest case)))
 
 (defun check-same-factors (definition cases)
-  "Signal MALFORMED-DEFINITION unless all CASES give values to the same names."
   (let ((names (mapcar #'first (rest (first cases)))))
     (dolist (case (rest cases))
       (when (set-exclusive-or names (mapcar #'first (rest case)))

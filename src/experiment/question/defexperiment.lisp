@@ -182,7 +182,6 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
         (and number other-number (= number other-number)))))
 
 (defun check-values-differ (definition part texts)
-  "Signal MALFORMED-DEFINITION if two of TEXTS, of the values of PART in the table, are equal."
   (loop for (text . others) on texts
         for first from 1
         for place = (position text others :test #'equal-in-table-p)
@@ -193,7 +192,6 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
                                     first (+ 1 first place) (cut text 60)))))
 
 (defun check-values (definition part values)
-  "Signal MALFORMED-DEFINITION unless VALUES are one at least, and differ in the table."
   (unless (and (proper-list-p values) values)
     (reject-clause definition part "one value at least, in a list"))
   (dolist (value values) (check-value definition part value))
@@ -224,7 +222,6 @@ in CHOICES."
         collect (list (first part) value)))
 
 (defun check-conditions-differ (definition clause conditions)
-  "Signal MALFORMED-DEFINITION about CLAUSE if two of CONDITIONS would be called the same."
   (let ((known (make-hash-table :test 'equal)))
     (dolist (condition conditions)
       (let* ((name (condition-name condition)) (other (gethash name known)))

@@ -67,7 +67,6 @@ Signals MISUSE for rows of other code."
     counts))
 
 (defun wide-conditions (experiment conditions look width directory)
-  "Return those of CONDITIONS whose intervals at LOOK are wider than WIDTH."
   (let* ((trials (count-at-look look))
          (counts (count-successes experiment trials directory)))
     (remove-if (lambda (condition)

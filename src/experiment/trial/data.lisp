@@ -142,7 +142,6 @@ it is too large."
 ;;; another trial may find. Under a key that was made in the trial, no other finds anything.
 
 (defun weak-p (object)
-  "True if OBJECT is a weak hash table or a weak pointer."
   (or (weak-pointer-p object)
       (and (hash-table-p object) (weak-table-p object))))
 
