@@ -90,7 +90,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
       (when trouble
         (reject-floor file (entry-line entry) "the image ~A cannot be read: ~A. Put the image ~
                                                there, or correct the line"
-                      (shown-file image) trouble))
+                      (shown-name image) trouble))
       image)))
 
 (defun check-thresholds (file free occupied entry)
@@ -150,7 +150,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
       (reject-floor file (illegible-file-line condition)
                     "it has bytes that are not UTF-8. Save the file in UTF-8"))
     (stream-error () (reject-floor file nil "the system does not let it be read"))
-    (error (condition) (reject-floor file nil "~A" (reason-of condition)))))
+    (error (condition) (reject-floor file nil "~A" (one-line-text condition)))))
 
 (defun read-description (name)
   "Return the description in the file NAME, a string or pathname. Signals UNUSABLE-FLOOR."

@@ -9,7 +9,7 @@
    (reason :initarg :reason :reader unusable-floor-reason))
   (:report (lambda (condition stream)
              (format stream "~A~@[, line ~D~]: ~A."
-                     (shown-file (unusable-floor-file condition))
+                     (shown-name (unusable-floor-file condition))
                      (unusable-floor-line condition)
                      (unusable-floor-reason condition))))
   (:documentation "A file that IMPORT-MAP was to read, or EXPORT-MAP to write, cannot be used."))
@@ -21,19 +21,9 @@
       (documentation 'unusable-floor-reason 'function)
       "Return in words what is wrong, and what to do about it.")
 
-(defun shown-file (file)
-  "Return FILE as the operating system writes it; a name that stands for no file, as Lisp does."
-  (cond ((equal file "") "\"\"")
-        ((and (pathnamep file) (many-files-p file)) (princ-to-string file))
-        (t (native-name file))))
-
 (defun reject-floor (file line control &rest arguments)
   "Signal UNUSABLE-FLOOR about LINE, perhaps NIL, of FILE. The text names the remedy."
   (error 'unusable-floor :file file :line line :reason (apply #'format nil control arguments)))
-
-(defun reason-of (condition)
-  "Return what CONDITION says, in one line and without its full stop."
-  (string-right-trim "." (cut (one-line (text-of-condition condition)) 300)))
 
 (defun file-called (name)
   "Return the pathname for NAME, a string or pathname, which may begin with ~/. Signals
