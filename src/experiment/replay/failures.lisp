@@ -6,39 +6,33 @@
 ;;; error, are a group. An error in a continuation or kicker lets its trial go on; so a trial that
 ;;; succeeded may be in a group, too.
 
-(defstruct (flaw (:constructor make-flaw (outcome reason error)) (:copier nil))
-  "Trials of one condition that failed in the same way: their numbers, the last first."
-  (outcome "" :type string :read-only t)
-  (reason "" :type string :read-only t)
-  (error "" :type string :read-only t)
-  (trials '() :type list))
-
-(defun flaw-count (flaw)
-  (length (flaw-trials flaw)))
-
 (defun flaws-of (sample)
-  "Return the flaws of trials of SAMPLE, the most frequent first."
-  (let ((known (make-hash-table :test 'equal)) (flaws '()))
+  "Return lists (trials outcome reason error) of the trials of SAMPLE that went wrong in the same
+way, the most frequent first."
+  (let ((known (make-hash-table :test 'equal)) (keys '()))
     (loop for trial across (sample-trials sample)
           for outcome across (sample-outcomes sample)
           for reason across (sample-reasons sample)
           for error across (sample-errors sample)
           for key = (list outcome reason error)
           do (unless (and (string= "success" outcome) (string= "" error))
-               (unless (gethash key known)
-                 (push (setf (gethash key known) (make-flaw outcome reason error)) flaws))
-               (push trial (flaw-trials (gethash key known)))))
-    (stable-sort (reverse flaws) #'> :key #'flaw-count)))
+               (unless (gethash key known) (push key keys))
+               (push trial (gethash key known))))
+    (stable-sort (loop for key in (reverse keys)
+                       collect (cons (reverse (gethash key known)) key))
+                 #'> :key #'flaw-count)))
+
+(defun flaw-count (flaw)
+  (length (first flaw)))
 
 (defun flaw-plist (flaw sample)
-  (let ((count (flaw-count flaw)))
-    (list :condition (sample-condition sample)
-          :outcome (flaw-outcome flaw)
-          :reason (flaw-reason flaw)
-          :error (flaw-error flaw)
-          :count count
-          :share (/ count (float (length (sample-trials sample)) 1d0))
-          :trials (reverse (flaw-trials flaw)))))
+  (destructuring-bind (trials outcome reason error) flaw
+    (let ((count (length trials)))
+      (list :condition (sample-condition sample)
+            :outcome outcome :reason reason :error error
+            :count count
+            :share (/ count (float (length (sample-trials sample)) 1d0))
+            :trials trials))))
 
 ;;; Which results are meant.
 
@@ -90,12 +84,12 @@ count, too. REPLAY-TRIAL opens one. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT
 (defun example-text (flaw sample)
   "Return the line of the prompt that opens the first trial of FLAW, of SAMPLE."
   (format nil "trial ~A ~A ~D" (word-text (sample-experiment sample))
-          (word-text (sample-condition sample)) (first (last (flaw-trials flaw)))))
+          (word-text (sample-condition sample)) (first (first flaw))))
 
 (defun flaw-text (flaw)
-  (format nil "~A~@[: ~A~]~@[; ~A~]" (flaw-outcome flaw)
-          (and (string/= "" (flaw-reason flaw)) (flaw-reason flaw))
-          (and (string/= "" (flaw-error flaw)) (flaw-error flaw))))
+  (destructuring-bind (outcome reason error) (rest flaw)
+    (format nil "~A~@[: ~A~]~@[; ~A~]" outcome
+            (and (string/= "" reason) reason) (and (string/= "" error) error))))
 
 (defun print-flaws (sample stream)
   (let* ((flaws (flaws-of sample)) (count (reduce #'+ flaws :key #'flaw-count)))
