@@ -14,11 +14,6 @@
   (names '() :type list :read-only t)
   (choices '() :type list :read-only t))
 
-(defstruct (factor-case (:constructor make-case (name settings)) (:copier nil))
-  "A named choice of values: SETTINGS, a list of lists (factor-name value)."
-  (name nil :type symbol :read-only t)
-  (settings '() :type list :read-only t))
-
 (defstruct (trial-condition (:conc-name condition-) (:constructor %make-condition) (:copier nil))
   "What the trials of one condition have in common."
   ;; What it is called, and how its values stand in a table.

@@ -243,7 +243,7 @@ also those slots of an experiment that are taken as they are."
   (check-value definition (list :thinking thinking) thinking)
   (let* ((axes (loop for (part values) in factors collect (axis-from definition part values)))
          (cases-from (loop for (case settings) in cases
-                           collect (make-case case (settings-from definition settings))))
+                           collect (list case (settings-from definition settings))))
          (experiment (apply #'%make-experiment :name name :axes axes :cases cases-from
                                                :allow-other-keys t options))
          (settings (settings-from definition parameters)))

@@ -12,6 +12,7 @@
   (robots '() :type list)
   (thinking :free)
   (axes '() :type list)
+  ;; Lists (name settings), where settings are lists (factor-name value).
   (cases '() :type list)
   (conditions '() :type list)
   (trials 100 :type (integer 1))
@@ -71,17 +72,15 @@ PARAMETERS, lists (name value), that all have."
 (defun factor-names (experiment)
   (remove-duplicates
    (append (loop for case in (experiment-cases experiment)
-                 append (mapcar #'first (factor-case-settings case)))
+                 append (mapcar #'first (second case)))
            (loop for axis in (experiment-axes experiment) append (axis-names axis)))
    :from-end t))
 
 (defun all-conditions (experiment clean parameters)
-  (loop for case in (or (experiment-cases experiment) (list nil))
+  (loop for (case settings) in (or (experiment-cases experiment) '((nil ())))
         append (loop for others in (combinations (experiment-axes experiment))
-                     collect (condition-from experiment
-                                             (append (and case (factor-case-settings case)) others)
-                                             (and case (factor-case-name case))
-                                             others clean parameters))))
+                     collect (condition-from experiment (append settings others) case others
+                                             clean parameters))))
 
 (defun called (text things name)
   "Return those of THINGS whose name, by the function NAME, is TEXT; if there are none, those that
