@@ -38,23 +38,19 @@ its parameter; plain black on a display without colours."
   (left 0 :type fixnum) (right 0 :type fixnum) (top 0 :type fixnum) (bottom 0 :type fixnum)
   (look nil :type wall-look))
 
-(defstruct (window (:constructor make-window (left top right bottom)) (:copier nil))
-  "The cells of a map that are to be drawn; RIGHT and BOTTOM are outside."
-  (left 0 :type fixnum :read-only t) (top 0 :type fixnum :read-only t)
-  (right 0 :type fixnum :read-only t) (bottom 0 :type fixnum :read-only t))
-
 (defun clip-window (map left top right bottom)
-  "Return the window of the cells of MAP between the given ones; NIL means to the edge."
+  "Return the window of the cells of MAP between the given ones, a list (left top right bottom), of
+which the last two are outside; NIL means to the edge."
   (flet ((within (value limit) (max 0 (min value limit))))
     (let ((width (map-width map)) (height (map-height map)))
-      (make-window (within (or left 0) width) (within (or top 0) height)
-                   (within (or right width) width) (within (or bottom height) height)))))
+      (list (within (or left 0) width) (within (or top 0) height)
+            (within (or right width) width) (within (or bottom height) height)))))
 
 (defun row-runs (map window y looks)
   "Return the runs of walls in the row Y of MAP within WINDOW, from left to right."
   (declare (type map map) (type fixnum y) (type function looks))
   (let ((flags (map-flags map)) (width (map-width map)) (runs '()) (run nil))
-    (loop for x from (window-left window) below (window-right window)
+    (loop for x from (first window) below (third window)
           do (let* ((index (+ x (* y width)))
                     (look (and (logtest +wall+ (aref flags index)) (funcall looks index))))
                (cond ((null look) (setf run nil))
@@ -66,7 +62,7 @@ its parameter; plain black on a display without colours."
   "Return rectangles that together are all walls of MAP within WINDOW."
   (let ((above (make-array (map-width map) :initial-element nil)) (runs '())
         (looks (wall-looks map)))
-    (loop for y from (window-top window) below (window-bottom window)
+    (loop for y from (second window) below (fourth window)
           do (dolist (run (row-runs map window y looks))
                (let ((old (svref above (wall-run-left run))))
                  (cond ((and old (= (wall-run-bottom old) y)
@@ -130,8 +126,8 @@ its parameter; plain black on a display without colours."
 (defun draw-places (canvas map window)
   "Mark the cells of MAP in WINDOW that are places of visible types which have graphics (manual B)."
   (let ((types (map-place-types map)) (places (map-places map)) (width (map-width map)))
-    (loop for y from (window-top window) below (window-bottom window)
-          do (loop for x from (window-left window) below (window-right window)
+    (loop for y from (second window) below (fourth window)
+          do (loop for x from (first window) below (third window)
                    for number = (aref places (+ x (* y width)))
                    unless (zerop number)
                      do (let ((type (svref types number)))
@@ -149,21 +145,19 @@ its parameter; plain black on a display without colours."
 
 (defun draw-grid (canvas map window)
   (declare (ignore map))
-  (let ((step (steps-apart 16)))
-    (flet ((lines (from to function)
-             (loop for at from (* step (ceiling from step)) to to by step
-                   append (funcall function (to-pixels at)))))
-      (with-gcontext (draw-gcontext* :foreground (if in-color* +grid-ink+ black*) :dashes '(1 3)
-                                     :line-style (if in-color* :solid :dash))
-        (draw-segments canvas draw-gcontext*
-                       (let ((left (to-pixels (window-left window)))
-                             (top (to-pixels (window-top window)))
-                             (right (to-pixels (window-right window)))
-                             (bottom (to-pixels (window-bottom window))))
-                         (append (lines (window-left window) (window-right window)
-                                        (lambda (x) (list x top x bottom)))
-                                 (lines (window-top window) (window-bottom window)
-                                        (lambda (y) (list left y right y))))))))))
+  (destructuring-bind (left top right bottom) window
+    (let ((step (steps-apart 16)))
+      (flet ((lines (from to function)
+               (loop for at from (* step (ceiling from step)) to to by step
+                     append (funcall function (to-pixels at)))))
+        (with-gcontext (draw-gcontext* :foreground (if in-color* +grid-ink+ black*) :dashes '(1 3)
+                                       :line-style (if in-color* :solid :dash))
+          (draw-segments canvas draw-gcontext*
+                         (append (lines left right
+                                        (lambda (x) (list x (to-pixels top) x (to-pixels bottom))))
+                                 (lines top bottom
+                                        (lambda (y)
+                                          (list (to-pixels left) y (to-pixels right) y))))))))))
 
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
   "Draw the walls of MAP in black, or in greys by their substance parameters with a tint and a
