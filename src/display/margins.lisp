@@ -27,20 +27,15 @@
         (draw-words canvas draw-gcontext* 0 (- y 2) line :size +subtitle-size+)
         (incf y +subtitle-step+)))))
 
-(defun round-metres (start end)
-  "Return numbers of metres from START to END to be written at an edge."
-  (let ((step (steps-apart 40)))
-    (loop for metres from (* step (ceiling start step)) to end by step collect metres)))
-
 (defun draw-coordinates (canvas snapshot)
   "Write metres above and to the left of what is to be shown of the map of SNAPSHOT."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (with-color +frame-ink+
-      (dolist (metres (round-metres left right))
+      (dolist (metres (marks-between left right 40))
         (let ((x (to-pixels (- metres left))) (text (princ-to-string metres)))
           (draw-segments canvas draw-gcontext* (list x -6 x -2))
           (draw-text canvas (- x (/ (words-width text) 2)) -8 text)))
-      (dolist (metres (round-metres top bottom))
+      (dolist (metres (marks-between top bottom 40))
         (let ((y (to-pixels (- metres top))) (text (princ-to-string metres)))
           (draw-segments canvas draw-gcontext* (list -6 y -2 y))
           (draw-text canvas (- -8 (words-width text)) (+ y 4) text))))))

@@ -143,21 +143,21 @@ which the last two are outside; NIL means to the edge."
              (when (<= pixels (* factor unit graphics-scale*))
                (return-from steps-apart (* factor unit))))))
 
+(defun marks-between (start end pixels)
+  "Return the numbers of metres from START to END at which there are marks, PIXELS apart at least."
+  (loop with step = (steps-apart pixels)
+        for metres from (* step (ceiling start step)) to end by step collect metres))
+
 (defun draw-grid (canvas map window)
   (declare (ignore map))
   (destructuring-bind (left top right bottom) window
-    (let ((step (steps-apart 16)))
-      (flet ((lines (from to function)
-               (loop for at from (* step (ceiling from step)) to to by step
-                     append (funcall function (to-pixels at)))))
-        (with-gcontext (draw-gcontext* :foreground (if in-color* +grid-ink+ black*) :dashes '(1 3)
-                                       :line-style (if in-color* :solid :dash))
-          (draw-segments canvas draw-gcontext*
-                         (append (lines left right
-                                        (lambda (x) (list x (to-pixels top) x (to-pixels bottom))))
-                                 (lines top bottom
-                                        (lambda (y)
-                                          (list (to-pixels left) y (to-pixels right) y))))))))))
+    (with-gcontext (draw-gcontext* :foreground (if in-color* +grid-ink+ black*) :dashes '(1 3)
+                                   :line-style (if in-color* :solid :dash))
+      (draw-segments canvas draw-gcontext*
+                     (pixels-of (append (loop for x in (marks-between left right 16)
+                                              append (list x top x bottom))
+                                        (loop for y in (marks-between top bottom 16)
+                                              append (list left y right y))))))))
 
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
   "Draw the walls of MAP in black, or in greys by their substance parameters with a tint and a

@@ -21,12 +21,6 @@ ask for: a list."
           (if numbers-p +strip-height+ 0)
           (if (member :scale-bar layers) +bar-strip-height+ 0))))
 
-(defun marks-between (start end step)
-  "Return the multiples of STEP, in metres, from the pixel START to the pixel END."
-  (loop for metres from (* step (ceiling start (* step graphics-scale*))) by step
-        while (<= (to-pixels metres) end)
-        collect metres))
-
 (defun draw-strip (canvas left top width height)
   (with-gcontext (draw-gcontext* :foreground (svref grey* 58))
     (draw-rectangle canvas draw-gcontext* left top width height t)))
@@ -39,8 +33,8 @@ ask for: a list."
   "Draw the numbers of metres from the left of MAP that are between the pixels START and END, in a
 strip that begins at LEFT, TOP."
   (draw-strip canvas left top (- end left) +strip-height+)
-  (dolist (metres (marks-between (max 0 start) (min end (to-pixels (map-width map)))
-                                 (steps-apart 60)))
+  (dolist (metres (marks-between (/ (max 0 start) graphics-scale*)
+                                 (min (/ end graphics-scale*) (map-width map)) 60))
     (let* ((text (princ-to-string metres)) (x (to-pixels metres)) (width (words-width text)))
       (draw-notch canvas x (+ top 14) x (+ top 17))
       (draw-text canvas (clamp (- x (/ width 2)) left (max left (- end width))) (+ top 11)
@@ -50,8 +44,8 @@ strip that begins at LEFT, TOP."
   "Draw the numbers of metres from the top of MAP that are between the pixels TOP and END, in a
 strip at LEFT that is WIDTH pixels wide."
   (draw-strip canvas left top width (- end top))
-  (dolist (metres (marks-between (max 0 top) (min end (to-pixels (map-height map)))
-                                 (steps-apart 60)))
+  (dolist (metres (marks-between (/ (max 0 top) graphics-scale*)
+                                 (min (/ end graphics-scale*) (map-height map)) 60))
     (let* ((text (princ-to-string metres)) (y (to-pixels metres)) (right (+ left width)))
       (draw-notch canvas (- right 3) y right y)
       (draw-text canvas (- right 8 (words-width text)) (min (+ y 4) (- end 2)) text))))
