@@ -25,16 +25,16 @@
             (and (spot-low spot) (spot-high spot) (text (spot-low spot)))
             (and (spot-high spot) (text (spot-high spot))))))
 
-(defun runs (spots)
-  "Return lists of SPOTS that have a Y and follow each other."
+(defun runs (items test)
+  "Return lists of ITEMS that follow each other and for which TEST is true."
   (let ((runs '()) (run '()))
-    (dolist (spot spots (nreverse (if run (cons (nreverse run) runs) runs)))
-      (cond ((spot-y spot) (push spot run))
+    (dolist (item items (nreverse (if run (cons (nreverse run) runs) runs)))
+      (cond ((funcall test item) (push item run))
             (run (push (nreverse run) runs)
                  (setf run '()))))))
 
 (defun draw-connections (canvas series plane shift)
-  (dolist (run (runs (series-spots series)))
+  (dolist (run (runs (series-spots series) #'spot-y))
     (when (rest run)
       (with-look ((series-index series) 1.8)
         (draw-lines canvas draw-gcontext*

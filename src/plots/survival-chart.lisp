@@ -24,16 +24,10 @@
 (defun bands (curve)
   "Return lists (end step...): STEPS of CURVE that follow each other and have an interval, until the
 time END."
-  (let ((bands '()) (band '()))
-    (flet ((finish (end)
-             (when band (push (cons end (reverse band)) bands))
-             (setf band '())))
-      (loop for step in (curve-steps curve)
-            do (if (and (third step) (fourth step))
-                   (push step band)
-                   (finish (first step))))
-      (finish (curve-end curve)))
-    (nreverse bands)))
+  (loop with steps = (curve-steps curve)
+        for band in (runs steps (lambda (step) (and (third step) (fourth step))))
+        for next = (second (member (first (last band)) steps))
+        collect (cons (if next (first next) (curve-end curve)) band)))
 
 (defun draw-bands (canvas curve plane)
   (with-opacity (canvas 16/100)
