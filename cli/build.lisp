@@ -266,9 +266,6 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
 
 ;;; McCLIM, which only the window needs, is found by ASDF or through a Quicklisp that is installed.
 
-(defun quicklisp-file ()
-  (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
-
 (defun print-window-libraries ()
   "Print by what McCLIM is to be had: asdf, quicklisp, or nothing; or why CLX, which it needs, does
 not work."
@@ -276,13 +273,12 @@ not work."
    (lambda ()
      (write-line (cond ((uiop:symbol-call :ars-magna.clx :clx-trouble))
                        ((not (missing-p "mcclim/looks")) "asdf")
-                       ((quicklisp-file) "quicklisp")
+                       ((uiop:symbol-call :ars-magna.clx :quicklisp-file) "quicklisp")
                        (t "nothing"))))))
 
 (defun get-window-libraries ()
   "Let Quicklisp fetch McCLIM, if need be, and load it. If that fails, say why and end this Lisp."
-  (handler-case (progn (load (quicklisp-file))
-                       (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
+  (handler-case (uiop:symbol-call :ars-magna.clx :get-by-quicklisp)
     (error (condition)
       (format t "~&*** ~A~%" (one-line condition))
       (uiop:quit 1))))

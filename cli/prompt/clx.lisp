@@ -1,4 +1,4 @@
-;;;; clx.lisp -- does the CLX that ASDF finds work on this SBCL, and what to do if it does not.
+;;;; clx.lisp -- getting McCLIM, and whether the CLX that ASDF finds works on this SBCL.
 
 ;;; CLX is the library by which McCLIM talks to the X server. Up to version 0.7.5 it reads with an
 ;;; internal function of SBCL's, READ-N-BYTES, whose last argument became an end instead of a count
@@ -11,7 +11,8 @@
 (defpackage :ars-magna.clx
   (:documentation "Versions of CLX: which one ASDF finds, and whether it works on this SBCL.")
   (:use :cl)
-  (:export #:library-text #:clx-trouble #:*clx-remedy*))
+  (:export #:library-text #:clx-trouble #:*clx-remedy*
+           #:find-library #:quicklisp-file #:get-by-quicklisp))
 
 (in-package :ars-magna.clx)
 
@@ -24,6 +25,15 @@
   "Return the ASDF system of the library that users call NAME, such as CLX, or NIL."
   (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
     (ignore-errors (asdf:find-system (string-downcase name) nil))))
+
+(defun quicklisp-file ()
+  "Return the file that makes Quicklisp known, where the user has installed it, or NIL."
+  (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
+
+(defun get-by-quicklisp ()
+  "Let Quicklisp fetch McCLIM, if need be, and load it."
+  (unless (find-package :quicklisp) (load (quicklisp-file)))
+  (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
 
 (defun library-text (name &optional (system (find-library name)))
   "Return which library NAME, a SYSTEM of ASDF's or NIL, is meant: its version and directory."

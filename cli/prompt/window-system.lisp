@@ -11,22 +11,6 @@
   (when (find-package :ars-magna.build)
     (uiop:symbol-call :ars-magna.build :configure)))
 
-(defun known-system-p (name)
-  (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
-    (and (ignore-errors (asdf:find-system name nil)) t)))
-
-(defun quicklisp-file ()
-  "Return the file that makes Quicklisp known, where the user has installed it, or NIL."
-  (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
-
-(defun quicklisp-there-p ()
-  (or (find-package :quicklisp) (quicklisp-file)))
-
-(defun get-by-quicklisp ()
-  "Let Quicklisp fetch McCLIM, if need be, and load it."
-  (unless (find-package :quicklisp) (load (quicklisp-file)))
-  (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
-
 (defun call-as-in-bare-lisp (function)
   "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
 is of no interest."
@@ -46,7 +30,7 @@ of a text that says why."
 (defun load-windows (quicklisp-p)
   "Load the system of windows, and McCLIM through Quicklisp before if QUICKLISP-P."
   (when quicklisp-p
-    (call-or-say #'get-by-quicklisp
+    (call-or-say #'ars-magna.clx:get-by-quicklisp
                  "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then say ~
                   WINDOW again."))
   (call-or-say (lambda () (asdf:load-system "ars-magna/clim"))
@@ -74,8 +58,8 @@ if CLX does not work."
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
                     world here, PICTURE in a file."))
     (configure-asdf)
-    (let ((found-p (known-system-p "mcclim/looks")))
-      (unless (or found-p (quicklisp-there-p))
+    (let ((found-p (ars-magna.clx:find-library "mcclim/looks")))
+      (unless (or found-p (find-package :quicklisp) (ars-magna.clx:quicklisp-file))
         (write-string *how-to-get-windows*)
         (reject-line "No window: McCLIM is not installed; what is to be done stands above."))
       (reject-unfit-clx)
