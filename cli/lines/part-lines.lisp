@@ -4,6 +4,13 @@
 
 ;;; The layouts are those of the session in manual E.
 
+(defun write-parts (heading writer reader)
+  "Write HEADING, and by WRITER each part of the robot that READER returns."
+  (let ((robot (session-robot)))
+    (still
+      (format t "~A~%-----~%" heading)
+      (map nil writer (funcall reader robot)))))
+
 ;; As reading 203 says.
 (defun write-bin (bin)
   (put-line "~2D ~9A ~7A ~4,1F  ~{~A~^ ~}"
@@ -16,10 +23,7 @@
 (define-line "BINS" (session)
     (:seeing)
     "List the storage bins: open or closed, total and current capacity, contents."
-  (let ((robot (session-robot)))
-    (still
-      (format t "BIN STATUS TOTAL-CAP CURRENT-CAP CONTENTS~%-----~%")
-      (map nil #'write-bin (robot-bins robot)))))
+  (write-parts "BIN STATUS TOTAL-CAP CURRENT-CAP CONTENTS" #'write-bin #'robot-bins))
 
 (defun tracked-text (camera)
   "Return what CAMERA tracks, in words, or NIL."
@@ -39,10 +43,7 @@
 (define-line "CAMERAS" (session)
     (:seeing)
     "List the cameras: field of view, resolution, angle, location, what they track."
-  (let ((robot (session-robot)))
-    (still
-      (format t "CAMERA FIELD RES ANGLE~%-----~%")
-      (map nil #'write-camera (robot-cameras robot)))))
+  (write-parts "CAMERA FIELD RES ANGLE" #'write-camera #'robot-cameras))
 
 (defun write-hand (hand)
   (put-line "~6A ~7A ~14A ~@[~A~]"
@@ -54,7 +55,4 @@
 (define-line "HANDS" (session)
     (:seeing)
     "List the hands: strength, what they hold, location."
-  (let ((robot (session-robot)))
-    (still
-      (format t "HAND STRENGTH GRASPING~%-----~%")
-      (map nil #'write-hand (robot-hands robot)))))
+  (write-parts "HAND STRENGTH GRASPING" #'write-hand #'robot-hands))
