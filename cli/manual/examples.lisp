@@ -35,16 +35,11 @@ variables of its own. ID is that of the heading that it is under."
 
 (defun names-alone (tokens)
   "Return the names in TOKENS, a heading or paragraph, if there is nothing else in it."
-  (let ((codes '()) (others '()))
-    (loop with rest = (rest (butlast tokens))
-          while rest
-          do (if (tag-called-p "code" (first rest))
-                 (multiple-value-bind (element left) (element-at rest)
-                   (push (first-name (text-of element)) codes)
-                   (setf rest left))
-                 (push (pop rest) others)))
-    (when (every (lambda (other) (string= "" (string-trim '(#\Space #\, #\Newline) other))) others)
-      (reverse codes))))
+  (flet ((code-p (token) (tag-called-p "code" token)))
+    (loop for part in (parts-of (rest (butlast tokens)) #'code-p)
+          if (code-p (first part)) collect (first-name (text-of part))
+          else unless (string= "" (string-trim '(#\Space #\, #\Newline) (first part)))
+            do (return nil))))
 
 (defun name-in-bold (tokens)
   "Return the name that TOKENS, an element in bold, are about, if it is code alone, or NIL."
@@ -164,24 +159,14 @@ with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found,
 
 (defun examples-of-page (page)
   "Return the examples on PAGE, in order. Names that follow each other share what follows them."
-  (let ((walk (make-walk :page page :heading (list 1 "" (page-title page))))
-        (rest (page-tokens page)))
-    (flet ((pass (function)
-             (multiple-value-bind (element left) (element-at rest)
-               (funcall function element)
-               (setf rest left))))
-      (loop while rest
-            do (let ((token (first rest)))
-                 (cond ((heading-level token)
-                        (pass (lambda (element) (pass-heading walk element))))
-                       ((tag-called-p "p" token)
-                        (pass (lambda (element)
-                                (take-names walk (or (names-alone element)
-                                                     (names-in-bold element))
-                                            :keep t))))
-                       ((tag-called-p "pre" token)
-                        (pass (lambda (element) (pass-block walk element))))
-                       (t (pop rest))))))
+  (let ((walk (make-walk :page page :heading (list 1 "" (page-title page)))))
+    (flet ((wanted-p (token)
+             (or (heading-level token) (member (tag-name token) '("p" "pre") :test #'equal))))
+      (dolist (part (parts-of (page-tokens page) #'wanted-p))
+        (cond ((heading-level (first part)) (pass-heading walk part))
+              ((tag-called-p "pre" (first part)) (pass-block walk part))
+              ((tag-called-p "p" (first part))
+               (take-names walk (or (names-alone part) (names-in-bold part)) :keep t)))))
     (reverse (walk-examples walk))))
 
 (defun read-examples (pages)

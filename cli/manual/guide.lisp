@@ -105,21 +105,14 @@ HTML of its Markdown, its headings with anchors."
                       token))))
 
 (defun headings (tokens)
-  "Return lists (level id text) for the headings in TOKENS, in order."
-  (loop for rest on tokens
-        for token = (first rest)
-        when (and (heading-level token) (attribute-value "id" token))
-          collect (list (heading-level token) (attribute-value "id" token)
-                        (text-of (element-at rest)))))
-
-(defun sections (tokens)
-  "Return lists (id text words) for the headings in TOKENS, in order: WORDS is the text below."
+  "Return lists (level id text words) for the headings in TOKENS, in order: WORDS is the text below."
   (loop for rest on tokens
         for token = (first rest)
         when (and (heading-level token) (attribute-value "id" token))
           collect (let* ((heading (element-at rest))
                          (below (nthcdr (length heading) rest)))
-                    (list (attribute-value "id" token)
+                    (list (heading-level token)
+                          (attribute-value "id" token)
                           (text-of heading)
                           (text-of (subseq below 0 (position-if #'heading-level below)))))))
 

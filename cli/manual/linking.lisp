@@ -18,20 +18,13 @@
 (defun linked-tokens (tokens page book)
   "Return TOKENS, of PAGE, with addresses as they are in the manual, and names that lead to their
 entries."
-  (loop with rest = tokens
-        while rest
-        append (flet ((change (function)
-                        (multiple-value-bind (element left) (element-at rest)
-                          (setf rest left)
-                          (funcall function element))))
-                 (let ((token (first rest)))
-                   (cond ((tag-called-p "pre" token)
-                          (change (lambda (element) (linked-block element book))))
-                         ((tag-called-p "code" token)
-                          (change (lambda (element) (linked-code element book))))
-                         ((tag-called-p "a" token)
-                          (change (lambda (element) (linked-anchor element page book))))
-                         (t (list (linked-picture (pop rest) page book))))))))
+  (flet ((linked-p (token) (member (tag-name token) '("pre" "code" "a") :test #'equal)))
+    (loop for part in (parts-of tokens #'linked-p)
+          for token = (first part)
+          append (cond ((tag-called-p "pre" token) (linked-block part book))
+                       ((tag-called-p "code" token) (linked-code part book))
+                       ((tag-called-p "a" token) (linked-anchor part page book))
+                       (t (list (linked-picture token page book)))))))
 
 (defun linked-anchor (element page book)
   "Return the tokens of ELEMENT, a link on PAGE, leading to where that is in the manual."

@@ -72,6 +72,16 @@ that follow it."
           until (zerop depth)
           finally (return (values element (rest rest))))))
 
+(defun parts-of (tokens whole-p)
+  "Return TOKENS in lists: the elements of whose first tag WHOLE-P is true, other tokens alone."
+  (loop with rest = tokens
+        while rest
+        collect (if (funcall whole-p (first rest))
+                    (multiple-value-bind (element left) (element-at rest)
+                      (setf rest left)
+                      element)
+                    (list (pop rest)))))
+
 (defun text-of (tokens)
   "Return the text in TOKENS, without their tags."
   (unescaped (format nil "~{~A~}" (remove-if #'tag-p tokens))))

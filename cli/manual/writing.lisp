@@ -28,7 +28,7 @@
 
 (defun page-rows (page)
   "Return rows for the headings of PAGE; with the words below them if that is to be read."
-  (loop for (id text words) in (sections (page-tokens page))
+  (loop for (nil id text words) in (headings (page-tokens page))
         collect (index-row text (page-title page) (format nil "~A#~A" (page-file page) id) ""
                            (if (member (page-part page) '(:learning :guide))
                                (format nil "~{~A~^ ~}" (words-of words))
