@@ -63,11 +63,7 @@ NIL where nothing was painted."
 
 (defun unpainted-text (text)
   "Return TEXT without what PAINT has put into it."
-  (with-output-to-string (out)
-    (loop for start = 0 then (1+ (or (position #\m text :start escape) (1- (length text))))
-          for escape = (position +escape+ text :start start)
-          do (write-string text out :start start :end escape)
-          while escape)))
+  (format nil "~:{~A~}" (painted-spans text)))
 
 ;;; Is it wanted?
 
