@@ -2,18 +2,6 @@
 
 (in-package :ars-magna.cli)
 
-(defun call-telling-frames (session function)
-  "Call FUNCTION, which draws frames of the current run, and say at the terminal of SESSION how far
-that has come."
-  (let ((end (simulation-tick (current-simulation))))
-    (call-with-progress
-     (lambda (progress)
-       (let ((*frame-hook* (lambda (tick)
-                             (note-progress progress "Tick ~D of ~D. Control-C stops it." tick
-                                            end))))
-         (funcall function)))
-     (session-console session) (session-terminal-p session))))
-
 (define-line "FILM" (session (file :file "a name that ends in .html or .svg")
                              (what :rest "pixels to a cell, names of layers; BARE; ANYWAY"
                                    :optional))
@@ -23,10 +11,11 @@ be played, stopped and gone through, or an animated picture. What robots grasped
 stowed, which commands and plans failed, and errors in your code are marked. The words after FILE
 are those of PICTURE, and ANYWAY: also if what is defined is not what the run began with."
   (check-run)
-  (let* ((words (words-in (or what "")))
+  (let* ((words (split-words (or what "")))
          (others (remove "ANYWAY" words :test #'string-equal))
          (options (picture-options (format nil "~{~A~^ ~}" others) "FILM")))
-    (flet ((save ()
+    (flet ((save (*frame-hook*)
              (apply #'save-animation nil (path-called file)
                     :anyway (/= (length words) (length others)) options)))
-      (format t "~A~%" (native-name (call-telling-frames session #'save))))))
+      (format t "~A~%" (native-name (call-telling-ticks
+                                     #'save session (simulation-tick (current-simulation))))))))

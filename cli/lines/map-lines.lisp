@@ -20,19 +20,19 @@ lines; NIL if there is none."
   "Return the words that MAP understands: its own, and what PICTURE calls the same."
   (mapcar #'symbol-name (append (text-layers) '(:legend) (mapcar #'layer-named (text-layers)))))
 
-(defun map-word (text)
-  "Return the keyword of one of WORDS-OF-MAP, the one that begins with TEXT, as TEXT-MAP calls it.
-Signals BAD-LINE if there is none."
-  (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word))
-                       (words-of-map))))
+(defun word-meant (text words line takes)
+  "Return the keyword of the one of WORDS that begins with TEXT, which was typed after LINE. Signals
+BAD-LINE if there is none; TAKES is a control string that says what LINE takes besides WORDS."
+  (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word)) words)))
     (unless word
-      (reject-line "MAP does not know ~A.~@[ Did you mean ~A?~] It takes a radius, or LEFT TOP ~
-                    RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}."
-                   text (nearest-name text (words-of-map)) (words-of-map)))
-    (text-layer-named (make-keyword word))))
+      (reject-line "~A does not know ~A.~@[ Did you mean ~A?~] It takes ~?." line text
+                   (nearest-name text words) takes (list words)))
+    (make-keyword word)))
 
-(defun words-in (text)
-  (remove "" (uiop:split-string text :separator '(#\Space #\Tab)) :test #'string=))
+(defun map-word (text)
+  "Return the keyword of one of WORDS-OF-MAP, the one that begins with TEXT, as TEXT-MAP calls it."
+  (text-layer-named (word-meant text (words-of-map) "MAP"
+                                "a radius, or LEFT TOP RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}")))
 
 (defun number-typed (text)
   "Return the number that TEXT is, or NIL."
@@ -59,7 +59,7 @@ Signals BAD-LINE if there is none."
 
 (defun map-options (text)
   "Return as options of TEXT-MAP what TEXT, as typed after MAP, asks for."
-  (loop for word in (words-in (or text ""))
+  (loop for word in (split-words (or text ""))
         for number = (number-typed word)
         if number collect number into numbers
         else collect (map-word word) into words

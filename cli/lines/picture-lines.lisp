@@ -10,20 +10,13 @@ default; and what MAP calls the same."
   (mapcar #'symbol-name (append (picture-layers) '(:bare) (text-layers))))
 
 (defun picture-word (text line)
-  "Return the keyword of PICTURE-WORDS that begins with TEXT, which was typed after LINE, a command.
-Signals BAD-LINE if there is none."
-  (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word))
-                       (picture-words))))
-    (unless word
-      (reject-line "~A does not know ~A.~@[ Did you mean ~A?~] It takes a file, a scale, and ~
-                    words: ~{~A~^, ~}."
-                   line text (nearest-name text (picture-words)) (picture-words)))
-    (layer-named (make-keyword word))))
+  "Return the layer that TEXT, one of PICTURE-WORDS or its beginning, means after LINE."
+  (layer-named (word-meant text (picture-words) line "a file, a scale, and words: ~{~A~^, ~}")))
 
 (defun picture-options (text &optional (line "PICTURE"))
   "Return as options of SAVE-PICTURE what TEXT, as typed after LINE and the name of the file, asks
 for."
-  (loop for word in (words-in (or text ""))
+  (loop for word in (split-words (or text ""))
         for number = (number-typed word)
         if number collect number into numbers
         else collect (picture-word word line) into words

@@ -183,19 +183,25 @@ give one a new VALUE."
         ((string-equal word "anyway") t)
         (t (reject-line "REPLAY does not know ~A. After the file you may say ANYWAY." word))))
 
+(defun call-telling-ticks (function session end)
+  "Call FUNCTION, which goes through ticks up to END, with a function of a tick that says at the
+terminal of SESSION how far that is. Return the values of FUNCTION."
+  (let ((progress (and (session-terminal-p session)
+                       (make-progress-line (session-console session)))))
+    (unwind-protect
+         (funcall function (lambda (tick)
+                             (note-progress progress "Tick ~D of ~D. Control-C stops it." tick end)))
+      (when progress (end-progress progress)))))
+
 (defun replay-showing (session journal anyway)
-  "Repeat JOURNAL, and say at the terminal of SESSION how far that has come. Return the tick and the
-digest that it comes to."
-  (call-with-progress
-   (lambda (progress)
-     (call-with-replay (lambda () (values (simulation-tick *simulation*) (state-digest)))
-                       journal
-                       :anyway anyway
-                       :observer (lambda (simulation)
-                                   (note-progress progress "Tick ~D of ~D. Control-C stops it."
-                                                  (simulation-tick simulation)
-                                                  (journal-end journal)))))
-   (session-console session) (session-terminal-p session)))
+  "Repeat JOURNAL. Return the tick and the digest that it comes to."
+  (flet ((repeat (tell)
+           (call-with-replay (lambda () (values (simulation-tick *simulation*) (state-digest)))
+                             journal
+                             :anyway anyway
+                             :observer (lambda (simulation)
+                                         (funcall tell (simulation-tick simulation))))))
+    (call-telling-ticks #'repeat session (journal-end journal))))
 
 (define-line "REPLAY" (session (file :file "the name of a file that SAVE-JOURNAL wrote")
                                (anyway :token "the word ANYWAY" :optional))

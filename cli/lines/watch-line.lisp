@@ -99,7 +99,7 @@ NIL, or a key is pressed, or there is something else to be done. True if it was 
 
 (defun take-count (text)
   "Return the number that TEXT begins with, or NIL, and what follows it."
-  (let* ((words (words-in (or text "")))
+  (let* ((words (split-words (or text "")))
          (count (and words (number-typed (first words)))))
     (when (and count (not (whole-p count 1)))
       (reject-line "WATCH cannot show ~A ticks. Give a whole number, from 1 to 1e9." count))

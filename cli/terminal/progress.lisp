@@ -27,13 +27,6 @@ if it is time to."
   "Let nothing stand in the line of PROGRESS any more."
   (when (plusp (progress-line-width progress)) (write-over progress "")))
 
-(defun call-with-progress (function console wanted-p)
-  "Call FUNCTION with a line of CONSOLE that it may let say how far it has come, or with NIL unless
-WANTED-P; then the line is as it was. Return what FUNCTION returns."
-  (let ((progress (and wanted-p (make-progress-line console))))
-    (unwind-protect (funcall function progress)
-      (when progress (end-progress progress)))))
-
 ;;; Beside it.
 
 (defun say (control &rest arguments)
