@@ -18,11 +18,6 @@ their names in lower case. FILES are the project's files that are copied beside 
       (unless (gethash (entry-key entry) table)
         (setf (gethash (entry-key entry) table) entry)))))
 
-(defun read-book ()
-  "Return the book that the project's pages and the definitions in this Lisp make."
-  (let ((pages (read-guide)) (entries (all-entries)))
-    (make-book pages entries (read-examples pages) (table-of-entries entries))))
-
 (defun entry-called (name book)
   "Return the entry of BOOK that NAME leads to, or NIL."
   (values (gethash (string-downcase name) (book-table book))))
@@ -31,10 +26,6 @@ their names in lower case. FILES are the project's files that are copied beside 
   (find source (book-pages book) :key #'page-source :test #'string=))
 
 ;;; Addresses. What a page of the project refers to is another page, or a file that is copied.
-
-(defun outside-p (address)
-  "True if ADDRESS is of something elsewhere."
-  (or (search "://" address) (starts-with-subseq "mailto:" address)))
 
 (defun without-dots (name)
   "Return NAME, of a file, without steps to directories above."
@@ -77,7 +68,7 @@ first page."
 (defun new-address (address page book)
   "Return where ADDRESS, as PAGE of the project has it, leads in the manual."
   (multiple-value-bind (file place) (split-address address)
-    (cond ((outside-p address) address)
+    (cond ((or (search "://" address) (starts-with-subseq "mailto:" address)) address)
           ((string= "" file) place)
           (t (let* ((name (name-from (page-source page) file))
                     (other (page-of-source name book)))

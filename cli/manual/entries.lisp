@@ -64,17 +64,13 @@ it is, FILE where it is defined."
 (defun entry-sentence (entry)
   "Return the first sentence of what ENTRY says."
   (let* ((text (entry-text entry))
-         (end (search-end-of-sentence text)))
+         (end (loop for i = (position #\. text) then (position #\. text :start (1+ i))
+                    while i
+                    when (or (= (1+ i) (length text))
+                             (find (char text (1+ i)) '(#\Space #\Newline)))
+                      return (1+ i)
+                    finally (return (length text)))))
     (one-line (subseq text 0 end))))
-
-(defun search-end-of-sentence (text)
-  "Return where the first sentence of TEXT ends."
-  (loop for i = (position #\. text) then (position #\. text :start (1+ i))
-        while i
-        when (or (= (1+ i) (length text))
-                 (find (char text (1+ i)) '(#\Space #\Newline)))
-          return (1+ i)
-        finally (return (length text))))
 
 ;;; What is known of symbols.
 

@@ -178,9 +178,6 @@ with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found,
 (defparameter *longest-example* 30
   "How many lines a block may have that is shown for a name that only occurs in it.")
 
-(defun line-count (text)
-  (count #\Newline text))
-
 (defun words-of-kind (example kind)
   "Return the words of EXAMPLE that can stand for what is of KIND: :TYPED, :CALLED or :WRITTEN."
   (ecase kind

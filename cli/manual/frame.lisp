@@ -57,12 +57,9 @@
 
 ;;; The first page.
 
-(defun pages-in-part (part book)
-  (remove part (book-pages book) :key #'page-part :test-not #'eq))
-
 (defun page-links (part book)
   "Return the HTML of a list of links to the pages of BOOK in PART."
-  (list-html (loop for page in (pages-in-part part book)
+  (list-html (loop for page in (remove part (book-pages book) :key #'page-part :test-not #'eq)
                    collect (link (page-file page) (escaped (page-title page))))))
 
 (defun chapters-in (book)

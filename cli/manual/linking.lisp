@@ -57,10 +57,6 @@ entries."
        (some #'alpha-char-p word)
        (notany #'lower-case-p word)))
 
-(defun without-stops (word)
-  "Return WORD without the signs of punctuation at its end."
-  (string-right-trim ".:" word))
-
 (defun citation-address (word next book)
   "Return where WORD, if it cites NEXT, a section of the manual of 1992 or a reading, leads."
   (let ((number (parse-integer next :junk-allowed t)))
@@ -81,16 +77,12 @@ entries."
         collect (subseq text word end)
         do (setf start end)))
 
-(defun own-word-p (name own)
-  "True if NAME is one of the names OWN, in lower case, of the arguments of what is told of."
-  (member name own :test #'string-equal))
-
 (defun word-html (word book own)
   "Return the HTML of WORD, in prose of something with arguments called OWN."
-  (let ((name (without-stops word)))
+  (let ((name (string-right-trim ".:" word)))
     (cond ((and (or (loud-name-p name)
                     (and (< 1 (length name)) (char= #\: (char name 0))))
-                (not (own-word-p name own)))
+                (not (member name own :test #'string-equal)))
            (format nil "~A~A" (linked-name name (escaped name) book)
                    (escaped (subseq word (length name)))))
           (t (escaped word)))))

@@ -27,7 +27,7 @@
 
 (defun shown-p (example named-p)
   "True if EXAMPLE is to be shown with the entry, which it names if NAMED-P is true."
-  (or named-p (<= (line-count (example-text example)) *longest-example*)))
+  (or named-p (<= (count #\Newline (example-text example)) *longest-example*)))
 
 (defun kind-of-words (entry)
   "Return as what the name of ENTRY stands in examples, for WORDS-OF-KIND."
@@ -73,20 +73,16 @@ defined there, further up."
   "Return the headings of the sections of ENTRIES, in order."
   (remove-duplicates (mapcar #'entry-section entries) :test #'string= :from-end t))
 
-(defun name-links (entries)
-  "Return the HTML of links to ENTRIES, on their page."
-  (format nil "<p class=\"names\">~{~A~^, ~}</p>~%"
-          (mapcar (lambda (entry)
-                    (link (format nil "#~A" (anchor (entry-name entry)))
-                          (escaped (entry-name entry))))
-                  entries)))
-
 (defun section-html (section entries book)
   "Return the HTML of SECTION of a chapter, which has ENTRIES."
   (format nil "~@[~A~]~A~{~A~}"
           (and (string/= "" section)
                (format nil "<h2 id=\"section-~A\">~A</h2>~%" (anchor section) (escaped section)))
-          (name-links entries)
+          (format nil "<p class=\"names\">~{~A~^, ~}</p>~%"
+                  (mapcar (lambda (entry)
+                            (link (format nil "#~A" (anchor (entry-name entry)))
+                                  (escaped (entry-name entry))))
+                          entries))
           (mapcar (lambda (entry) (entry-html entry book)) entries)))
 
 (defun write-chapter (out chapter book)

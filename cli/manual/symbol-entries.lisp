@@ -57,15 +57,11 @@
         ((string= "ARS-WORLDS" (package-name (symbol-package symbol))) :worlds-names)
         (t :names)))
 
-(defun layer-of (symbol)
-  "Return the name of the layer that SYMBOL is from, as a heading."
-  (let* ((package (package-name (symbol-package symbol)))
-         (start (if (starts-with-subseq "ARS-MAGNA." package) (length "ARS-MAGNA.") 0)))
-    (string-downcase (subseq package start))))
-
 (defun section-of-symbol (symbol chapter)
   (case chapter
-    (:names (layer-of symbol))
+    (:names (let* ((package (package-name (symbol-package symbol)))
+                   (start (if (starts-with-subseq "ARS-MAGNA." package) (length "ARS-MAGNA.") 0)))
+              (string-downcase (subseq package start))))
     (:fluents (format nil "Of the ~(~A~)" (or (second (assoc symbol (all-fluent-variables)))
                                               'robot)))
     (:conditions (if (restart-name-p symbol) "Restarts" "Conditions"))
@@ -107,12 +103,6 @@ checks for tests export."
                              (exported-symbols :ars-worlds) (exported-symbols :ars-fiveam))
                      :from-end t))
 
-(defun told-elsewhere (entries)
-  "Return a table of the symbols that ENTRIES tell of."
-  (let ((table (make-hash-table :test 'eq)))
-    (dolist (entry entries table)
-      (when (entry-symbol entry) (setf (gethash (entry-symbol entry) table) t)))))
-
 (defun named-elsewhere-p (symbol entries)
   "True if SYMBOL is only a word that one of ENTRIES, of substances or place types, tells of."
   (and (null (sorts-of-symbol symbol))
@@ -120,7 +110,9 @@ checks for tests export."
 
 (defun symbol-entries (others)
   "Return entries of all users' symbols that OTHERS, entries, do not tell of."
-  (let ((told (told-elsewhere others)))
+  (let ((told (let ((table (make-hash-table :test 'eq)))
+                (dolist (entry others table)
+                  (when (entry-symbol entry) (setf (gethash (entry-symbol entry) table) t))))))
     (loop for symbol in (users-symbols)
           unless (or (gethash symbol told) (named-elsewhere-p symbol others))
             collect (symbol-entry symbol))))

@@ -70,7 +70,8 @@
 first page."
   (let ((directory (uiop:ensure-directory-pathname
                     (merge-pathnames (path-called directory) (base-directory))))
-        (book (read-book)))
+        (book (let ((pages (read-guide)) (entries (all-entries)))
+                (make-book pages entries (read-examples pages) (table-of-entries entries)))))
     (make-directories directory)
     (write-pages book directory)
     (dolist (name *own-files*)
