@@ -5,12 +5,6 @@
 ;;; What comes of an experiment is written to the standard output when it is over, and nothing else
 ;;; is; how far it has come goes to the error output.
 
-;; A shell has no prompt that would show them.
-(defun tell-doubts ()
-  "Say what is doubtful in the definitions that have been loaded."
-  (dolist (message (take-messages))
-    (say "~A" (complaint-text (message-text message)))))
-
 ;;; Values of options.
 
 (defun parse-count (text)
@@ -160,7 +154,9 @@ of what has been interrupted."
 (defun known-experiment (words)
   "Return the experiment that WORDS, a file or name and perhaps another name, stand for."
   (prog1 (apply #'experiment-called words)
-    (tell-doubts)))
+    ;; A shell has no prompt that would show what is doubtful in the definitions.
+    (dolist (message (take-messages))
+      (say "~A" (complaint-text (message-text message))))))
 
 (defun experiment-command (arguments)
   "Do what ./cli/ars-magna experiment ARGUMENTS does. Return the status to exit with."

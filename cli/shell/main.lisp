@@ -132,7 +132,12 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
   "Run the lines of SESSION as OPTIONS say."
   (let ((robot-name (robot-asked-for session options)))
     (when (option-value :json options) (write-all-as-objects session))
-    (report-beginning session robot-name options)
+    (report-object (session-account session) "begin"
+                   :program (format nil "ARS MAGNA ~A" *version*)
+                   :robot (string-downcase robot-name)
+                   :world (string-downcase (map-name (world-of robot-name)))
+                   :seed (option-value :seed options 0)
+                   :rate (option-value :rate options))
     (call-typing (lambda () (run-in-world session robot-name options))
                  (session-input session))))
 
@@ -180,16 +185,13 @@ value."
          (format nil "~A only defines things. It was run as a script of lines; for the robot in ~
                       it: ars-magna --world ~:*~A." script))))))
 
-(defun usage-wanted-p (arguments)
-  (intersection arguments '("--help" "-h") :test #'string=))
-
 (defun print-usage (arguments)
   (write-string (usage-of-command (first arguments)))
   0)
 
 (defun run-arguments (arguments)
   "Do what ARGUMENTS, a list of strings, say. Return the status to exit with."
-  (cond ((usage-wanted-p arguments) (print-usage arguments))
+  (cond ((intersection arguments '("--help" "-h") :test #'string=) (print-usage arguments))
         ((equal arguments '("--version"))
          (format t "ARS MAGNA ~A~%" *version*)
          0)

@@ -50,11 +50,6 @@ is optional, an empty one stands for none.")
 (defun option-p (argument)
   (starts-with-subseq "--" argument))
 
-(defun find-option (name table)
-  (or (find name table :key #'first :test #'string=)
-      (reject-usage "~A is no option.~@[ Did you mean ~A?~]" name
-                    (nearest-name name (mapcar #'first table)))))
-
 (defun split-option (argument)
   "Return the name of the option in ARGUMENT, and its value if that follows a =."
   (let ((equals (position #\= argument)))
@@ -78,7 +73,9 @@ that are left."
 (defun read-option (argument arguments table)
   "Return a list (key value) for the option ARGUMENT, which ARGUMENTS follow, and those left."
   (multiple-value-bind (name value) (split-option argument)
-    (let ((option (find-option name table)))
+    (let ((option (or (find name table :key #'first :test #'string=)
+                      (reject-usage "~A is no option.~@[ Did you mean ~A?~]" name
+                                    (nearest-name name (mapcar #'first table))))))
       (destructuring-bind (name key parser &rest optional) option
         (declare (ignore optional))
         (when (and value (null parser)) (reject-usage "~A takes no value." name))

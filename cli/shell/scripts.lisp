@@ -23,15 +23,6 @@
   "Return a console that turns what is written to it into objects on the standard output."
   (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
 
-(defun report-beginning (session robot-name options)
-  "Report what SESSION begins with, if it reports by objects."
-  (report-object (session-account session) "begin"
-                 :program (format nil "ARS MAGNA ~A" *version*)
-                 :robot (string-downcase robot-name)
-                 :world (string-downcase (map-name (world-of robot-name)))
-                 :seed (option-value :seed options 0)
-                 :rate (option-value :rate options)))
-
 (defun report-end (session status)
   "Report that SESSION is over, and the process will exit with STATUS. Return the status."
   (let ((status (if (console-trouble (session-console session)) (max 1 status) status)))

@@ -50,20 +50,17 @@
       (read-results (first words))
       (results-of (known-experiment words) options)))
 
-(defun comparison-of-words (words options measure)
-  (destructuring-bind (first second &rest where) words
-    (if where
-        (compare-conditions (results-meant where options)
-                            (condition-word first) (condition-word second) :measure measure)
-        (compare-results first second :measure measure))))
-
 (defun comparison-wanted (words options)
   "Return the comparison of what WORDS and OPTIONS say, printed."
   (let ((measure (option-values :measure options)) (factor (option-value :by options)))
     (if factor
         (compare-levels (results-meant words options) factor
                         :against (option-value :against options) :measure measure)
-        (comparison-of-words words options measure))))
+        (destructuring-bind (first second &rest where) words
+          (if where
+              (compare-conditions (results-meant where options)
+                                  (condition-word first) (condition-word second) :measure measure)
+              (compare-results first second :measure measure))))))
 
 (defun check-words (words options)
   "Signal USAGE-ERROR unless there are as many WORDS as the command COMPARE takes with OPTIONS."
