@@ -203,30 +203,23 @@ for it.")
       (push (typed-text-of stream) (slot-value stream to))
       (change-to stream entry (length entry)))))
 
-(defun go-up (stream)
-  "Go up a line in what is typed; from the first, to the entry of the history before it."
+(define-action (:up :control-p) (stream)
+  "Go back in the history."
   (let* ((line (line-of stream))
          (start (line-start (drawn-line-text line) (drawn-line-point line))))
     (if (zerop start)
         (show-entry stream 'older 'newer)
-        (change-to stream (drawn-line-text line) (1- start)))))
+        (change-to stream (drawn-line-text line) (1- start))))
+  nil)
 
-(defun go-down (stream)
+(define-action (:down :control-n) (stream)
+  "Go on in the history."
   (let* ((line (line-of stream))
          (text (drawn-line-text line))
          (end (line-end text (drawn-line-point line))))
     (if (= end (length text))
         (show-entry stream 'newer 'older)
-        (change-to stream text (line-end text (1+ end))))))
-
-(define-action (:up :control-p) (stream)
-  "Go back in the history."
-  (go-up stream)
-  nil)
-
-(define-action (:down :control-n) (stream)
-  "Go on in the history."
-  (go-down stream)
+        (change-to stream text (line-end text (1+ end)))))
   nil)
 
 ;;; Reading a line.

@@ -34,15 +34,12 @@ end, if that is NIL."))
     (when line (extend-text (grown-text stream) line))
     (and line t)))
 
-(defun take-grown-char (stream)
-  (let ((text (grown-text stream)) (position (grown-position stream)))
-    (incf (grown-position stream))
-    (if (< position (length text)) (char text position) #\Newline)))
-
 (defmethod stream-read-char ((stream growing-text))
   (if (or (<= (grown-position stream) (length (grown-text stream)))
           (next-line-p stream))
-      (take-grown-char stream)
+      (let ((text (grown-text stream)) (position (grown-position stream)))
+        (incf (grown-position stream))
+        (if (< position (length text)) (char text position) #\Newline))
       :eof))
 
 (defmethod stream-unread-char ((stream growing-text) char)

@@ -65,10 +65,6 @@ and goes on to the end of TEXT if there is no second one."
         (if quote (1+ quote) (length text)))
       (word-end text start)))
 
-(defun without-quotes (token)
-  "Return TOKEN without the double quotes around it, if any."
-  (string-trim "\"" token))
-
 (defun split-line (text)
   "Return the first word of TEXT and what follows it."
   (let* ((start (position-if-not #'blank-p text))

@@ -44,12 +44,6 @@ only one.")
                    (edited-console stream))
       (finish-output (edited-console stream)))))
 
-(defun list-choices-once (stream texts)
-  "Show TEXTS, unless they have been shown and nothing has been typed since."
-  (unless (equal texts (edited-listed stream))
-    (list-choices stream texts)
-    (setf (edited-listed stream) texts)))
-
 ;;; Completing.
 
 (defun replace-typed (stream start string)
@@ -70,7 +64,10 @@ and AFTER if it is one; list them if that is no more than there is."
            (replace-typed stream start
                           (uiop:strcat common (if (ends-like-p common "/") "" after))))
           ((< (length typed) (length common)) (replace-typed stream start common))
-          (t (list-choices-once stream texts)))))
+          ;; What has been listed, with nothing typed since, is not listed again.
+          ((not (equal texts (edited-listed stream)))
+           (list-choices stream texts)
+           (setf (edited-listed stream) texts)))))
 
 (define-action (:tab) (stream)
   "Complete what was begun."

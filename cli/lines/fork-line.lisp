@@ -12,9 +12,6 @@
     (keep-forks t fork)
     fork))
 
-(defun leave-fork ()
-  (throw 'left-fork t))
-
 (defun read-in-fork (session)
   "Read lines of SESSION until one leads out of the fork that is current, or it is over."
   (loop until (session-over-p session)
@@ -71,7 +68,7 @@ as it might. The run itself waits. FORK OFF leads back to it, as it was; the cop
         ((null seed) (go-to-fork session nil))
         ((string-equal seed "off")
          (when (zerop (session-forks session)) (reject-line "The prompt is in no fork."))
-         (leave-fork))
+         (throw 'left-fork t))
         (t (go-to-fork session (or (ignore-errors (parse-integer seed))
                                    (reject-line "The seed of a fork is an integer, not ~A."
                                                 seed))))))

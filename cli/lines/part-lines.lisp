@@ -25,12 +25,6 @@
     "List the storage bins: open or closed, total and current capacity, contents."
   (write-parts "BIN STATUS TOTAL-CAP CURRENT-CAP CONTENTS" #'write-bin #'robot-bins))
 
-(defun tracked-text (camera)
-  "Return what CAMERA tracks, in words, or NIL."
-  (when (camera-tracks camera)
-    (let ((designator (designator-status (camera-tracks camera))))
-      (format nil "~A designator @ ~A" (kind-text designator) (bearing-text designator)))))
-
 (defun write-camera (camera)
   (put-line "~4A ~,2F ~3A~6,2F ~@[~A ~]~@[Tracking ~A~]"
               (camera-index camera)
@@ -38,7 +32,10 @@
               (camera-resolution camera)
               (hundredths (camera-angle camera))
               (location-text camera)
-              (tracked-text camera)))
+              (when (camera-tracks camera)
+                (let ((designator (designator-status (camera-tracks camera))))
+                  (format nil "~A designator @ ~A" (kind-text designator)
+                          (bearing-text designator))))))
 
 (define-line "CAMERAS" (session)
     (:seeing)

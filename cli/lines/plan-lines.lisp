@@ -144,29 +144,23 @@ plan would write it: few symbols have a package."
                               (report-failure failure)
                               (message-text (first (take-messages)))))))
 
-(defun plans-text (plans)
-  "Return PLANS, those under way, as trees."
-  (call-reading-plan (task-name (first plans))
-                     (lambda () (with-output-to-string (out) (print-plans out)))))
-
 (define-line "PLANS" (session) (:planning)
     "Show the plans under way, as trees of what they do and wait for; if the last to end failed,
 also where and why."
   (let ((plans (plans)))
     (if plans
-        (write-string (plans-text plans))
+        (write-string (call-reading-plan (task-name (first plans))
+                                         (lambda ()
+                                           (with-output-to-string (out) (print-plans out)))))
         (format t "No plan is under way. PLAN lists the plans that there are.~%")))
   (when (session-failure session)
     (destructuring-bind (failure name) (session-failure session)
       (format t "The last plan failed: ~A~&" (failure-report failure name)))))
 
-(defun plan-numbered (number)
-  (or (find number (plans) :key #'task-serial)
-      (reject-line "No plan ~D is under way. PLANS shows which are." number)))
-
 (define-line "STOP-PLAN" (session (n count "the number of a plan under way" :optional))
     (:planning)
     "End the plan N, or all that are under way. What it has told the robot to do is interrupted."
   (cond ((null (plans)) (reject-line "No plan is under way."))
-        (n (end-plan (plan-numbered n)))
+        (n (end-plan (or (find n (plans) :key #'task-serial)
+                         (reject-line "No plan ~D is under way. PLANS shows which are." n))))
         (t (end-plan :all))))

@@ -5,15 +5,11 @@
 ;;; The plans that go on after that are others than those that the prompt waited for: it lets these
 ;;; go without a word, and takes up those, also when somebody rewinds by Lisp.
 
-(defun errands-in (simulation)
-  "Return the plan errands of SIMULATION whose end has not been told."
-  (with-lock (*plan-errands-lock*)
-    (remove simulation *plan-errands* :key #'plan-errand-simulation :test-not #'eq)))
-
 (defun let-errands-go (old new)
   "Say nothing of how the plans of OLD end that prompts wait for, as NEW goes on in its place."
   (declare (ignore new))
-  (dolist (errand (errands-in old))
+  (dolist (errand (with-lock (*plan-errands-lock*)
+                    (remove old *plan-errands* :key #'plan-errand-simulation :test-not #'eq)))
     (setf (plan-errand-let-go-p errand) t
           (session-after-rewind (plan-errand-session errand)) #'take-up-plans)))
 

@@ -36,17 +36,13 @@
         (pause-now (live-simulation)))
     (format t "~A~%" (time-text session simulation))))
 
-(defun start-again (simulation)
-  "Let the clock of SIMULATION, which STOP-SIMULATOR has stopped, go on as it was."
-  (start-clock simulation :rate (or (simulation-rate simulation) *default-rate*)
-                          :real (eq :real (simulation-thinking simulation))))
-
 (defun resume-here (session)
   "Let time go on in the run of SESSION, also if its clock was stopped."
   (check-run)
   (let ((simulation (current-simulation)))
     (cond ((or (live-p simulation) (headless-p simulation)) (resume (live-simulation)))
-          (t (start-again simulation)
+          (t (start-clock simulation :rate (or (simulation-rate simulation) *default-rate*)
+                                     :real (eq :real (simulation-thinking simulation)))
              (format t "~A~%" (time-text session simulation))))))
 
 (define-line "RESUME" (session) (:running)

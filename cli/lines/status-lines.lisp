@@ -24,9 +24,6 @@
         (write-descriptor data)
         (put-line "  ~{~:(~A~)~^ ~}" data))))
 
-(defun write-position (label position)
-  (format t "~19A(~{~,2F~^,~})~%" label (mapcar #'hundredths position)))
-
 (defun entry-text (entry control)
   "Return what ENTRY, of :UNDER-WAY or :INTERRUPTED, says, formatted by CONTROL, behind its part."
   (destructuring-bind (&key part command for by by-for tick) entry
@@ -52,7 +49,7 @@
 (defun write-status (status)
   (loop for (label key) in '(("Position:" :position) ("D Position:" :last-move)
                              ("Est D Position:" :estimated-last-move))
-        do (write-position label (getf status key)))
+        do (format t "~19A(~{~,2F~^,~})~%" label (mapcar #'hundredths (getf status key))))
   (loop for (label key) in '(("Angle:" :angle) ("Speed:" :speed) ("Turn Angle:" :turn-angle))
         do (format t "~19A~,2F~%" label (hundredths (getf status key))))
   (write-views (getf status :cameras))

@@ -2,10 +2,6 @@
 
 (in-package :ars-magna.cli)
 
-(defun point-text (x y)
-  "Return the point (X,Y) as it is typed."
-  (format nil "~A ~A" (amount-text x) (amount-text y)))
-
 (defun tell-rewound (point simulation)
   "Queue a message that the way to POINT, a text, is given up, as another run goes on in the place
 of SIMULATION."
@@ -31,7 +27,7 @@ of SIMULATION."
     "Let the robot find its way to X, Y, through doorways and round obstacles."
   (let ((errand (make-errand :name "GO-TO" :verdict-p t))
         (simulation (current-simulation))
-        (point (point-text x y))
+        (point (format nil "~A ~A" (amount-text x) (amount-text y)))
         (account (session-account session)))
     (let ((own (asker-for account)) (*asker* (asker-for account :text "GO-TO")))
       (robot-go-to (session-robot) x y

@@ -19,9 +19,11 @@
 
 (defun come-from (session old robot)
   "Let the run OLD, from which SESSION has come to ROBOT, be over, and who was there come along."
-  (note-replaced old robot)
+  (setf (gethash old *replacements*) (list (robot-simulation robot) (robot-name robot)))
   (end-left old)
-  (tell-others-of-run session old))
+  (dolist (other (remove-if #'session-place (remove session (sessions-hearing old))))
+    (multiple-value-bind (simulation name) (run-after old (session-robot-name other))
+      (when simulation (tell-of-run other simulation name)))))
 
 (defun start-live (session robot-name)
   "Let the world of ROBOT-NAME start anew, at the pace of the run that SESSION is in; that ends."

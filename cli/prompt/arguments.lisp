@@ -147,7 +147,7 @@ that a quote before it says nothing."
   (typecase (slot-type slot)
     (rest-type (values (string-trim " " (subseq text start)) (length text)))
     (keyword (let ((end (token-end text start)))
-               (values (token-value (slot-type slot) (without-quotes (subseq text start end)))
+               (values (token-value (slot-type slot) (string-trim "\"" (subseq text start end)))
                        end)))
     (t (multiple-value-bind (datum end) (read-number-or-datum slot text start line)
          (let ((value (fitting (read-argument (type-key (slot-type slot)) datum

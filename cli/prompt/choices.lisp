@@ -54,9 +54,6 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
       (mapcar #'without-directory
               (ignore-errors (append (uiop:subdirectories path) (uiop:directory-files path)))))))
 
-(defun hidden-p (name)
-  (char= #\. (char name 0)))
-
 (defmethod choices ((type (eql :file)) session typed)
   (declare (ignore session))
   (let* ((slash (position #\/ typed :from-end t))
@@ -64,7 +61,7 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
          (start (subseq typed (length directory))))
     (loop for name in (entries-of (if slash directory "./"))
           when (and (starts-with-subseq start name)
-                    (or (string/= "" start) (not (hidden-p name))))
+                    (or (string/= "" start) (char/= #\. (char name 0))))
             collect (uiop:strcat directory name))))
 
 ;;; Names of commands.

@@ -13,14 +13,10 @@
 
 ;;; What the user says.
 
-(defun nothing-to-read (session)
-  "Return a stream for questions to the user, which another thread than the prompt's cannot ask."
-  (make-two-way-stream (make-concatenated-stream) (session-console session)))
-
 (defun call-ordered (session function)
   "Call FUNCTION, ordered by SESSION, in this thread, which is not the prompt's."
   (let ((*standard-output* (session-console session))
-        (*query-io* (nothing-to-read session)))
+        (*query-io* (make-two-way-stream (make-concatenated-stream) (session-console session))))
     (with-simple-restart (end-line "End the line.")
       (call-complaining session function))))
 
@@ -124,19 +120,15 @@ comes after that."
       (when (and (session-breaks session) (not before) (not (session-over-p session)))
         (tell-break session (first (session-breaks session)))))))
 
-(defun read-lines-for (session breakage)
-  "Read lines for BREAKAGE, of another thread, until that goes on, or SESSION is over."
-  (loop while (member breakage (session-breaks session))
-        until (session-over-p session)
-        do (call-complaining session (lambda () (read-debug-line session breakage)))))
-
 (defun answer-those-before (session breakage)
   "Read lines for what has broken in other threads before BREAKAGE, which has in this one."
   (let ((breaks (copy-list (session-breaks session))))
     (when breaks (tell-waiting session breakage))
     (dolist (other breaks)
       (unless (breakage-told-p other) (tell-break session other))
-      (read-lines-for session other))))
+      (loop while (member other (session-breaks session))
+            until (session-over-p session)
+            do (call-complaining session (lambda () (read-debug-line session other)))))))
 
 (defun announce-break (session breakage)
   "Tell of BREAKAGE, of another thread than the one of SESSION: all, if it can be answered now."
@@ -165,16 +157,13 @@ windows, as somebody may wait in Lisp's own REPL meanwhile; or NIL."
        (every #'session-place sessions)
        (format nil "~A: a window asks how it goes on." (break-line (first sessions) breakage))))
 
-(defun tell-repl (sessions breakage)
-  (let ((words (words-for-repl sessions breakage)))
-    (when words (say-on-error-output words))))
-
 (defun debug-elsewhere (sessions breakage)
   "Do what the thread of one of SESSIONS orders for BREAKAGE, until that is to go on."
   (dolist (state (mapcar #'session-break-state sessions))
     (setf (break-state-others state) (append (break-state-others state) (list breakage))))
   (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
-                         (tell-repl sessions breakage)
+                         (let ((words (words-for-repl sessions breakage)))
+                           (when words (say-on-error-output words)))
                          (loop
                            (wait-on-semaphore (breakage-ordered breakage))
                            (funcall (breakage-order breakage))

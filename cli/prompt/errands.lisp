@@ -156,14 +156,10 @@ if none does."
            ;; One that STOP-SIMULATOR has stopped waits for RESUME.
            (or (session-patient-p session) (headless-p *simulation*)))))
 
-(defun heed-rewind (session)
-  "Let SESSION do what it has to if its run was rewound."
-  (let ((after-rewind (shiftf (session-after-rewind session) nil)))
-    (when after-rewind (funcall after-rewind session))))
-
 (defun catch-up (session)
   "Wait for what SESSION has issued, itself or by Lisp, if it is one that waits."
-  (heed-rewind session)
+  (let ((after-rewind (shiftf (session-after-rewind session) nil)))
+    (when after-rewind (funcall after-rewind session)))
   (if (waits-p session)
       (progn (await-errands session)
              (setf (session-lisp-p session)
@@ -203,10 +199,6 @@ function that returns what HOW-ENDED does."
     (unless (how-ended errands lisp-p)
       (dolist (errand errands) (setf (errand-apart-p errand) t))
       (lambda () (how-ended errands lisp-p)))))
-
-(defun time-stands-still-p ()
-  "True if no ticks pass by themselves."
-  (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
 
 (defun unended-p (session)
   "True if what SESSION has issued, itself or by Lisp, has not ended, as time stands still."

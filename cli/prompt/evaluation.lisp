@@ -7,9 +7,6 @@
 ;;; on over lines. Numbers typed are exact, double-floats. What runs, files that it loads included,
 ;;; finds what Lisp has for it everywhere else.
 
-(defun blank-from-p (text start)
-  (= (skip-blanks text start) (length text)))
-
 (defvar *undefined* '()
   "Lists (name kind new-p) of what the compiler has found undefined in the forms at hand, newest
 first. NEW-P is true if it had no value then.")
@@ -159,7 +156,7 @@ that could not be read."
         with start = 0
         with form
         do (setf (values text position) (skip-comments session text position))
-        until (blank-from-p text position)
+        until (= (skip-blanks text position) (length text))
         do (check-parenthesis text position)
            (setf start position
                  (values form position text) (read-form session text position))

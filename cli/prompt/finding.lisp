@@ -88,11 +88,6 @@ such plan."
     (and line (format nil "~A is a command of this prompt, typed without parentheses: ~A."
                       (line-name line) (usage line)))))
 
-(defun lisp-advice (name)
-  "Return in a sentence how the function or macro of ours called NAME, a string, is typed; or NIL."
-  (and (ours-called name)
-       (format nil "~A is Lisp, in parentheses: (~(~:*~A~) ...)." name)))
-
 (defun parameter-advice (name)
   "Return in a sentence how the parameter called NAME is set, or NIL if there is no such parameter."
   (let ((parameter (find-parameter name nil)))
@@ -107,7 +102,8 @@ such plan."
 
 (defun reject-unknown (name)
   (let ((hint (or (hint-for name) (plan-advice name) (parameter-advice name) (call-advice name)
-                  (lisp-advice name))))
+                  (and (ours-called name)
+                       (format nil "~A is Lisp, in parentheses: (~(~:*~A~) ...)." name)))))
     (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
                  name hint
                  (and (null hint)

@@ -28,16 +28,9 @@ lines; or NIL."
   (let ((text (foreign-text path)))
     (when text (reject-line "~A" text))))
 
-(defun line-name-p (form)
-  "True if FORM, from a file, is the name of a line command, and means nothing to Lisp."
-  (and (symbolp form)
-       (not (boundp form))
-       (line-called (symbol-name form))
-       t))
-
 (defun check-form-of-file (form path)
   "Signal BAD-LINE if FORM, from the file PATH, which is being loaded, is the beginning of a line."
-  (when (line-name-p form)
+  (when (and (symbolp form) (not (boundp form)) (line-called (symbol-name form)))
     (reject-line "~A is a command of the prompt. ~A" form (script-text path))))
 
 (defun start-of-form (text start)

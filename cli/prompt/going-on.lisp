@@ -10,7 +10,7 @@
     (cond ((timeline-fork-p (timeline-of simulation))
            (format nil "a fork of ~A at tick ~D" (simulation-name simulation)
                    (simulation-tick simulation)))
-          (visit (words-for-visit visit))
+          (visit (trial-words (visit-experiment visit) (visit-condition visit) (visit-trial visit)))
           ((and *trial-replayed* (headless-p simulation)) *trial-replayed*)
           (t (simulation-name simulation)))))
 
@@ -45,10 +45,6 @@
 (defvar *replacements* (make-hash-table :test 'eq :weakness :key :synchronized t)
   "For each run that WORLD has led out of, the one that it has led to and the name of the robot
 there, in a list.")
-
-(defun note-replaced (old robot)
-  "Note that WORLD has led from the run OLD to ROBOT."
-  (setf (gethash old *replacements*) (list (robot-simulation robot) (robot-name robot))))
 
 (defun run-of-robot (name)
   "Return the live run that the robot called NAME is in now, or NIL."
@@ -87,13 +83,6 @@ to that. If it listens there already, it knows. Any thread may ask."
     (say-in session (format nil "From here on: ~A in ~A.~%" robot-name
                             (words-for-run simulation)))
     (listen-instead session simulation)))
-
-(defun tell-others-of-run (session old)
-  "Let the other sessions that were in OLD, which SESSION has ended, know where they go on. Those of
-windows hear it from these."
-  (dolist (other (remove-if #'session-place (remove session (sessions-hearing old))))
-    (multiple-value-bind (simulation name) (run-after old (session-robot-name other))
-      (when simulation (tell-of-run other simulation name)))))
 
 ;;; Going there.
 

@@ -19,18 +19,14 @@ could be typed either: so signal that."
   (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
                (session-console session)))
 
-(defun complain-of (session condition)
-  "Show CONDITION as an error in SESSION."
-  (handler-case (complain session (format nil "~A~@[ ~A~]" (condition-text condition)
-                                          (advice-on-function condition)))
-    (error (trouble) (complain-of-printing session trouble))))
-
 (defun call-complaining (session function)
   "Call FUNCTION; complain of what goes wrong in it."
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
       (regain-room condition)
-      (complain-of session condition))))
+      (handler-case (complain session (format nil "~A~@[ ~A~]" (condition-text condition)
+                                              (advice-on-function condition)))
+        (error (trouble) (complain-of-printing session trouble))))))
 
 (defun command-carried-out (robot)
   "Return the name of the command that ROBOT carries out, or NIL."

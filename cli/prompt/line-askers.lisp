@@ -59,10 +59,6 @@ line under way if that is not known."
               (plan (rest plan))
               (t (line-under-way account)))))))
 
-(defun others-error-p (account message)
-  "True if MESSAGE, an error, is of another line than the one under way of ACCOUNT, or NIL."
-  (and account (not (eql (line-of-message account message) (line-under-way account)))))
-
 (defun report-messages (account messages)
   "Report MESSAGES. True if ACCOUNT is of what reports by objects."
   (when (reports-p account)

@@ -37,7 +37,7 @@
   "Show LISTENER TEXT as an error."
   (incf (listener-errors listener))
   (let ((account (listener-account listener)) (console (listener-console listener)))
-    (unless (report-trouble account text)
+    (unless (and (reports-p account) (report-message account :error text))
       (write-fitted console "~A"
                     (painted (format nil "*ERROR* -> ~A~%"
                                      (complaint-text
@@ -103,11 +103,6 @@ if it is an error or warning in a script, with the place of its line."
 (defgeneric error-counts-p (message listener)
   (:documentation "True if LISTENER counts the error MESSAGE, and not what has caused it."))
 
-(defun counts-p (message listener)
-  "True if MESSAGE is an error that LISTENER counts."
-  (and (eq :error (message-kind message))
-       (error-counts-p message listener)))
-
 (defun told-often-p (message listener)
   "True if MESSAGE is an error that somebody who sits at LISTENER has been told often."
   (and (eq :error (message-kind message))
@@ -118,14 +113,15 @@ if it is an error or warning in a script, with the place of its line."
   "Count the error MESSAGE in LISTENER: if it is of an earlier line, not for the line under way."
   (let ((account (listener-account listener)))
     (incf (listener-errors listener))
-    (when (others-error-p account message)
+    (when (and account (not (eql (line-of-message account message) (line-under-way account))))
       (incf (account-errors account))
       (note-error-of-line account (line-of-message account message)))))
 
 (defun messages-for (listener messages)
   "Count the errors among MESSAGES, and return those that LISTENER is to show."
   (dolist (message messages)
-    (when (counts-p message listener) (count-error listener message)))
+    (when (and (eq :error (message-kind message)) (error-counts-p message listener))
+      (count-error listener message)))
   (remove-if (lambda (message) (told-often-p message listener))
              (if (listener-quiet-p listener) (remove-if #'others-p messages) messages)))
 

@@ -166,16 +166,12 @@ not."
       (setf (session-observer session) observer)
       (asking (simulation) (add-observer observer simulation)))))
 
-(defun listener-after (simulation)
-  "Return a session that listens to SIMULATION, or else to a run with the same messages; or NIL."
-  (or (first (sessions-hearing simulation))
-      (session-with-queue (simulation-messages simulation))))
-
 (defun stop-listening (session)
   (let ((simulation (shiftf (session-simulation session) nil)))
     (setf (session-observer session) nil)
     (when simulation
-      (let ((next (listener-after simulation)))
+      (let ((next (or (first (sessions-hearing simulation))
+                      (session-with-queue (simulation-messages simulation)))))
         (set-listener next (if next (session-simulation next) simulation))))))
 
 (defun listen-instead (session simulation)

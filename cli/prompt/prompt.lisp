@@ -92,16 +92,12 @@ that it waits, since time stands still."
   (note-line-ended (session-account session) (session-errors session)
                    (end-of-errands session)))
 
-(defun load-first (session)
-  "Load the files that SESSION begins with."
+(defun run-lines (session)
+  "Do what the files and lines of SESSION say until it is over, or goes on with another robot."
   (loop while (reader-files (session-reader session))
         do (let ((file (pop (reader-files (session-reader session)))))
              (call-guarded session (lambda () (load-lisp (file-called file))))
-             (setf (session-lisp-p session) t))))
-
-(defun run-lines (session)
-  "Do what the files and lines of SESSION say until it is over, or goes on with another robot."
-  (load-first session)
+             (setf (session-lisp-p session) t)))
   (loop until (or (session-over-p session) (session-next-robot session))
         do (call-guarded session (lambda () (next-line session)))
            (call-guarded session (lambda () (show-messages session))))
@@ -111,7 +107,7 @@ that it waits, since time stands still."
 
 (defun tell-of-unended (session)
   "Say so if what SESSION, in which nobody sits, has asked for has not ended, as time stands still."
-  (when (and (unended-p session) (time-stands-still-p))
+  (when (and (unended-p session) (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
     (complain session (format nil "Time stands still, so not all that was asked for has ended. ~
                                    RESUME lets it go on."))
     (when (session-account session) (give-up-waiting-lines (session-account session)))))

@@ -46,10 +46,6 @@ has asked for."
   "Report a message of KIND that says TEXT, of what LINE has asked for."
   (report-object account "message" :kind kind :text text :tick (now) :line line))
 
-(defun report-trouble (account text)
-  "Report that a line makes no sense, as TEXT says. True if ACCOUNT is of what reports by objects."
-  (when (reports-p account) (report-message account :error text)))
-
 (defun report-values (account texts)
   "Report TEXTS, of the values of a form of Lisp. True if ACCOUNT is of what reports by objects."
   (when (reports-p account)

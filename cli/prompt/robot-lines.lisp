@@ -42,13 +42,6 @@
           (list (format nil "In Lisp: ~(~A~).~@[ Manual ~A.~]"
                         (command-name command) (command-section command)))))
 
-(defun send-line (command)
-  "Return the action of a line command for COMMAND."
-  (lambda (session &rest arguments)
-    (if (robot-resource-p command)
-        (send session command (session-robot) arguments)
-        (send session command (first arguments) (rest arguments)))))
-
 (defun line-name-of (command)
   "Return what the line command for COMMAND is called: manual E says -DESIG for designators."
   (let* ((name (string-upcase (command-prompt-name command)))
@@ -62,7 +55,10 @@
              :parameters (command-slots command)
              :sentence (command-documentation command)
              :details (command-details command)
-             :action (send-line command)))
+             :action (lambda (session &rest arguments)
+                       (if (robot-resource-p command)
+                           (send session command (session-robot) arguments)
+                           (send session command (first arguments) (rest arguments))))))
 
 (defvar *robot-lines* '(() . ())
   "The robot's commands and the line commands that they make, as when that was looked up last.")

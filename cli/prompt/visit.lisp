@@ -64,10 +64,6 @@
         ((visit-running-p visit) (rate-text (visit-rate visit)))
         (t "paused")))
 
-(defun words-for-visit (visit)
-  "Return in words, as one types it, the trial of VISIT."
-  (trial-words (visit-experiment visit) (visit-condition visit) (visit-trial visit)))
-
 (defun pace-of-visit (visit)
   "Return how time passes in VISIT: :RUNNING, :PAUSED or :ENDED; and at what rate, or NIL where it
 has none."

@@ -109,18 +109,14 @@ to say of that."
                (setf (visit-due visit) (next-due visit))
                t))))
 
-(defun note-steps (session visit)
-  "Say at the terminal of SESSION how many ticks are still to pass in VISIT."
-  (when (session-terminal-p session)
-    (unless (visit-progress visit)
-      (setf (visit-progress visit) (make-progress-line (session-console session))))
-    (note-progress (visit-progress visit) "Tick ~D, ~D to go. Control-C pauses."
-                   (simulation-tick *simulation*) (visit-steps visit))))
-
 (defun tick-passes-p (session visit)
   "True if a tick is to pass in VISIT now."
   (cond ((plusp (visit-steps visit))
-         (note-steps session visit)
+         (when (session-terminal-p session)
+           (unless (visit-progress visit)
+             (setf (visit-progress visit) (make-progress-line (session-console session))))
+           (note-progress (visit-progress visit) "Tick ~D, ~D to go. Control-C pauses."
+                          (simulation-tick *simulation*) (visit-steps visit)))
          (decf (visit-steps visit))
          t)
         ((visit-running-p visit) (wait-for-tick session visit))))

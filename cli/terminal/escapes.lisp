@@ -70,10 +70,6 @@ NIL where nothing was painted."
 (define-constant +color-settings+ '("auto" "always" "never") :test #'equal
   :documentation "What --color takes.")
 
-(defun escapes-known-p ()
-  "True if this process's terminal, if it has one, says that it knows escape codes."
-  (not (member (environment-value "TERM") '(nil "" "dumb") :test #'equal)))
-
 (defun color-wanted-p (setting stream)
   "True if what is written to STREAM is to be in colours: SETTING is :ALWAYS, :NEVER or :AUTO, on a
 terminal unless the environment has NO_COLOR."
@@ -81,7 +77,7 @@ terminal unless the environment has NO_COLOR."
     (:always t)
     (:never nil)
     (:auto (and (terminal-stream-p stream)
-                (escapes-known-p)
+                (not (member (environment-value "TERM") '(nil "" "dumb") :test #'equal))
                 (member (environment-value "NO_COLOR") '(nil "") :test #'equal)
                 t))))
 

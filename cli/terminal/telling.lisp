@@ -18,14 +18,6 @@
 
 ;;; Conditions.
 
-(defun lock-text (condition)
-  "Return what CONDITION, that a locked name was to be defined, means to a user."
-  (let ((symbol (locked-symbol condition)))
-    (if symbol
-        (format nil "~A is a name of ~A. Call yours otherwise, or begin with (shadow '~A)."
-                symbol (package-name (symbol-package symbol)) symbol)
-        (format-briefly nil "~A" condition))))
-
 (define-constant +unprintable+
     "What was to be said cannot be printed. Perhaps a method for PRINT-OBJECT fails."
   :test #'string=
@@ -38,7 +30,11 @@
 (defun condition-text (condition)
   "Return what CONDITION says, or what it is if it cannot say that."
   (if (typep condition 'lock-violation)
-      (lock-text condition)
+      (let ((symbol (locked-symbol condition)))
+        (if symbol
+            (format nil "~A is a name of ~A. Call yours otherwise, or begin with (shadow '~A)."
+                    symbol (package-name (symbol-package symbol)) symbol)
+            (format-briefly nil "~A" condition)))
       (text-of-condition condition)))
 
 ;;; Lines.
