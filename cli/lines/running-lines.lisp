@@ -184,10 +184,10 @@ give one a new VALUE."
 terminal of SESSION how far that is. Return the values of FUNCTION."
   (let ((progress (and (session-terminal-p session)
                        (make-progress-line (session-console session)))))
-    (unwind-protect
-         (funcall function (lambda (tick)
-                             (note-progress progress "Tick ~D of ~D. Control-C stops it." tick end)))
-      (when progress (end-progress progress)))))
+    (flet ((tell (tick)
+             (note-progress progress "Tick ~D of ~D. Control-C stops it." tick end)))
+      (unwind-protect (funcall function #'tell)
+        (when progress (end-progress progress))))))
 
 (defun replay-showing (session journal anyway)
   "Repeat JOURNAL. Return the tick and the digest that it comes to."

@@ -105,7 +105,7 @@ HTML of its Markdown, its headings with anchors."
                       token))))
 
 (defun headings (tokens)
-  "Return lists (level id text words) for the headings in TOKENS, in order: WORDS is the text below."
+  "Return lists (level id text words) for the headings in TOKENS, in order; WORDS is what follows."
   (loop for rest on tokens
         for token = (first rest)
         when (and (heading-level token) (attribute-value "id" token))
