@@ -118,7 +118,6 @@
              (mapcar #'asdf:find-system (asdf:already-loaded-systems))))
 
 (defun files-of (component)
-  "Return the files of COMPONENT, a system or a part of one."
   (if (typep component 'asdf:parent-component)
       (mapcan #'files-of (asdf:component-children component))
       (list (asdf:component-pathname component))))

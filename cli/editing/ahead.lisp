@@ -27,7 +27,6 @@
   (setf (ahead-lines ahead) (append (ahead-lines ahead) lines)))
 
 (defun type-last-again (ahead)
-  "Let the last line of AHEAD that waits be typed again, instead of nothing."
   (let ((line (first (last (ahead-lines ahead)))))
     (when line
       (setf (ahead-lines ahead) (butlast (ahead-lines ahead)))
@@ -80,7 +79,6 @@ first."
         finally (return ahead)))
 
 (defun octets-of-ahead (ahead)
-  "Return octets that come to AHEAD."
   (let ((text (ahead-text ahead)))
     (format nil "~{~A~}~A~V@{~A~:*~}"
             (loop for line in (ahead-lines ahead) collect (octets-of-key (list :entry line)))

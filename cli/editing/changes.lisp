@@ -16,13 +16,11 @@ point, and what was killed, if anything."
        (setf *changes* (cons (list key function) (remove key *changes* :key #'first))))))
 
 (defun change-of (key)
-  "Return the function that KEY stands for, or NIL."
   (second (assoc key *changes*)))
 
 ;;; Places in a text.
 
 (defun line-start (text point)
-  "Return where in TEXT the line begins that POINT is in."
   (let ((newline (position #\Newline text :end point :from-end t)))
     (if newline (1+ newline) 0)))
 
@@ -70,7 +68,6 @@ point, and what was killed, if anything."
 ;;; Changing.
 
 (defun inserted (string text point)
-  "Return TEXT with STRING in it at POINT, and the point after that."
   (values (concatenate 'string (subseq text 0 point) string (subseq text point))
           (+ point (length string))))
 

@@ -53,7 +53,6 @@ control C and its like, which are signals.")
 ;;; Octets.
 
 (defun await-octets (stream)
-  "Wait until STREAM has octets, or is at its end."
   (when (typep (typed-octets stream) 'descriptor-stream)
     (loop until (octets-within-p (typed-octets stream) (if *while-typing* 0.05 0.25))
           do (redraw-if-resized (edited-console stream))
@@ -75,13 +74,11 @@ control C and its like, which are signals.")
         (next-octet stream))))
 
 (defun octets-come (stream)
-  "Return a list of the octets that STREAM's terminal has handed over by now."
   (loop for char = (handler-case (read-char-no-hang (typed-octets stream) nil)
                      (stream-error () nil))
         while char collect char))
 
 (defun octets-at-hand-p (stream)
-  "True if STREAM has octets without waiting."
   (let ((ahead (edited-ahead stream)))
     (when (empty-queue-p ahead) (add-octets ahead (octets-come stream)))
     (not (empty-queue-p ahead))))
@@ -122,13 +119,11 @@ for it.")
                        (drawn-line-point line) point))))
 
 (defun insert-typed (stream string)
-  "Insert STRING where the cursor is."
   (let ((line (line-of stream)))
     (multiple-value-call #'change-to stream
       (inserted string (drawn-line-text line) (drawn-line-point line)))))
 
 (defun do-change (stream function)
-  "Do to the line that is typed what FUNCTION, of a key in *CHANGES*, does."
   (let ((line (line-of stream)))
     (multiple-value-bind (text point killed)
         (funcall function (drawn-line-text line) (drawn-line-point line))
@@ -257,7 +252,6 @@ for it.")
         ((action-of key) (funcall (action-of key) stream))))
 
 (defun call-editing (function stream)
-  "Call FUNCTION, while a line can be edited on the console of STREAM."
   (let ((console (edited-console stream)))
     (unwind-protect (progn (take-keys stream)
                            (begin-line console)

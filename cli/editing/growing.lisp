@@ -20,7 +20,6 @@ end, if that is NIL."))
                                 :initial-contents text)))
 
 (defun extend-text (text line)
-  "Put a newline and LINE behind TEXT, which has a fill pointer."
   (vector-push-extend #\Newline text)
   (loop for char across line do (vector-push-extend char text)))
 
@@ -48,5 +47,4 @@ end, if that is NIL."))
   nil)
 
 (defun grown-out-p (stream)
-  "True if all of the text of STREAM has been read, as far as it has grown."
   (<= (length (grown-text stream)) (grown-position stream)))

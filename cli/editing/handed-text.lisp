@@ -36,7 +36,6 @@ prompt at the terminal has."
     (revise-octets (typed-octets stream) (lambda (left) (concatenate 'string octets left)))))
 
 (defun ahead-of (stream octets)
-  "Return what OCTETS, which STREAM has not read yet, come to."
   (ahead-in octets (history-entries (edited-history stream))))
 
 (defun with-key (stream octets key)
@@ -52,7 +51,6 @@ typed ahead."
   (revise-octets (typed-octets stream) (lambda (octets) (with-key stream octets key))))
 
 (defun end-keys (stream)
-  "Let STREAM end after the keys that were pressed."
   (end-octets (typed-octets stream)))
 
 ;;; What waits.

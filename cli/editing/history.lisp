@@ -22,7 +22,6 @@ NIL: the newest entry then has a fill pointer."
 ;;; The file.
 
 (defun entry-on-a-line (entry)
-  "Return the line of a file that stands for ENTRY."
   (with-output-to-string (out)
     (loop for char across entry
           do (case char
@@ -31,7 +30,6 @@ NIL: the newest entry then has a fill pointer."
                (t (write-char char out))))))
 
 (defun entry-of-line (line)
-  "Return the entry that LINE of a file stands for."
   (with-output-to-string (out)
     (loop with position = 0
           while (< position (length line))
@@ -48,7 +46,6 @@ NIL: the newest entry then has a fill pointer."
     (mapcar #'entry-of-line (reverse (last lines *history-limit*)))))
 
 (defun call-with-history-file (function file)
-  "Call FUNCTION with a stream that appends to FILE."
   (check-unprotected file)
   (with-open-file (out file :direction :output :if-exists :append :if-does-not-exist :create
                             :external-format :utf-8)
@@ -62,7 +59,6 @@ NIL: the newest entry then has a fill pointer."
                          file)))
 
 (defun make-history (&optional file)
-  "Return a history of what is in FILE, a pathname, if there is one; otherwise of nothing."
   (let ((entries (and file (ignore-errors (entries-in file)))))
     (when entries (ignore-errors (shorten-file file entries)))
     (%make-history :entries entries :file file)))
@@ -76,7 +72,6 @@ NIL: the newest entry then has a fill pointer."
       (setf (history-unsaved-p history) nil))))
 
 (defun save-entry (history)
-  "Write the newest entry into the file of HISTORY, if it is not there."
   (drop-repetition history)
   (when (and (shiftf (history-unsaved-p history) nil) (history-file history))
     (ignore-errors

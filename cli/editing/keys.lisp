@@ -24,7 +24,6 @@
           until (or (alpha-char-p char) (char= char #\~)))))
 
 (defun octets-that-follow (lead)
-  "Return how many octets follow the octet LEAD, of a character in UTF-8."
   (let ((code (char-code lead)))
     (cond ((< code #xC0) 0)
           ((< code #xE0) 1)
@@ -75,7 +74,6 @@
   (make-keyword (string-upcase (apply #'format nil control arguments))))
 
 (defun read-coded-key (next)
-  "Return the key whose code NEXT returns."
   (let ((key (second (assoc (read-code next) *keys-of-codes* :test #'string=))))
     (if (member key '(:paste :entry))
         (list key (read-paste next))

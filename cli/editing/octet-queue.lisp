@@ -19,11 +19,9 @@ control C."
   (null (octet-queue-octets queue)))
 
 (defun whole-line-p (queue)
-  "True if QUEUE has all of a line."
   (find-if (lambda (octet) (find octet '(#\Return #\Newline))) (octet-queue-octets queue)))
 
 (defun take-octet (queue)
-  "Take the first octet out of QUEUE, which has one, and return it."
   (let ((octet (pop (octet-queue-octets queue))))
     (when (char= octet *control-c*) (decf (octet-queue-interrupts queue)))
     octet))
@@ -38,14 +36,12 @@ control C."
     (incf (octet-queue-interrupts queue) (count *control-c* octets))))
 
 (defun put-back-octet (queue octet)
-  "Let OCTET be the first of QUEUE."
   (if (empty-queue-p queue)
       (add-octets queue (list octet))
       (progn (push octet (octet-queue-octets queue))
              (when (char= octet *control-c*) (incf (octet-queue-interrupts queue))))))
 
 (defun take-all-octets (queue)
-  "Take all octets out of QUEUE, and return them in a list."
   (setf (octet-queue-interrupts queue) 0)
   (shiftf (octet-queue-octets queue) '()))
 

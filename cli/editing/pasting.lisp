@@ -9,7 +9,6 @@
 (defparameter *labels* '("Robot>" "Break>") "What prompts look like.")
 
 (defun message-p (text)
-  "True if TEXT, what stands after a prompt, is a message."
   (let* ((start (position-if-not #'blank-p text))
          (end (and start (position-if #'blank-p text :start start))))
     (and end (< start (1- end)) (char= #\: (char text (1- end))))))
@@ -110,5 +109,4 @@ has any."
                   last)))
 
 (defun without-answers (text)
-  "Return TEXT, as pasted, without the answers to what was typed in it."
   (format nil "~{~A~^~%~}" (typed-lines (lines-in text))))

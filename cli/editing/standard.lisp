@@ -12,7 +12,6 @@
        (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
 
 (defun standard-output ()
-  "Return the console of this process."
   (let ((stream (text-output 1)))
     (make-console stream (and (obeying-terminal-p stream) #'window-size))))
 
@@ -95,7 +94,6 @@ What is no whole line is being typed."
       (ahead-lines ahead))))
 
 (defun one-key-p (octets)
-  "True if OCTETS, a list, are those of one key."
   (let ((next (text-reader (coerce octets 'string))))
     (read-key next)
     (null (funcall next))))

@@ -47,7 +47,6 @@ only one.")
 ;;; Completing.
 
 (defun replace-typed (stream start string)
-  "Let STRING stand in the line that is typed from START to the cursor."
   (let ((line (line-of stream)))
     (multiple-value-call #'change-to stream
       (inserted string

@@ -7,13 +7,11 @@
 ;;; another one leads out.
 
 (defun copied-run (seed)
-  "Return a fork of the current run, all whose chance is to come from SEED unless that is NIL."
   (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))))
     (keep-forks t fork)
     fork))
 
 (defun read-in-fork (session)
-  "Read lines of SESSION until one leads out of the fork that is current, or it is over."
   (loop until (session-over-p session)
         do (call-guarded session (lambda () (next-line-inside session)))
            (call-guarded session (lambda () (show-messages session)))))
@@ -35,7 +33,6 @@
             (session-forks session) depth))))
 
 (defun enter-fork (session fork)
-  "Let SESSION be in FORK until a line leads out."
   (call-with-errands-of-its-own
    session
    (lambda ()

@@ -3,7 +3,6 @@
 (in-package :ars-magna.cli)
 
 (defun write-help-on (name)
-  "Tell what the command, alias, plan or whatever else is called NAME does or is."
   (let ((line (find name (all-lines) :key #'line-name :test #'string-equal))
         (alias (assoc name *aliases* :test #'string-equal))
         (plan (plan-called name)))

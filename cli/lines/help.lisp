@@ -9,7 +9,6 @@
   "The families of the main menu, with what it calls them.")
 
 (defun write-menu (lines)
-  "List LINES: how each is typed, and what it does."
   (dolist (line lines)
     (write-filled (first-sentence (line-sentence line)) 27 (format nil "  ~A" (usage line)))))
 

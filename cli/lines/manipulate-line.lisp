@@ -10,7 +10,6 @@
   (and (second by) (part-type-p (type-key (second by)))))
 
 (defun method-usage (name method)
-  "Return how METHOD of the manipulation NAME is typed after the word MANIPULATE."
   (multiple-value-bind (objects by others) (method-shape method)
     (format nil "~(~A~{ ~A~}~@[ [~A]~]~{ ~A~}~)" name objects
             (and (by-part-p by) (first by))
@@ -54,7 +53,6 @@ few."
                 (nthcdr (+ count extra) data))))))
 
 (defun send-manipulation (session manipulation data)
-  "Let the robot of SESSION carry out MANIPULATION with DATA, as typed."
   (let ((robot (session-robot)) (errand (make-errand)))
     (apply #'run-manipulation (manipulation-name manipulation)
            (append (or (some (lambda (method) (arguments-for method data robot))

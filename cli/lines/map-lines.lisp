@@ -35,7 +35,6 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
                                 "a radius, or LEFT TOP RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}")))
 
 (defun number-typed (text)
-  "Return the number that TEXT is, or NIL."
   (let ((datum (ignore-errors (values (read-data-from-string text 0)))))
     (and (realp datum) (whole-if-whole datum))))
 
@@ -58,7 +57,6 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
                     numbers))))
 
 (defun map-options (text)
-  "Return as options of TEXT-MAP what TEXT, as typed after MAP, asks for."
   (loop for word in (split-words (or text ""))
         for number = (number-typed word)
         if number collect number into numbers

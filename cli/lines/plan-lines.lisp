@@ -11,7 +11,6 @@ package; NIL if there is none."
     (unknown-name () nil)))
 
 (defun plan-names ()
-  "Return what all plans are called, each name once."
   (remove-duplicates (mapcar #'procedure-name (all-procedures)) :test #'same-name-p))
 
 (defun reject-unknown-plan (name)
@@ -54,7 +53,6 @@ package; NIL if there is none."
     (if end (subseq text 0 (1+ end)) text)))
 
 (defun write-plan-menu ()
-  "List the plans that one would start, and what each does."
   (let ((parts (parts-of-plans)))
     (dolist (name (plan-names))
       (let ((plan (plan-called (string name))))
@@ -71,7 +69,6 @@ package; NIL if there is none."
 ;;; Starting them.
 
 (defun begin-errand (errand plan arguments)
-  "Start PLAN, a plan procedure, with ARGUMENTS for ERRAND. Signals BAD-LINE."
   (with-lock (*plan-errands-lock*) (push errand *plan-errands*))
   (handler-bind ((error (lambda (condition)
                           (close-errand errand)
@@ -82,7 +79,6 @@ package; NIL if there is none."
     (setf (plan-errand-task errand) (apply #'begin-plan plan arguments))))
 
 (defun send-plan (session plan arguments)
-  "Start PLAN, a plan procedure, with ARGUMENTS as an errand of SESSION."
   (let ((errand (make-plan-errand (procedure-name plan) session (current-simulation))))
     (check-run)
     (setf (session-failure session) nil)
@@ -96,7 +92,6 @@ package; NIL if there is none."
         (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (procedure-name plan))))))
 
 (defun read-data (text line)
-  "Return the list of the Lisp data in TEXT, arguments of LINE."
   (loop with position = (skip-blanks text 0)
         until (= position (length text))
         collect (multiple-value-bind (datum end) (read-datum text position line)
@@ -138,7 +133,6 @@ plan would write it: few symbols have a package."
           while end)))
 
 (defun failure-report (failure name)
-  "Return all that is known of FAILURE, of the plan called NAME."
   (let ((*message-queue* (make-message-queue)))
     (call-reading-plan name (lambda ()
                               (report-failure failure)

@@ -3,7 +3,6 @@
 (in-package :ars-magna.cli)
 
 (defun plan-name-of (task)
-  "Return the name of the plan that TASK is part of."
   (loop for each = task then (task-parent each)
         unless (task-parent each) return (task-name each)))
 
@@ -30,7 +29,6 @@ it is in the middle of, its variables, what it waits for and since when; and who
           (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))
 
 (defun task-why-text (n)
-  "Return what WHY tells of the task number N."
   (call-reading-plan
    (let ((plan (first (plans)))) (and plan (task-name plan)))
    (lambda ()

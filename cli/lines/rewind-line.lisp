@@ -24,13 +24,11 @@
   (take-up-plans session))
 
 (defun check-rewindable (session)
-  "Signal BAD-LINE where SESSION is in what cannot be rewound."
   (check-run)
   (when (session-visit session)
     (reject-line "A trial is what it is. TRIAL begins it anew, at tick 0.")))
 
 (defun rewind-and-tell (session ticks)
-  "Let SESSION go on TICKS ticks back, and say where that is."
   (let ((tick (- (simulation-tick *simulation*) ticks)))
     (rewind-here session ticks)
     (tell-others session *simulation*

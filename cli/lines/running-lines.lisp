@@ -105,7 +105,6 @@ idle, none pass: nothing moves by itself in its world, and nobody has asked for 
 ;;; Parameters.
 
 (defun setting-text (value)
-  "Return VALUE, a parameter's, in few characters."
   (if (and (realp value) (or (zerop value) (<= 1d-3 (abs value) 1d6)))
       (amount-text value)
       (princ-to-string value)))

@@ -16,7 +16,6 @@
   "The keys whose values are true or false.")
 
 (defun arrays-for-lists (value)
-  "Return VALUE with vectors in place of lists."
   (if (and (consp value) (null (cdr (last value))))
       (map 'vector #'arrays-for-lists value)
       value))

@@ -31,7 +31,6 @@
 
 ;; A line of the manual's session would be in the way while nothing goes on.
 (defun write-ownership (status)
-  "Show whose commands are carried out, and whose were interrupted last by whose."
   (loop for entry in (getf status :under-way)
         do (put-line "~19A~A" "Under way:" (entry-text entry "~(~A~), for ~A")))
   (loop for entry in (getf status :interrupted)

@@ -89,7 +89,6 @@
         (format nil "~@[~A.~]" (and (stringp (error-code-text code)) (error-code-text code))))))
 
 (defun codes-of-all ()
-  "Return the error codes that any command may end with."
   '(:interrupt))
 
 (defun code-of-all-words (keyword)
@@ -131,7 +130,6 @@ far as they are documented; but for parameters."
 (defun find-parameter-called (symbol) (find-parameter symbol nil))
 
 (defun lisp-title (symbol)
-  "Return as what SYMBOL is defined."
   (cond ((member symbol (all-constructs) :test #'string=) "construct")
         ((macro-function symbol) "macro")
         ((fboundp symbol) "function")
@@ -153,7 +151,6 @@ or none."
       (format nil "~A:~A" (package-name (symbol-package symbol)) symbol)))
 
 (defun call-text (symbol)
-  "Return how the function or macro SYMBOL is called."
   (let ((*package* (or (symbol-package symbol) *package*)) (*print-pretty* nil))
     (format nil "(~(~A~{ ~S~}~))" (typed-name symbol)
             (ldiff (lambda-list-of symbol) (member '&aux (lambda-list-of symbol))))))

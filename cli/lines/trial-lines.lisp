@@ -55,7 +55,6 @@
   (format t "~&~A~%" (fitted (apply #'format nil control arguments) (session-console session))))
 
 (defun write-visit (session visit)
-  "Show which trial the prompt is in, and how far that has come."
   (say-here session "~@(~A~).~%~A" (visit-name visit) (time-text session *simulation*))
   (when (visit-changed visit)
     (say-here session "Since tick ~D it is not the experiment's run any more."
@@ -70,7 +69,6 @@
                                      (t (format-briefly nil "~A" value)))))))
 
 (defun write-result (session visit result)
-  "Show what came of the trial of VISIT."
   (say-here session "The trial is over at tick ~D: ~A~@[ (~A)~].~@[ ~A.~]" (result-ticks result)
             (result-outcome result)
             (and (string/= "" (result-reason result)) (result-reason result))
@@ -82,7 +80,6 @@
               (visit-changed visit))))
 
 (defun write-comparison (session visit result parts row)
-  "Show in what RESULT differs from ROW, that of the trial of VISIT."
   (let ((differences (row-differences (visit-experiment visit) result parts row
                                       (visit-directory visit))))
     (say-here session "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]"
@@ -121,7 +118,6 @@ pauses at the next one; if that does not come, and he does so again, it is left.
       (funcall function))))
 
 (defun run-visit (session visit)
-  "Run the trial of VISIT, with SESSION at its gate, and stay where it ends."
   (let* ((experiment (visit-experiment visit))
          (condition (visit-condition visit))
          (trial (visit-trial visit))
@@ -157,12 +153,10 @@ pauses at the next one; if that does not come, and he does so again, it is left.
       (unless left-p (format (session-console session) "~&The trial has been left.~%")))))
 
 (defun drop-errands (session)
-  "Forget what SESSION has asked for in a trial that is gone."
   (dolist (errand (shiftf (session-errands session) '()))
     (when (plan-errand-p errand) (close-errand errand))))
 
 (defun go-to-trial (session visit)
-  "Let SESSION go into VISIT, from wherever it is."
   (call-outside session
                 (lambda ()
                   (say-here session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time ~

@@ -10,7 +10,6 @@
 (defconstant +usual-rate+ 20 "How many ticks pass in a second where time has no pace of its own.")
 
 (defun time-passes-p (session simulation)
-  "True if ticks of SIMULATION, in which SESSION is, pass by themselves."
   (and (live-p simulation)
        (null (session-visit session))
        (not (paused-p simulation))))
@@ -31,7 +30,6 @@ something."
 ;;; One after the other.
 
 (defun print-maps (session simulation count options)
-  "Print a map for each of COUNT ticks; of one in which nothing happens any more, say so."
   (loop repeat count
         until (or (simulation-over simulation) (idle-here-p session simulation))
         do (pass-tick session simulation)
@@ -73,7 +71,6 @@ more tick will come, if END is not NIL; other lines wait; or there is something 
       (session-breaks session)))
 
 (defun pressed-within-p (session seconds)
-  "Wait for a key to be pressed in SESSION for SECONDS at most. True if one was."
   (octets-within-p (source-of (session-input session)) seconds))
 
 (defun watch-screen (session simulation count options)

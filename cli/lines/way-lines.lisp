@@ -11,7 +11,6 @@ of SIMULATION."
                          point))))
 
 (defun tell-failed-way (control point &rest arguments)
-  "Queue an error message: that a GO-TO has not come to POINT, a text."
   (error-set (make-verdict (format nil "go-to: ~?" control (cons point arguments)))))
 
 (defun tell-arrival (err robot point)

@@ -3,7 +3,6 @@
 (in-package :ars-magna.cli)
 
 (defun start-robot (session robot-name)
-  "Let SESSION go on with the robot ROBOT-NAME in its world, which starts anew."
   (cond ((session-visit session)
          (call-outside session (lambda () (start-robot session robot-name))))
         ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
@@ -13,7 +12,6 @@
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
 (defun end-left (old)
-  "Let the run OLD, which the prompt has left, be over."
   (unless (simulation-over old)
     (end-simulation old "the prompt has gone elsewhere")))
 

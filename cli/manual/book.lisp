@@ -19,7 +19,6 @@ their names in lower case. FILES are the project's files that are copied beside 
         (setf (gethash (entry-key entry) table) entry)))))
 
 (defun entry-called (name book)
-  "Return the entry of BOOK that NAME leads to, or NIL."
   (values (gethash (string-downcase name) (book-table book))))
 
 (defun page-of-source (source book)
@@ -48,7 +47,6 @@ show by themselves is called a text."
           (member (pathname-type name) '("svg" "png" "txt" "html") :test #'equal)))
 
 (defun copy-of-file (name book)
-  "Let the project's file NAME be copied, and return the name of the copy."
   (pushnew name (book-files book) :test #'string=)
   (copied-name name))
 
@@ -81,7 +79,6 @@ first page."
   (format nil "<a href=\"~A\">~A</a>" (escaped address) html))
 
 (defun linked-name (name html book)
-  "Return HTML, which shows NAME, leading to its entry if there is one."
   (let ((entry (entry-called name book)))
     (if entry (link (entry-address entry) html) html)))
 

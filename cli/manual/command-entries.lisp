@@ -3,7 +3,6 @@
 (in-package :ars-magna.manual)
 
 (defun in-code (name)
-  "Return NAME as prose has it that is to lead to its entry."
   (format nil "`~(~A~)`" name))
 
 (defun heading-of (keyword)
@@ -14,14 +13,12 @@
 ;;; Commands.
 
 (defun argument-facts (specifications)
-  "Return facts about the arguments of a command, as SPECIFICATIONS say."
   (loop for spec in specifications
         collect (list (string-downcase (spec-name spec))
                       (format nil "~A~@[; ~A~]" (argument-type-text (spec-type spec))
                               (and (string/= "" (spec-text spec)) (spec-text spec))))))
 
 (defun result-fact (command)
-  "Return the fact that says what the continuation of COMMAND gets."
   (list "Continuation gets"
         (format nil "an error code or NIL; the ~(~A~)~{; ~A~}"
                 (spec-name (command-resource command))
@@ -35,13 +32,11 @@
                 (in-code ":interrupt"))))
 
 (defun plan-function-of (command)
-  "Return the symbol of the plan function of COMMAND that users see, or NIL."
   (multiple-value-bind (symbol status)
       (find-symbol (format nil "RPL-~A" (command-name command)) :nisp)
     (and (eq :external status) symbol)))
 
 (defun elsewhere-facts (command)
-  "Return facts that say how COMMAND is given at the prompt and in plans."
   (append (list (list "At the prompt" (in-code (command-prompt-name command))))
           (when (plan-function-of command)
             (list (list "In plans" (in-code (plan-function-of command)))))
@@ -79,7 +74,6 @@
                  commands))
 
 (defun messages-of (keyword commands)
-  "Return the texts of the messages by which COMMANDS tell that they failed with KEYWORD."
   (remove-duplicates
    (loop for command in commands
          for text = (error-code-text (find keyword (command-errors command)
@@ -88,7 +82,6 @@
    :test #'string=))
 
 (defun error-entry (keyword commands)
-  "Return the entry of the error code KEYWORD of some of COMMANDS."
   (let* ((failing (commands-failing-with keyword commands))
          (messages (messages-of keyword failing)))
     (make-entry :name (format nil "~(~S~)" keyword) :chapter :error-codes

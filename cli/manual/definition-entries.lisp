@@ -16,7 +16,6 @@
       value))
 
 (defun number-words (value)
-  "Return VALUE, a parameter's, as people write it."
   (let ((value (shortest-number value)) (*print-case* :downcase))
     (if (and (floatp value) (< 1d-6 (abs value) 1d-3))
         (format nil "~F" value)
@@ -116,13 +115,11 @@ if it is not known."
     (and (string/= "" text) text)))
 
 (defun manipulation-use (name method)
-  "Return how METHOD of the manipulation NAME is called."
   (multiple-value-bind (objects by others) (method-shape method)
     (format nil "(manipulate ~(~A~{ ~A~} ~A~{ ~A~}~) [continuation])" name objects (first by)
             (mapcar #'first others))))
 
 (defun manipulation-uses (manipulation)
-  "Return how MANIPULATION may be called, a list of different texts."
   (remove-duplicates (loop for method in (manipulation-methods manipulation)
                            collect (manipulation-use (manipulation-name manipulation) method))
                      :test #'string=))
@@ -174,7 +171,6 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
               :text (or (experiment-documentation experiment) "") :file file))
 
 (defun shipped-entries ()
-  "Return the entries of what has been defined by name, here and in the shipped worlds."
   (append (entries-of 'attribute #'attribute-entry)
           (entries-of 'substance #'substance-entry)
           (entries-of 'place-type #'place-type-entry)

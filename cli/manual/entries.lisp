@@ -51,7 +51,6 @@ it is, FILE where it is defined."
 (defun chapter-introduction (chapter) (third (assoc chapter *chapters*)))
 
 (defun chapter-file (chapter)
-  "Return the name of the HTML file of CHAPTER, a key of *CHAPTERS*."
   (format nil "reference-~(~A~).html" chapter))
 
 (defun entry-address (entry)
@@ -62,7 +61,6 @@ it is, FILE where it is defined."
   (string-downcase (entry-name entry)))
 
 (defun entry-sentence (entry)
-  "Return the first sentence of what ENTRY says."
   (let* ((text (entry-text entry))
          (end (loop for i = (position #\. text) then (position #\. text :start (1+ i))
                     while i
@@ -106,12 +104,10 @@ it is, FILE where it is defined."
         finally (return (append items (and rest (list '&rest rest))))))
 
 (defun use-of-symbol (symbol)
-  "Return how SYMBOL is called, if it is a function or macro, else NIL."
   (when (fboundp symbol)
     (plain-use symbol (lambda-list-of symbol))))
 
 (defun text-of-symbol (symbol)
-  "Return all that is documented of SYMBOL, its paragraphs apart."
   (format nil "~{~A~^~2%~}"
           (remove-duplicates (loop for kind in '(function variable type)
                                    for text = (documentation symbol kind)
@@ -126,7 +122,6 @@ it is, FILE where it is defined."
         (let ((*print-case* :downcase)) (prin1-to-string value))))))
 
 (defun sorts-of-symbol (symbol)
-  "Return as what SYMBOL is defined, in words."
   (append (cond ((macro-function symbol) '("macro"))
                 ((not (fboundp symbol)) '())
                 ((typep (fdefinition symbol) 'generic-function) '("generic function"))
@@ -151,7 +146,6 @@ it is, FILE where it is defined."
           collect face))
 
 (defun symbol-facts (symbol)
-  "Return facts about SYMBOL that need no more than it."
   (let ((sorts (sorts-of-symbol symbol)) (packages (packages-showing symbol)))
     (append (when sorts (list (list "Is a" (format nil "~{~A~^, ~}" sorts))))
             (when packages (list (list "Package" (format nil "~{~A~^, ~}" packages)))))))

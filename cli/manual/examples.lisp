@@ -96,7 +96,6 @@ it starts, is true."
 (defparameter *prompt* "Robot> " "What stands before what is typed in a session.")
 
 (defun typed-names (text)
-  "Return the first words of the lines in TEXT, a session, that have been typed."
   (loop for line in (uiop:split-string text :separator '(#\Newline))
         for start = (search *prompt* line)
         when start
@@ -105,7 +104,6 @@ it starts, is true."
 ;;; Blocks.
 
 (defun block-language (element)
-  "Return the language of ELEMENT, a block of code, or NIL."
   (let ((class (attribute-value "class" (second element))))
     (and class (starts-with-subseq "language-" class) (subseq class (length "language-")))))
 
@@ -151,7 +149,6 @@ with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found,
     (when example (push example (walk-examples walk)))))
 
 (defun names-in-bold (tokens)
-  "Return the names in bold code in TOKENS, a paragraph."
   (loop for rest on tokens
         for name = (and (tag-called-p "strong" (first rest))
                         (name-in-bold (element-at rest)))

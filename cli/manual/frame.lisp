@@ -36,13 +36,11 @@
           (escaped title) *ways* body *version*))
 
 (defun list-html (items)
-  "Return the HTML of a list of ITEMS, HTML each."
   (format nil "<ul>~%~{<li>~A</li>~%~}</ul>~%" items))
 
 ;;; The contents of a page of the guide, before it.
 
 (defun contents-html (page)
-  "Return the HTML of a list of the headings of PAGE, or none if they are few."
   (let ((headings (remove 2 (headings (page-tokens page)) :key #'first :test-not #'eql)))
     (if (< (length headings) 3)
         ""
@@ -58,12 +56,10 @@
 ;;; The first page.
 
 (defun page-links (part book)
-  "Return the HTML of a list of links to the pages of BOOK in PART."
   (list-html (loop for page in (remove part (book-pages book) :key #'page-part :test-not #'eq)
                    collect (link (page-file page) (escaped (page-title page))))))
 
 (defun chapters-in (book)
-  "Return the chapters of which BOOK has entries."
   (remove-if-not (lambda (chapter) (find chapter (book-entries book) :key #'entry-chapter))
                  (mapcar #'first *chapters*)))
 
@@ -71,7 +67,6 @@
   (remove chapter (book-entries book) :key #'entry-chapter :test-not #'eq))
 
 (defun chapter-links (book)
-  "Return the HTML of a list of links to the chapters of the reference."
   (list-html (loop for chapter in (chapters-in book)
                    collect (format nil "~A (~D): ~A"
                                    (link (chapter-file chapter) (escaped (chapter-title chapter)))

@@ -51,11 +51,9 @@ HTML of its Markdown, its headings with anchors."
 (defun root () (asdf:system-relative-pathname "ars-magna" ""))
 
 (defun project-path (name)
-  "Return the path of the file NAME, a string, of the project."
   (merge-pathnames (native-path name) (root)))
 
 (defun found-readmes ()
-  "Return the names of the README.md files in the project's folders, in order."
   (sort (loop for folder in '("src/" "rpl/" "worlds/" "cli/" "tests/")
               append (mapcar (lambda (path) (enough-namestring path (root)))
                              (directory (merge-pathnames "**/README.md" (project-path folder)))))
@@ -133,7 +131,6 @@ HTML of its Markdown, its headings with anchors."
   "Lists (command file): what --help prints.")
 
 (defun usage-markdown ()
-  "Return the Markdown of the page of what --help prints."
   (format nil "# Options of the command~%~%What `--help` prints.~%~%~
                ~:{## ~A~%~%```text~%~A~%```~%~%~}"
           (loop for (command file) in *usages*
@@ -141,13 +138,11 @@ HTML of its Markdown, its headings with anchors."
                               (file-text (project-path (format nil "cli/shell/~A" file)))))))
 
 (defun markdown-of (source)
-  "Return the Markdown of the page that the file SOURCE of the project stands for."
   (if (string= source "cli/shell/usage.txt")
       (usage-markdown)
       (file-text (project-path source))))
 
 (defun read-page (source)
-  "Return the page of the guide whose Markdown is in the file SOURCE of the project."
   (let* ((tokens (with-anchors (html-tokens (markdown-html (markdown-of source)))))
          (first (find 1 (headings tokens) :key #'first)))
     (make-page :source source :file (file-for source)

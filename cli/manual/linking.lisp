@@ -5,12 +5,10 @@
 ;;; Pages of the guide.
 
 (defun linked-code (element book)
-  "Return the tokens of ELEMENT, code in a sentence, leading to the entry of the name in it."
   (let ((name (first-name (text-of element))))
     (list (linked-name name (format nil "~{~A~}" element) book))))
 
 (defun linked-block (element book)
-  "Return the tokens of ELEMENT, a block of code; in Lisp the names lead to their entries."
   (if (equal "lisp" (block-language element))
       (list "<pre><code>" (linked-lisp (text-of element) book) "</code></pre>")
       element))
@@ -39,7 +37,6 @@ entries."
       token))
 
 (defun page-html (page book)
-  "Return the HTML of PAGE, of the guide."
   (format nil "~{~A~}" (linked-tokens (page-tokens page) page book)))
 
 ;;; Prose of docstrings: names are in capitals, or in backquotes where we write it ourselves. What
@@ -52,7 +49,6 @@ entries."
   (or (alphanumericp char) (find char "-*+!?%:./_=<>")))
 
 (defun loud-name-p (word)
-  "True if WORD is in capitals, as a name in a docstring is."
   (and (< 1 (length word))
        (some #'alpha-char-p word)
        (notany #'lower-case-p word)))

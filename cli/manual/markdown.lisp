@@ -83,5 +83,4 @@ that follow it."
                     (list (pop rest)))))
 
 (defun text-of (tokens)
-  "Return the text in TOKENS, without their tags."
   (unescaped (format nil "~{~A~}" (remove-if #'tag-p tokens))))

@@ -5,7 +5,6 @@
 (export '(examples-of-entry))
 
 (defun fact-html (fact book)
-  "Return the HTML of FACT, (label text)."
   (destructuring-bind (label text) fact
     (format nil "~@[<strong>~A:</strong> ~]~A" (and (string/= "" label) (escaped label))
             (prose-html text book))))
@@ -18,7 +17,6 @@
                          (example-heading example)))))
 
 (defun example-html (example book)
-  "Return the HTML of EXAMPLE and of where it is from."
   (format nil "<pre class=\"example\"><code>~A</code></pre>~%<p class=\"from\">~A</p>~%"
           (if (example-lisp-p example)
               (linked-lisp (example-text example) book)
@@ -30,7 +28,6 @@
   (or named-p (<= (count #\Newline (example-text example)) *longest-example*)))
 
 (defun kind-of-words (entry)
-  "Return as what the name of ENTRY stands in examples, for WORDS-OF-KIND."
   (let ((chapter (entry-chapter entry)))
     (cond ((eq :prompt chapter) :typed)
           ((member chapter *chapters-of-lisp*) :called)
@@ -41,7 +38,6 @@
   (examples-for (entry-key entry) (kind-of-words entry) examples))
 
 (defun examples-html (entry book)
-  "Return the HTML of the examples for ENTRY: those that name it, or where it is used."
   (multiple-value-bind (examples named-p) (examples-of-entry entry (book-examples book))
     (format nil "~{~A~}"
             (loop for example in examples
@@ -70,11 +66,9 @@ defined there, further up."
           (entry-file entry)))
 
 (defun sections-of (entries)
-  "Return the headings of the sections of ENTRIES, in order."
   (remove-duplicates (mapcar #'entry-section entries) :test #'string= :from-end t))
 
 (defun section-html (section entries book)
-  "Return the HTML of SECTION of a chapter, which has ENTRIES."
   (format nil "~@[~A~]~A~{~A~}"
           (and (string/= "" section)
                (format nil "<h2 id=\"section-~A\">~A</h2>~%" (anchor section) (escaped section)))
@@ -86,7 +80,6 @@ defined there, further up."
           (mapcar (lambda (entry) (entry-html entry book)) entries)))
 
 (defun write-chapter (out chapter book)
-  "Write the page of CHAPTER to OUT."
   (let ((entries (entries-in chapter book)))
     (write-frame out (chapter-title chapter)
                  (format nil "<h1>~A</h1>~%<p>~A</p>~%<p>~A</p>~%~{~A~}"

@@ -7,7 +7,6 @@
 ;;; The chapter of a symbol follows from what it is.
 
 (defun definer-p (symbol)
-  "True if SYMBOL is what users define with."
   (let ((name (symbol-name symbol)))
     (and (fboundp symbol)
          (or (and (starts-with-subseq "DEF" name)
@@ -18,7 +17,6 @@
                      :test #'string=)))))
 
 (defun colour-p (symbol)
-  "True if SYMBOL is a variable whose value is a colour or a vector of shades."
   (and (string= "ARS-MAGNA.CANVAS" (package-name (symbol-package symbol)))
        (boundp symbol)
        (typep (symbol-value symbol) '(or simple-vector (unsigned-byte 24)))
@@ -33,7 +31,6 @@
   "Lists (names text): words that are users' symbols, and no more.")
 
 (defun word-text (symbol)
-  "Return what SYMBOL means if it is one of *WORDS*, or NIL."
   (second (find-if (lambda (names) (member (symbol-name symbol) names :test #'string=))
                    *words* :key #'first)))
 
@@ -68,7 +65,6 @@
     (t "")))
 
 (defun value-facts (symbol)
-  "Return the fact that says what value the variable SYMBOL has, if that is short."
   (let ((value (value-text symbol)))
     (when value (list (list "Value" value)))))
 
@@ -89,7 +85,6 @@
 ;;; Which symbols.
 
 (defun exported-symbols (package)
-  "Return the symbols that PACKAGE, the name of one, exports, in order of their names."
   (let ((found '()))
     (when (find-package package)
       (do-external-symbols (symbol package)
@@ -109,7 +104,6 @@ checks for tests export."
        (find (symbol-name symbol) entries :key #'entry-name :test #'string-equal)))
 
 (defun symbol-entries (others)
-  "Return entries of all users' symbols that OTHERS, entries, do not tell of."
   (let ((told (let ((table (make-hash-table :test 'eq)))
                 (dolist (entry others table)
                   (when (entry-symbol entry) (setf (gethash (entry-symbol entry) table) t))))))

@@ -42,11 +42,9 @@
 ;;; Files.
 
 (defun call-writing (function name directory)
-  "Call FUNCTION with a stream to the new file NAME in DIRECTORY."
   (call-replacing-file function (merge-pathnames (native-path name) directory)))
 
 (defun copy-into (name source directory)
-  "Copy the file SOURCE to DIRECTORY, there to be called NAME."
   (let ((copy (merge-pathnames (native-path name) directory)))
     (make-directories (uiop:pathname-directory-pathname copy))
     (check-unprotected copy)

@@ -11,7 +11,6 @@
 (defvar *hook-before* nil "What hook all threads shared before the first of them.")
 
 (defun hook-to-share ()
-  "Return the hook that all threads are to share."
   (cond ((find-if-not #'disabled-hook-p *hooks-at-work*))
         (*hooks-at-work* (first *hooks-at-work*))
         (t *hook-before*)))

@@ -18,17 +18,14 @@ method, DATUM is the argument.")
         datum)))
 
 (defun part-type-p (type)
-  "True if TYPE is the name of a kind of part."
   (and (find-kind-name type 'part) t))
 
 (defun kind-words (type)
-  "Return TYPE, the name of a kind of part, as people write it."
   (substitute #\Space #\- (string-downcase type)))
 
 ;;; Parts by number.
 
 (defun numbered (index elements kind robot)
-  "Return the element INDEX of the vector ELEMENTS of ROBOT, of things of KIND."
   (let ((count (length elements)))
     (cond ((zerop count) (reject-line "~A has no ~A." robot kind))
           ((not (typep index 'unsigned-byte))
@@ -52,12 +49,10 @@ method, DATUM is the argument.")
   (if (and datum (symbolp datum)) (make-keyword (symbol-name datum)) datum))
 
 (defun by-number-p (type)
-  "True if what is of TYPE, a keyword, is called by number."
   (or (member type '(:designator :destination))
       (part-type-p type)))
 
 (defun number-words (type)
-  "Return what is typed for what is of TYPE and called by number."
   (format nil "the number of a ~A" (if (part-type-p type) (kind-words type) "designator")))
 
 (defun type-key (type) (make-keyword (symbol-name type)))

@@ -45,7 +45,6 @@
         (finish-output console))))
 
 (defun tell-waiting (session breakage)
-  "Show that BREAKAGE has come while another is being answered."
   (let ((console (session-console session)))
     (write-fitted console
                   "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the one before is answered.~%"

@@ -6,7 +6,6 @@
 ;;; inside parentheses stand symbols, in quotes files. What of it makes no sense is not completed.
 
 (defun text-of-choice (choice)
-  "Return how CHOICE, a string, symbol or number, is typed."
   (typecase choice
     (string choice)
     (keyword (format nil "~(~S~)" choice))
@@ -28,12 +27,10 @@
   (not (or (blank-p char) (find char "()'`,\";|#"))))
 
 (defun token-start (text point)
-  "Return where the symbol begins in TEXT that ends at POINT."
   (let ((before (position-if-not #'token-char-p text :end point :from-end t)))
     (if before (1+ before) 0)))
 
 (defun open-quote (text point)
-  "Return where in TEXT the string begins that POINT is in, or NIL."
   (loop with start = nil
         for position from 0 below point
         do (case (char text position)
@@ -59,7 +56,6 @@
   (mapcar #'attribute-name (all-attributes)))
 
 (defun last-attribute (text point)
-  "Return the attribute whose key stands last before POINT in TEXT, or NIL."
   (let* ((colon (position #\: text :end point :from-end t))
          (end (and colon (position-if-not #'token-char-p text :start colon :end point))))
     (and end
@@ -86,7 +82,6 @@
   (and (eq *package* (symbol-package symbol)) (not (defined-p symbol))))
 
 (defun symbols-here ()
-  "Return the symbols that can be typed without their packages."
   (let ((symbols '()))
     (do-symbols (symbol *package* (remove-if #'merely-read-p symbols)) (push symbol symbols))))
 
@@ -166,7 +161,6 @@ that begins, and which is before it; START is where the first one does."
         do (setf start end)))
 
 (defun unit-choices (slot text start)
-  "Return the units that can go on from START in TEXT, after what is typed for SLOT, a number."
   (let ((dimension (and slot (< start (length text)) (dimension-of (slot-type slot)))))
     (and dimension
          (digit-char-p (char text (position-if-not #'blank-p text :end start :from-end t)))
@@ -197,7 +191,6 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
                            quoted-p)))))))
 
 (defun word-completions (text words)
-  "Complete the last word of TEXT to one of WORDS, of which any number may be given."
   (let ((start (1+ (or (position-if #'blank-p text :from-end t) -1))))
     (as-arguments start (matching (subseq text start) words) nil)))
 
@@ -206,7 +199,6 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
   (find-line (split-line (expand-alias (format nil "~A " name)))))
 
 (defun line-completions (session text start)
-  "Complete the command that begins in TEXT at START."
   (let* ((start (or (position-if-not #'blank-p text :start start) (length text)))
          (end (if (< start (length text)) (token-end text start) start))
          (typed (subseq text start end)))
@@ -218,7 +210,6 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
 ;;; Breaks.
 
 (defun break-completions (breakage text)
-  "Complete a way to go on after BREAKAGE."
   (values 0
           (matching text (append '("backtrace" "quit")
                                  (mapcar #'restart-name (breakage-restarts breakage))))

@@ -60,7 +60,6 @@ user's."
                                       user-calls :key #'first))))
 
 (defun write-plan-tree ()
-  "Print the plans of the run that has broken here, with all that they are in the middle of."
   (print-plans *standard-output* t))
 
 (defun write-backtrace ()
@@ -68,7 +67,6 @@ user's."
     (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300)))))
 
 (defun debug-line (session breakage text)
-  "Do what TEXT, a line typed at the debugger, says to BREAKAGE."
   (flet ((says-p (word) (string-equal word (split-line text))))
     (cond ((comment-p text))
           ((lisp-p text) (let ((form (read-form session text)))
@@ -192,7 +190,6 @@ go on, if there are any."
                                             (current-thread) heirs)))))
 
 (defun debug-here (session breakage)
-  "Read lines for BREAKAGE, of this thread, until one says how to go on."
   (flet ((read-lines ()
            (answer-those-before session breakage)
            (tell-break session breakage)
@@ -229,7 +226,6 @@ threads, until that goes on."
 it asks how it goes on: for those who show what stands still then.")
 
 (defun debug-breakage (sessions breakage)
-  "Let the users of SESSIONS say how BREAKAGE, of this thread, is to go on."
   (mapc #'funcall *break-hooks*)
   (if (eq (session-thread (first sessions)) (current-thread))
       (debug-here (first sessions) breakage)
@@ -349,7 +345,6 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
       (release session breakage))))
 
 (defun call-with-debugger (session function)
-  "Call FUNCTION, while SESSION is what the debugger asks."
   (let ((outer *session*))
     (setf *session* session
           (break-state-thread (session-break-state session)) (current-thread))

@@ -28,7 +28,6 @@ and says itself how it has ended. RESOURCE is what carries out a single command,
 (define-shared errand)
 
 (defun requests-waiting ()
-  "Return what waits for the next tick of the current simulation, a list."
   (and *simulation* (timeline-inbox (timeline-of *simulation*))))
 
 (defun errand-over-p (errand)
@@ -91,11 +90,9 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
       (reject-line "The command has not completed within ~D ticks; it goes on." *patience*))))
 
 (defun send (session command resource arguments)
-  "Issue COMMAND on RESOURCE with ARGUMENTS."
   (push (issue-errand command resource arguments) (session-errands session)))
 
 (defun errands-under-way (session)
-  "Return what SESSION has issued and has not ended, newest first."
   (remove-if #'errand-over-p (session-errands session)))
 
 (defun await-errands (session &optional (errands (session-errands session)))
@@ -111,7 +108,6 @@ it go on."
 ;;; what they ask for, of which there may be no end.
 
 (defun awaited-p (request)
-  "True if REQUEST was not asked for by a plan."
   (not (request-forked-p request)))
 
 (defun at-work-p (resource)

@@ -76,19 +76,16 @@ what Lisp says of a full stack, of which users are told."
   (call-placing-trouble (lambda () (eval-quietly form))))
 
 (defun reject-value (value trouble)
-  "Signal BAD-LINE, as VALUE cannot be printed because of TROUBLE."
   (reject-line "The value, of type ~(~A~), cannot be printed: ~A. Perhaps a method for ~
                 PRINT-OBJECT fails."
                (class-name (class-of value)) (one-line-text trouble)))
 
 (defun value-line (value)
-  "Return how VALUE is printed. Signals BAD-LINE if it cannot be."
   (let ((*print-circle* (or *print-circle* (not (tree-p value)))))
     (handler-bind ((error (lambda (trouble) (reject-value value trouble))))
       (format nil "~S" (if (readtablep value) (readtable-name value) value)))))
 
 (defun evaluate (session form)
-  "Evaluate FORM and print its values, each on a line."
   (setf (session-lisp-p session) t)
   (let ((values (multiple-value-list
                  (call-telling-doubts (lambda () (call-staying (lambda () (eval-placing form))))))))
@@ -102,14 +99,12 @@ what Lisp says of a full stack, of which users are told."
   (call-refusing-exits function "EXIT would end the simulator amid a line. QUIT leaves."))
 
 (defun check-parenthesis (text position)
-  "Signal BAD-LINE if a form is to begin in TEXT at POSITION where a parenthesis is too many."
   (let ((start (skip-blanks text position)))
     (when (char= #\) (char text start))
       (reject-line "There is a parenthesis too many: ~A~:[~;  What is before it has been done.~]"
                    (one-line (subseq text start)) (plusp position)))))
 
 (defun wrong-parameter ()
-  "Return the error that a parameter has no value of its type, or NIL."
   (handler-case (check-parameters)
     (wrong-argument (condition) condition)))
 
@@ -167,5 +162,4 @@ that could not be read."
            (call-checking-parameters (lambda () (evaluate-placing session text form)))))
 
 (defun evaluate-text (session text)
-  "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."
   (call-telling-undefined (lambda () (evaluate-forms session text))))

@@ -67,29 +67,23 @@
   "Lists (words hint): what newcomers type that is no line, and what they may mean.")
 
 (defun hint-for (name)
-  "Return what who types NAME, which is no line, may want, or NIL."
   (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *hints*)))
 
 ;;; How what is no line is typed.
 
 (defun plan-advice (name)
-  "Return in a sentence how the plan called NAME, a symbol or string, is run, or NIL if there is no
-such plan."
   (let ((plan (find-procedure name nil)))
     (and plan (format nil "~A is a plan: PLAN ~A." (procedure-name plan) (plan-usage plan)))))
 
 (defun line-called (name)
-  "Return the line command called NAME, a string, or NIL."
   (find name (all-lines) :key #'line-name :test #'string-equal))
 
 (defun line-advice (name)
-  "Return in a sentence how the line command called NAME, a string, is typed; NIL if there is none."
   (let ((line (line-called name)))
     (and line (format nil "~A is a command of this prompt, typed without parentheses: ~A."
                       (line-name line) (usage line)))))
 
 (defun parameter-advice (name)
-  "Return in a sentence how the parameter called NAME is set, or NIL if there is no such parameter."
   (let ((parameter (find-parameter name nil)))
     (and parameter
          (format nil "~A is a parameter: (setq ~:*~A VALUE) sets it, PARAMS lists all."

@@ -20,11 +20,9 @@ lines; or NIL."
     (and advice (format nil "~A: ~A." (native-name path) advice))))
 
 (defun script-text (path)
-  "Return in a sentence how the file PATH, which looks like a script of lines, is run."
   (format nil "It looks like a script of lines: ars-magna ~A." (native-name path)))
 
 (defun check-lisp-file (path)
-  "Signal BAD-LINE if the file PATH, which is to be loaded, is of a kind of its own."
   (let ((text (foreign-text path)))
     (when text (reject-line "~A" text))))
 
@@ -47,7 +45,6 @@ lines; or NIL."
                    (values (read-from-string text t nil :start (start-of-form text 0))))))
 
 (defun only-defines-p (path)
-  "True if the file PATH defines a robot, and has nothing but definitions."
   (ignore-errors
    (let ((text (file-text path)) (robot-p nil) (*read-eval* nil))
      (loop for (form end) = (multiple-value-list

@@ -6,7 +6,6 @@
 ;;; it is read, after #., is so as often.
 
 (defun read-more (session text)
-  "Return the next line of SESSION, which goes on from TEXT."
   (or (read-input session +going-on+ text)
       (reject-line "The form is not complete: ~A" (one-line text))))
 

@@ -20,7 +20,6 @@ could be typed either: so signal that."
                (session-console session)))
 
 (defun call-complaining (session function)
-  "Call FUNCTION; complain of what goes wrong in it."
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
       (regain-room condition)
@@ -29,7 +28,6 @@ could be typed either: so signal that."
         (error (trouble) (complain-of-printing session trouble))))))
 
 (defun command-carried-out (robot)
-  "Return the name of the command that ROBOT carries out, or NIL."
   (let ((event (and (at-work-p robot) (resource-event robot))))
     (and (typep event 'operation)
          (string-upcase (command-prompt-name (operation-command event))))))
@@ -72,12 +70,10 @@ loads; NIL if neither, or nobody watches."
                                  (and line (account-file account)) line text))))
 
 (defun leave-batch (session whose)
-  "End the batch of SESSION, which was interrupted in code of WHOSE, a text or NIL."
   (say-where session (format nil "stopped~@[ in ~A~]." whose))
   (throw 'leave 130))
 
 (defun dropped-text (count)
-  "Return what is said of COUNT lines that were to be read after the one that was interrupted."
   (format nil "~[~:; ~:*~D line~:P that waited ~:*~[~;was~:;were~] dropped; the arrow up brings ~
                ~:*~[~;it~:;them~] back.~]"
           count))

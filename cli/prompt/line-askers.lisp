@@ -44,7 +44,6 @@ TYPED-P is true of a line that is no Lisp."
     (and (eq whose account) (eql line (account-line account)) (not typed-p))))
 
 (defun note-plan-of-line (account plan)
-  "Note that the line under way of ACCOUNT, or NIL, has begun PLAN, a task."
   (when account (push (cons (asker-note plan) (line-under-way account)) (account-plans account))))
 
 (defun line-of-message (account message)
@@ -60,7 +59,6 @@ line under way if that is not known."
               (t (line-under-way account)))))))
 
 (defun report-messages (account messages)
-  "Report MESSAGES. True if ACCOUNT is of what reports by objects."
   (when (reports-p account)
     (dolist (message messages t)
       (report-message account (message-kind message) (message-text message)

@@ -48,7 +48,6 @@ characters up to the next blank: :TOKEN, or what they stand for, such as :FILE (
     (line-name line)))
 
 (defun slot-form (parameter)
-  "Return a form that makes the slot for PARAMETER of DEFINE-LINE."
   (destructuring-bind (variable type text &optional optional) parameter
     `(make-slot ,(string-downcase variable) ',type ,text ,(eq optional :optional))))
 
@@ -77,13 +76,11 @@ DETAILS, strings, what it says below the parameters, a paragraph each."
                 collect (format nil "~:[~A~;[~A]~]" (slot-optional-p slot) (slot-name slot)))))
 
 (defun slot-words (slot)
-  "Return what the argument in SLOT has to be."
   (if (keywordp (slot-type slot))
       (slot-text slot)
       (argument-words (slot-type slot))))
 
 (defun takes (line)
-  "Return in a sentence what LINE takes."
   (format nil "~A~:[ takes no arguments~;~:*: ~{~A is ~A~^, ~}~]." (usage line)
           (loop for slot in (line-parameters line)
                 collect (slot-name slot) collect (slot-words slot))))
@@ -102,7 +99,6 @@ DETAILS, strings, what it says below the parameters, a paragraph each."
       ((&rest &body) (format nil "[~(~A~)...]" name)))))
 
 (defun parameter-words (lambda-list)
-  "Return how each parameter of LAMBDA-LIST, of a plan, is typed."
   (loop with keyword = nil
         for parameter in lambda-list
         until (eq parameter '&aux)
@@ -112,5 +108,4 @@ DETAILS, strings, what it says below the parameters, a paragraph each."
           collect (parameter-word parameter keyword)))
 
 (defun plan-usage (plan)
-  "Return how PLAN, a plan procedure, is typed after the word PLAN."
   (format nil "~A~{ ~A~}" (procedure-name plan) (parameter-words (procedure-lambda-list plan))))

@@ -34,7 +34,6 @@
 ;;; Complaints and messages.
 
 (defun complain (listener text)
-  "Show LISTENER TEXT as an error."
   (incf (listener-errors listener))
   (let ((account (listener-account listener)) (console (listener-console listener)))
     (unless (and (reports-p account) (report-message account :error text))
@@ -85,7 +84,6 @@ if it is an error or warning in a script, with the place of its line."
         text)))
 
 (defun write-painted (message listener out)
-  "Write MESSAGE to OUT as the console of LISTENER is to show it."
   (write-string (painted (visible (with-output-to-string (text)
                                     (write-message message text (message-words message listener))))
                          (message-ink message) (listener-console listener))
@@ -135,7 +133,6 @@ again and again, or are very many."
                                              (count-if #'others-p messages)))))))
 
 (defun tell-messages (listener messages)
-  "Show MESSAGES in LISTENER, and the prompt again."
   (with-lock ((listener-lock listener))
     (setf (listener-news-p listener) nil)
     (let ((console (listener-console listener))

@@ -11,13 +11,11 @@
 (defvar *sessions-lock* (make-lock "sessions"))
 
 (defun call-among-sessions (session function)
-  "Call FUNCTION, while SESSION is at work."
   (with-lock (*sessions-lock*) (push session *sessions*))
   (unwind-protect (funcall function)
     (with-lock (*sessions-lock*) (removef *sessions* session))))
 
 (defun sessions-at-work ()
-  "Return a list of the sessions at work, the newest first."
   (with-lock (*sessions-lock*) (copy-list *sessions*)))
 
 (defun hears-p (session simulation)
@@ -26,7 +24,6 @@
     (and heard (eq (latest heard) (latest simulation)))))
 
 (defun sessions-hearing (simulation)
-  "Return the sessions at work that listen to SIMULATION."
   (and simulation
        (remove-if-not (lambda (session) (hears-p session simulation)) (sessions-at-work))))
 
@@ -143,7 +140,6 @@ another, so that nobody waits for the tick to end, which it may never."
         (and session (lambda () (hear session simulation)))))
 
 (defun copy-of-counts (session)
-  "Return a table of what SESSION has been told how often."
   (let ((copy (make-hash-table :test 'equal)))
     (with-lock ((session-lock session)) (take-counts copy (session-told session)))
     copy))
@@ -156,7 +152,6 @@ not."
       (with-lock ((session-lock session)) (take-counts (session-told session) counts)))))
 
 (defun listen-to (session simulation)
-  "Let SESSION show what SIMULATION has to say when it says it."
   (share-counts session simulation)
   (setf (session-simulation session) simulation)
   (set-listener session simulation)
@@ -180,7 +175,6 @@ not."
   (listen-to session simulation))
 
 (defun follow-simulation (session)
-  "Let SESSION listen to the simulation that is current now."
   (unless (or (session-abandoned-p session)
               (and (eq *simulation* (session-simulation session))
                    (eq (and *simulation* (live-p *simulation*))

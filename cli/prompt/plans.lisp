@@ -35,7 +35,6 @@ be done, a list of two texts, or is NIL."
     (and task (task-over-p task))))
 
 (defun plan-runner-now ()
-  "Return the runner of the plans of the robot that they drive, or NIL."
   (handler-case (rpl-runner) (misuse () nil)))
 
 ;;; A plan may end before BEGIN-PLAN has told which task it is.
@@ -46,7 +45,6 @@ be done, a list of two texts, or is NIL."
       (eq (task-name task) (plan-errand-plan errand))))
 
 (defun errand-of (task)
-  "Return the errand whose plan TASK is, or NIL."
   (with-lock (*plan-errands-lock*)
     (let ((errand (find-if (lambda (errand) (errand-of-p errand task)) *plan-errands*)))
       (when errand (setf (plan-errand-task errand) task))
@@ -75,7 +73,6 @@ be done, a list of two texts, or is NIL."
   (cut (one-line (in-user-words (lambda () (funcall function object)))) 300))
 
 (defun reason-text (failure)
-  "Return in words why a plan failed."
   (if (eq (type-of failure) 'plan-failure)
       (format nil "~:[no reason given~;~:*~A~]~{ ~A~}"
               (and (failure-class failure) (safe-text (failure-class failure)))
@@ -95,7 +92,6 @@ message. Prints as TEXT."
   (verdict-session verdict))
 
 (defun verdict-of (errand control &rest arguments)
-  "Return a verdict that begins with the name of the plan of ERRAND."
   (make-verdict (format nil "~(~A~) ~?" (plan-errand-plan errand) control arguments)
                 (plan-errand-session errand)))
 
@@ -106,7 +102,6 @@ message. Prints as TEXT."
      ,@body))
 
 (defun waiting-for-plan-p (session)
-  "True if a plan that SESSION has started, and waits for, is under way."
   (and (session-patient-p session)
        (with-lock (*plan-errands-lock*)
          (find session *plan-errands* :key #'plan-errand-session))))
@@ -128,7 +123,6 @@ message. Prints as TEXT."
     (setf (session-failure session) (list failure (plan-errand-plan errand)))))
 
 (defun tell-end (errand)
-  "Queue a message that says how the plan of ERRAND has ended."
   (let ((result (task-result (plan-errand-task errand))))
     (with-messages-to (errand)
       (case (task-state (plan-errand-task errand))
@@ -151,7 +145,6 @@ message. Prints as TEXT."
                                  waits advice))))))
 
 (defun close-errand (errand)
-  "Count ERRAND, whose end has been told, as done."
   (with-lock (*plan-errands-lock*)
     (setf *plan-errands* (remove errand *plan-errands*)))
   ;; There is no task if the plan has not begun.
@@ -182,7 +175,6 @@ ever go on; else NIL. To be called while no plan reacts."
 ;;; Live.
 
 (defun driving-p (errand runner)
-  "True if RUNNER still runs the plan of ERRAND."
   (and (live-p (plan-errand-simulation errand))
        (eq runner (plan-runner-now))))
 
@@ -199,7 +191,6 @@ answer to the last such question."
     stuck))
 
 (defun watch-plan (errand runner)
-  "Wait until the plan of ERRAND is over, and tell how it has ended."
   (loop with stuck = nil
         until (or (plan-over-p errand) (plan-errand-let-go-p errand))
         do (cond ((wait-on-semaphore (plan-errand-over errand) 0.2))
@@ -211,7 +202,6 @@ answer to the last such question."
   (close-errand errand))
 
 (defun call-in-run (function simulation)
-  "Call FUNCTION where SIMULATION is the current one."
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation)))
     (funcall function)))

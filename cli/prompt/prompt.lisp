@@ -31,7 +31,6 @@ tell somebody who sits there."
                     "Time stands still. RESUME lets it go on, STEP 10 for 10 ticks.~%"))))
 
 (defun begin-line-of (session text)
-  "Note that TEXT, which SESSION has read last, is about to be done."
   (note-line-begun (session-account session) (if (comment-p text) nil text)
                    (lines-typed (session-input session)) (session-errors session)))
 
@@ -113,7 +112,6 @@ that it waits, since time stands still."
     (when (session-account session) (give-up-waiting-lines (session-account session)))))
 
 (defun call-with-streams (session function)
-  "Call FUNCTION, which writes to SESSION and asks its user."
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
          (*program-reads* (lambda () (report-asking (session-account session))))

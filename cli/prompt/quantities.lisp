@@ -37,7 +37,6 @@
   "Lists (wanted said sentence): what to do instead with a quantity of another dimension.")
 
 (defun dimension-of (type)
-  "Return the dimension of what is of the argument TYPE, or NIL."
   (second (find type *quantities* :key #'first :test #'same-name-p)))
 
 (defun quantity-examples (type)
@@ -102,7 +101,6 @@ NIL if there is none."
     (and unit (values unit end))))
 
 (defun unit-names (dimension)
-  "Return the names of the units of DIMENSION."
   (loop for (nil . names) in (cddr (assoc dimension *units*))
         append names))
 

@@ -21,7 +21,6 @@
     (and item (recurring-code item))))
 
 (defun tick-of (message)
-  "Return the tick that the run has come to that MESSAGE is of."
   (let ((run (message-run message)))
     (if run (simulation-tick run) 0)))
 
@@ -31,7 +30,6 @@
   told)
 
 (defun tally-for (message told)
-  "Return the tally in TOLD that MESSAGE is to be counted by."
   (let* ((text (message-text message))
          (code (code-at-fault message))
          (tally (gethash text told)))

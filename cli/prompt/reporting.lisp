@@ -22,11 +22,9 @@ is the one of those of a form under way that makes no sense, or NIL if that is n
   (trouble-line nil :type (or null fixnum)))
 
 (defun reports-p (account)
-  "True if what has ACCOUNT reports by objects."
   (and account (account-console account) t))
 
 (defun now ()
-  "Return the tick of the current simulation, or NIL."
   (and *simulation* (simulation-tick *simulation*)))
 
 (defun report-object (account type &rest properties)
@@ -47,7 +45,6 @@ has asked for."
   (report-object account "message" :kind kind :text text :tick (now) :line line))
 
 (defun report-values (account texts)
-  "Report TEXTS, of the values of a form of Lisp. True if ACCOUNT is of what reports by objects."
   (when (reports-p account)
     (dolist (text texts t) (report-object account "value" :text text))))
 
@@ -62,7 +59,6 @@ NIL: ACCOUNT may be NIL, or between lines."
     (and line (or (account-trouble-line account) line))))
 
 (defun note-trouble-line (account line)
-  "Note that LINE, of a form that is being done, makes no sense."
   (when account (setf (account-trouble-line account) line)))
 
 (defun placed-text (account text &optional (line (line-done-now account)))
@@ -128,5 +124,4 @@ then :OK or :FAILED."
       (forget-plans-of-lines account))))
 
 (defun report-asking (account)
-  "Report that a program reads the line that is sent next."
   (when account (report-object account "asking" :line (line-under-way account))))

@@ -13,7 +13,6 @@
   (same-name-p (spec-type (command-resource command)) 'robot))
 
 (defun part-family (command)
-  "Return where HELP lists COMMAND: by the kind of part that it moves."
   (let ((type (type-key (spec-type (command-resource command)))))
     (case type
       (:robot (case (command-family command)
@@ -33,7 +32,6 @@
                         (and (stringp text) text))))
 
 (defun command-details (command)
-  "Return the lines that HELP adds about COMMAND."
   (append (when (command-results command)
             (list (format nil "Results: ~{~A~^, ~}."
                           (mapcar #'spec-text (command-results command)))))
@@ -64,7 +62,6 @@
   "The robot's commands and the line commands that they make, as when that was looked up last.")
 
 (defun robot-lines ()
-  "Return a list of the line commands that the robot's commands make."
   (let ((commands (all-commands)))
     (unless (equal commands (car *robot-lines*))
       (setf *robot-lines* (cons commands (mapcar #'robot-line commands))))

@@ -75,7 +75,6 @@ whether it writes in colours: by default on a terminal, unless the environment h
                                         :stop-p (and stop t)))))
 
 (defun session-thread (session)
-  "Return the thread that reads the lines of SESSION, or NIL."
   (break-state-thread (session-break-state session)))
 
 (defun session-breaks (session)
@@ -83,7 +82,6 @@ whether it writes in colours: by default on a terminal, unless the environment h
   (break-state-others (session-break-state session)))
 
 (defun check-run ()
-  "Signal BAD-LINE if the run that the prompt is in is over."
   (when (and *simulation* (simulation-over *simulation*))
     (let ((name (simulation-name *simulation*)))
       (reject-line "The run in ~(~A~) is over: ~A. ~:[WORLD shows where you can go~;~
@@ -106,7 +104,6 @@ over."
         (reject-line "There is no robot here. WORLD lists the worlds, WORLD name starts one."))))
 
 (defun size-of-window (session)
-  "Return how many columns and rows there are where SESSION writes."
   (funcall (or (console-window (session-console session)) #'window-size)))
 
 (defun watched-p (session)

@@ -79,7 +79,6 @@ turn 1; go 3, with the name of a line command; or NIL."
              comment)))))
 
 (defun tell-of-comment (text)
-  "Tell of the command in TEXT, a line of no Lisp, that stands in a comment there, if any."
   (let ((comment (command-in-comment text)))
     (when comment
       (warning-set (format nil "What follows ; is a comment: ~A was left out. Type one command a ~

@@ -13,7 +13,6 @@
   (or (boundp symbol) (fboundp symbol)))
 
 (defun other-robot-p (symbol)
-  "True if SYMBOL is a robot's variable that ARS-USER has imported."
   (and (not (eq (symbol-package symbol) (user-package)))
        (boundp symbol)
        (robot-p (symbol-value symbol))))
@@ -34,11 +33,9 @@ been read, or is a robot's of another world."
       (unless status (import (list name) (user-package))))))
 
 (defun call-by-name (names)
-  "Let NAMES, of robots, be known in ARS-USER."
   (mapc #'call-by-its-name names))
 
 (defun names-other-robot-p (form)
-  "True if FORM defines a robot by a name that ARS-USER has imported."
   (and (consp form)
        (eq 'defrobot (first form))
        (consp (rest form))

@@ -30,7 +30,6 @@
 ;;; Steering.
 
 (defun check-visit-goes-on (visit)
-  "Signal BAD-LINE if the trial of VISIT is over."
   (when (visit-result visit)
     (reject-line "The trial is over. TRIAL name condition number opens one, TRIAL OFF leads out.")))
 
@@ -44,13 +43,11 @@
         (visit-due visit) (seconds-now)))
 
 (defun set-visit-rate (visit rate)
-  "Let ticks pass at RATE once they pass by themselves."
   (check-visit-goes-on visit)
   (setf (visit-rate visit) rate
         (visit-due visit) (seconds-now)))
 
 (defun step-visit (visit count)
-  "Let COUNT more ticks pass before the next line."
   (check-visit-goes-on visit)
   (unless (whole-p count 1)
     (reject-line "N cannot be ~D. Give a number of ticks, from 1 to 1e9." count))
@@ -59,7 +56,6 @@
   (incf (visit-steps visit) count))
 
 (defun visit-text (visit)
-  "Return in words how time passes in VISIT."
   (cond ((visit-result visit) "over")
         ((visit-running-p visit) (rate-text (visit-rate visit)))
         (t "paused")))

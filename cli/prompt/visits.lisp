@@ -42,7 +42,6 @@ to say of that."
   (answer-questions (timeline-custody (timeline-of *simulation*))))
 
 (defun show-prompt-once (session)
-  "Let the prompt of SESSION stand, if it has one."
   (let ((console (session-console session)))
     (unless (or (session-batch-p session) (unanswered-p console))
       (with-lock ((session-lock session)) (show-prompt console "Robot> ")))))
@@ -65,7 +64,6 @@ to say of that."
       (announce-display (session-robot) '()))))
 
 (defun visit-line (session visit)
-  "Read a line of SESSION, which is in VISIT, and do what it says."
   (call-aside
    (lambda ()
      (tell-whereabouts session)
@@ -110,7 +108,6 @@ to say of that."
                t))))
 
 (defun tick-passes-p (session visit)
-  "True if a tick is to pass in VISIT now."
   (cond ((plusp (visit-steps visit))
          (when (session-terminal-p session)
            (unless (visit-progress visit)
@@ -122,7 +119,6 @@ to say of that."
         ((visit-running-p visit) (wait-for-tick session visit))))
 
 (defun visit-gate (session visit)
-  "Return the gate of the trial of VISIT, at which SESSION reads lines."
   (lambda (simulation)
     (declare (ignore simulation))
     (when (visit-left-p visit) (leave-visit session))

@@ -37,7 +37,6 @@ of a text that says why."
                "No window: McCLIM is there, but cannot be loaded: ~A"))
 
 (defun display-named-p ()
-  "True if the environment names an X server."
   (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
 
 ;; Read when this file is loaded, so that a saved program has it with it.

@@ -50,15 +50,12 @@ BAD-LINE if there are none."
                    (native-name path))))
 
 (defun robot-names ()
-  "Return the names of all robots."
   (mapcar #'blueprint-name (all-blueprints)))
 
 (defun robots-here ()
-  "Return the names of the robots of the current run."
   (and *simulation* (mapcar #'robot-name (simulation-robots *simulation*))))
 
 (defun world-of (robot-name)
-  "Return the map that the robot ROBOT-NAME is defined in."
   (find-map (blueprint-map (find-blueprint robot-name))))
 
 (defun robots-of (map)
@@ -68,7 +65,6 @@ BAD-LINE if there are none."
           collect (blueprint-name body)))
 
 (defun all-worlds ()
-  "Return a list of all maps that have robots."
   (remove-if-not #'robots-of (all-maps)))
 
 (defun world-robots-called (name)
@@ -86,11 +82,9 @@ a world. Signals BAD-LINE."
                           name (mapcar #'map-name (all-worlds)))))))
 
 (defun robots-beside (robot-name)
-  "Return the names of all robots in the map of ROBOT-NAME, that one first."
   (cons robot-name (remove robot-name (robots-of (world-of robot-name)))))
 
 (defun write-worlds ()
-  "List the worlds: their maps, and their robots."
   (dolist (map (all-worlds))
     (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (map-name map) (map-width map) (map-height map)
             (robots-of map))))

@@ -11,12 +11,10 @@
 (defvar *saved-by-user-p* nil "True in a program that a user has saved.")
 
 (defun program-words ()
-  "Return how this program is called: its file, in a list."
   (list (or (and (not *saved-by-user-p*) (environment-value "ARS_MAGNA_PROGRAM"))
             (first (uiop:raw-command-line-arguments)))))
 
 (defun command-text (words)
-  "Return WORDS, strings, as they are typed at a shell."
   (format nil "~{~A~^ ~}" (mapcar #'uiop:escape-sh-token words)))
 
 (defun save-program (name)

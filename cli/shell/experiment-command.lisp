@@ -86,7 +86,6 @@
     (if shard (shard-directory out (car shard) (cdr shard)) out)))
 
 (defun results-of (experiment options)
-  "Run what OPTIONS want of EXPERIMENT in this process. Return the results."
   (let ((directory (directory-for-rows options)))
     (when directory (ensure-results-directory directory))
     (apply #'run-experiment experiment
@@ -100,7 +99,6 @@
              (and seconds (list :time-limit seconds))))))
 
 (defun run-here (experiment options)
-  "Run what OPTIONS want of EXPERIMENT in this process, and say what came of it."
   (let ((shard (option-value :shard options)) (trials (trials-of experiment options)))
     (cond ((null shard)
            (report-results (results-of experiment options) (option-value :plot options)))
@@ -159,7 +157,6 @@ of what has been interrupted."
       (say "~A" (complaint-text (message-text message))))))
 
 (defun experiment-command (arguments)
-  "Do what ./cli/ars-magna experiment ARGUMENTS does. Return the status to exit with."
   (let* ((options (parse-options arguments :table *experiment-options* :others t))
          (words (option-values :other options)))
     (check-together options)

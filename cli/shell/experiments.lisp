@@ -6,7 +6,6 @@
 ;;; worlds/ are, by its own. The very name of a file goes first, and then an experiment.
 
 (defun experiment-words (experiments)
-  "Return the names of EXPERIMENTS as people write them, in a list."
   (mapcar (lambda (experiment) (string-downcase (experiment-name experiment))) experiments))
 
 (defun experiment-among (name experiments)
@@ -44,7 +43,6 @@ none."
                  name (nearest-name name known) known)))
 
 (defun only-experiment (file experiments)
-  "Return the one of EXPERIMENTS, those of FILE. Signals BAD-LINE if there are several."
   (if (rest experiments)
       (reject-line "~A has several experiments: ~{~A~^, ~}. Say which, after the file."
                    file (sort (experiment-words experiments) #'string<))

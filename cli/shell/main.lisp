@@ -10,7 +10,6 @@
 (defparameter *default-world* "WATSON" "The world of a prompt that is not told another.")
 
 (defun first-robot (options)
-  "Return the name of the robot that OPTIONS ask for."
   (let* ((robot (option-value :robot options))
          (world (option-value :world options (and (null robot) *default-world*)))
          (robots (and world (world-robots-called world))))
@@ -65,7 +64,6 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
                   console)))
 
 (defun run-live (session robot-name options)
-  "Run the lines of SESSION in the live world of ROBOT-NAME."
   (apply #'simulator robot-name :rate (option-value :rate options *default-rate*)
                                 :display (or (option-value :window options)
                                              (display-wanted-p session))
@@ -79,7 +77,6 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
     (funcall *displays-waiter*)))
 
 (defun plan-lines (options)
-  "Return the lines for the plans that OPTIONS ask for."
   (loop for text in (option-values :plan options) collect (format nil "plan ~A" text)))
 
 (defun standard-session (options)
@@ -101,7 +98,6 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
                   :color (option-value :color options :auto))))
 
 (defun run-in-world (session robot-name options)
-  "Run the lines of SESSION, beginning with ROBOT-NAME."
   ;; What has been said of the world's definitions; a headless run has messages of its own.
   (show-first-messages session)
   (let ((*forks-to-keep* t))
@@ -129,7 +125,6 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
       (bad-line (condition) (reject-usage "~A" (bad-line-text condition))))))
 
 (defun run-standard (session options)
-  "Run the lines of SESSION as OPTIONS say."
   (let ((robot-name (robot-asked-for session options)))
     (when (option-value :json options) (write-all-as-objects session))
     (report-object (session-account session) "begin"
@@ -142,7 +137,6 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
                  (session-input session))))
 
 (defun run-prompt (options)
-  "Do what OPTIONS say. Return the status to exit with."
   (check-window options)
   (let ((session (standard-session options)))
     (call-with-watchers session options (lambda () (run-standard session options)))
@@ -150,7 +144,6 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
                 (if (and (session-batch-p session) (plusp (session-errors session))) 1 0))))
 
 (defun run-options (options)
-  "Do what OPTIONS say. Return the status to exit with."
   (cond ((option-value :list options)
          (load-before (option-values :load options))
          (when (option-value :world options) (world-robots-called (option-value :world options)))
@@ -239,7 +232,6 @@ value."
       (funcall function)))
 
 (defun run-process ()
-  "Do what the arguments of this process say. Return the status to exit with."
   (let ((console (standard-output)))
     (setf *standard-output* console
           *trace-output* console)

@@ -95,10 +95,8 @@ If OTHERS is true, those that are none count as (:other argument). Signals USAGE
                         entry)))))
 
 (defun option-value (key options &optional default)
-  "Return the last value that OPTIONS give for KEY."
   (let ((entry (find key options :key #'first :from-end t)))
     (if entry (second entry) default)))
 
 (defun option-values (key options)
-  "Return all values that OPTIONS give for KEY, in order."
   (loop for (other value) in options when (eq key other) collect value))

@@ -6,7 +6,6 @@
 ;;; seed give the same run.
 
 (defun script-path (name)
-  "Return the path of the script NAME, or NIL if there is no such file."
   (let ((path (native-path name)))
     (and (pathname-name path) (existing-path path))))
 

@@ -22,7 +22,6 @@
                 least +most-shards+))))
 
 (defun trials-of (experiment options)
-  "Return how many trials of each condition of EXPERIMENT OPTIONS want."
   (option-value :trials options (experiment-trials experiment)))
 
 (defun place-for (directory)

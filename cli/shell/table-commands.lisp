@@ -12,7 +12,6 @@
       (reject-line "There are no rows in ~A, nor in shards below it." directory)))
 
 (defun merge-command (arguments)
-  "Do what ./cli/ars-magna merge ARGUMENTS does. Return the status to exit with."
   (let* ((options (parse-options arguments :table *merge-options* :others t))
          (directories (option-values :other options))
          (out (option-value :out options)))
@@ -51,7 +50,6 @@
       (results-of (known-experiment words) options)))
 
 (defun comparison-wanted (words options)
-  "Return the comparison of what WORDS and OPTIONS say, printed."
   (let ((measure (option-values :measure options)) (factor (option-value :by options)))
     (if factor
         (compare-levels (results-meant words options) factor
@@ -63,7 +61,6 @@
               (compare-results first second :measure measure))))))
 
 (defun check-words (words options)
-  "Signal USAGE-ERROR unless there are as many WORDS as the command COMPARE takes with OPTIONS."
   (cond ((option-value :by options)
          (unless (<= 1 (length words) 2)
            (reject-usage "compare --by FACTOR takes a directory with results, or an experiment.")))
@@ -74,7 +71,6 @@
                         and the directory or experiment they are in; or --by FACTOR and that."))))
 
 (defun compare-command (arguments)
-  "Do what ./cli/ars-magna compare ARGUMENTS does. Return the status to exit with."
   (let* ((options (parse-options arguments :table *compare-options* :others t))
          (words (option-values :other options)))
     (check-words words options)

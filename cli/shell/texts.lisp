@@ -15,7 +15,6 @@
   "The version of this program.")
 
 (defun text-called (name)
-  "Return the text in the file NAME beside this one."
   (second (assoc name *texts* :test #'string=)))
 
 (defun with-settings (text settings)

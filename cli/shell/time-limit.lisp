@@ -36,7 +36,6 @@ signalled. What is seen four times on end, a third of *HOG-PATIENCE* apart, has 
              (when (and whose count (= 4 (incf looks))) (say-who-stays session whose)))))
 
 (defun say-stopped (session whose reason)
-  "Say that SESSION is stopped, in code of WHOSE at last, or NIL, for REASON."
   (say-where session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
 
 (defun end-at-limit (session calls thread seconds ended)

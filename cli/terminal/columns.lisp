@@ -8,7 +8,6 @@
 ;;; such as those for colours, take none.
 
 (defun char-columns (char)
-  "Return how many columns CHAR takes on a terminal."
   (if (< (char-code char) 256) 1 (char-width char)))
 
 (defun code-end (text position)
@@ -28,7 +27,6 @@
         finally (return columns)))
 
 (defun text-columns (text)
-  "Return how many columns TEXT, on one line, takes on a terminal."
   (reduce #'+ (columns-of-chars text)))
 
 ;;; Lines that are too long are broken between words.

@@ -79,7 +79,6 @@ thread is writing is written first."
   `(call-with-console (lambda (,stream) ,@body) ,console))
 
 (defun painted (text ink console)
-  "Return TEXT as CONSOLE shows it: in INK, if it has colours."
   (if (console-colored-p console) (paint text ink) text))
 
 (defmethod stream-line-column ((console console))
@@ -95,13 +94,11 @@ thread is writing is written first."
 ;;; Where the cursor is.
 
 (defun begin-row (console)
-  "Note that the cursor is at the beginning of a line."
   (setf (console-column console) 0
         (console-rest console) ""
         (console-wrapped-p console) nil))
 
 (defun note-written (console string start end)
-  "Note that STRING from START to END has been written."
   (let ((newline (position #\Newline string :start start :end end :from-end t)))
     (when newline
       (begin-row console)
@@ -310,7 +307,6 @@ broken between words.")
           (t (put-fresh prompt console stream)))))
 
 (defun show-prompt (console prompt)
-  "Show PROMPT, a string, at the start of a line."
   (setf (console-asking-told-p console) nil)
   (with-console (stream console)
     (put-prompt (painted prompt :bold console) console stream)

@@ -33,7 +33,6 @@ and point that it was drawn from."
 ;;; Rows.
 
 (defun shown-char (char)
-  "Return the characters that stand for CHAR on the screen."
   (cond ((char= char #\Newline) (string char))
         ((char= char #\Tab) " ")
         ((obeyed-p char) (if (< (char-code char) 32)

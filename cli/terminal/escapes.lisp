@@ -20,11 +20,9 @@
 (defconstant +escape+ #\Escape "What codes begin with, of terminals and of their keys.")
 
 (defun escape (control &rest arguments)
-  "Return the code that is formatted from CONTROL and ARGUMENTS."
   (format nil "~C[~?" +escape+ control arguments))
 
 (defun ink-code (ink)
-  "Return the code of INK, a symbol or string; NIL if it is none."
   (cdr (assoc (string ink) *inks* :test #'string-equal)))
 
 (defun paint (text ink)
@@ -44,7 +42,6 @@ is no ink."
                 while end)))))
 
 (defun ink-of-code (code)
-  "Return the ink, a keyword, that has CODE, or NIL."
   (let ((ink (rassoc code *inks* :test #'string=)))
     (and ink (make-keyword (car ink)))))
 
@@ -84,11 +81,9 @@ terminal unless the environment has NO_COLOR."
 ;;; Where the cursor is, and what is wiped out.
 
 (defun cursor-up (count)
-  "Return what moves the cursor up by COUNT rows."
   (if (plusp count) (escape "~DA" count) ""))
 
 (defun cursor-right (count)
-  "Return what moves the cursor right by COUNT columns."
   (if (plusp count) (escape "~DC" count) ""))
 
 (defun row-cleared ()

@@ -15,7 +15,6 @@
   (:documentation "An input stream of the octets that REVISE-OCTETS leaves; it waits for them."))
 
 (defun handed-left (stream)
-  "Return the octets of STREAM that have not been read yet, a string."
   (subseq (handed-string stream) (handed-start stream)))
 
 (defun leave-octets (stream octets)
@@ -32,7 +31,6 @@ reads any meanwhile."
   (values))
 
 (defun end-octets (stream)
-  "Let STREAM end after the octets that are left."
   (with-lock ((handed-lock stream)) (setf (handed-over-p stream) t))
   (signal-semaphore (handed-ready stream))
   (values))

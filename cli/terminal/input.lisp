@@ -104,7 +104,6 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
           (typed-followed-p stream) (more-at-once-p (typed-octets stream)))))
 
 (defun line-left-p (stream)
-  "True if STREAM has something left of a line that was typed."
   (< (typed-position stream) (length (typed-line stream))))
 
 (defmethod stream-read-line ((stream typed-text))

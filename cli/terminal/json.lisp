@@ -49,7 +49,6 @@
 a line of text, COLUMN how long that is."))
 
 (defun write-object (object stream)
-  "Write OBJECT, a property list, to STREAM, an object-stream, on a line of its own."
   (end-text-line stream)
   (printing-plainly () (write-json object (object-stream-target stream)))
   (terpri (object-stream-target stream))

@@ -39,7 +39,6 @@ within CALL-HANDING-OVER-KEYS."
   (when *first-manner* (set-manner *first-manner*)))
 
 (defun call-handing-over-keys (function)
-  "Call FUNCTION, while the terminal hands over keys."
   (setf *first-manner* (manner))
   (unwind-protect (progn (hand-over-keys :interrupts t)
                          (funcall function))
@@ -67,7 +66,6 @@ told to go on."
 ;;; How large the window is.
 
 (defun window-size ()
-  "Return how many columns and rows the window of this process's terminal has."
   (multiple-value-bind (rows columns) (rows-and-columns)
     (values (if (plusp columns) columns 80)
             (if (plusp rows) rows 24))))

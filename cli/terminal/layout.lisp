@@ -70,7 +70,6 @@
         collect (subseq text start end)))
 
 (defun filled-lines (text width)
-  "Return the words of TEXT as a list of lines of at most WIDTH characters."
   (loop with line = ""
         for (word . more) on (split-words text)
         for longer = (if (string= line "") word (format nil "~A ~A" line word))

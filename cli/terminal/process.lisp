@@ -3,7 +3,6 @@
 (in-package :ars-magna.cli)
 
 (defun process-arguments ()
-  "Return the arguments that this process was started with, strings."
   (rest (uiop:raw-command-line-arguments)))
 
 (defun end-process (status)

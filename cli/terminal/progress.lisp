@@ -9,7 +9,6 @@
   (width 0 :type fixnum))
 
 (defun write-over (progress text)
-  "Let TEXT stand in the line of PROGRESS instead of what stands there."
   (with-console (stream (progress-line-console progress))
     (format stream "~C~VA~:[~C~;~]" #\Return (progress-line-width progress) text
             (string/= text "") #\Return)
@@ -24,7 +23,6 @@ if it is time to."
     (write-over progress (apply #'format nil control arguments))))
 
 (defun end-progress (progress)
-  "Let nothing stand in the line of PROGRESS any more."
   (when (plusp (progress-line-width progress)) (write-over progress "")))
 
 ;;; Beside it.
