@@ -23,14 +23,6 @@
           do (write-char char out)
           until (or (alpha-char-p char) (char= char #\~)))))
 
-(defun octets-that-follow (lead)
-  (let ((code (char-code lead)))
-    (cond ((< code #xC0) 0)
-          ((< code #xE0) 1)
-          ((< code #xF0) 2)
-          ((< code #xF8) 3)
-          (t 0))))
-
 (defun follows-p (octet next)
   "True if OCTET is one that follows in a character; if not, NEXT is to return it again."
   (or (<= #x80 (char-code octet) #xBF)
@@ -40,7 +32,12 @@
   "Return the character in UTF-8 that begins with the octet LEAD, as a string."
   (decoded (with-output-to-string (out)
              (write-char lead out)
-             (loop repeat (octets-that-follow lead)
+             (loop repeat (let ((code (char-code lead)))
+                            (cond ((< code #xC0) 0)
+                                  ((< code #xE0) 1)
+                                  ((< code #xF0) 2)
+                                  ((< code #xF8) 3)
+                                  (t 0)))
                    for char = (funcall next)
                    while (and char (follows-p char next)) do (write-char char out)))))
 
@@ -54,10 +51,6 @@
            unless (and (char= char #\Newline) (eql last #\Return))
              do (write-char (if (char= char #\Return) #\Newline char) out)))))
 
-(defun ends-like-p (text end)
-  (let ((start (- (length text) (length end))))
-    (and (<= 0 start) (string= end text :start2 start))))
-
 (defun read-paste (next)
   "Return the text that NEXT returns up to the code that ends what is pasted."
   (loop with end = (paste-ended)
@@ -65,7 +58,7 @@
         for char = (funcall next)
         while char
         do (vector-push-extend char octets)
-           (when (and (char= char #\~) (ends-like-p octets end))
+           (when (and (char= char #\~) (uiop:string-suffix-p octets end))
              (decf (fill-pointer octets) (length end))
              (return (with-newlines (decoded octets))))
         finally (return (with-newlines (decoded octets)))))

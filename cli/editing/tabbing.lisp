@@ -61,7 +61,9 @@ and AFTER if it is one; list them if that is no more than there is."
         (common (common-start texts)))
     (cond ((null (rest texts))
            (replace-typed stream start
-                          (uiop:strcat common (if (ends-like-p common "/") "" after))))
+                          (if (uiop:string-suffix-p common "/")
+                              common
+                              (uiop:strcat common after))))
           ((< (length typed) (length common)) (replace-typed stream start common))
           ;; What has been listed, with nothing typed since, is not listed again.
           ((not (equal texts (edited-listed stream)))

@@ -13,21 +13,12 @@ package; NIL if there is none."
 (defun plan-names ()
   (remove-duplicates (mapcar #'procedure-name (all-procedures)) :test #'same-name-p))
 
-(defun reject-unknown-plan (name)
-  (reject-line "There is no plan ~A.~@[ Did you mean ~A?~] PLAN lists all plans."
-               (string-upcase name)
-               (nearest-name name (plan-names))))
-
 (defun plan-meant (name)
   "Return the plan procedure called NAME, or the only one whose name begins so. Signals BAD-LINE."
-  (let ((candidates (remove-if-not (lambda (candidate)
-                                     (starts-with-subseq (string-upcase name) (string candidate)))
-                                   (plan-names))))
+  (let ((candidates (all-starting (string-upcase name) (plan-names) #'string)))
     (cond ((plan-called name))
-          ((null candidates) (reject-unknown-plan name))
-          ((rest candidates)
-           (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it." (string-upcase name)
-                        candidates))
+          ((null candidates) (reject-absent "plan" name (plan-names) "PLAN lists all plans."))
+          ((rest candidates) (reject-ambiguous name candidates))
           (t (plan-called (string (first candidates)))))))
 
 (define-choices :plan (plan-names))

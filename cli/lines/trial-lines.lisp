@@ -9,20 +9,16 @@
   (let ((experiment (find-experiment start nil)))
     (if experiment
         (list (experiment-name experiment))
-        (remove-if-not (lambda (name) (starts-with-subseq (string-upcase start) (string name)))
-                       (mapcar #'experiment-name (all-experiments))))))
+        (all-starting (string-upcase start) (mapcar #'experiment-name (all-experiments))
+                      #'string))))
 
 (defun experiment-meant (name)
   "Return the experiment called NAME, or the only one whose name begins so. Signals BAD-LINE."
   (let ((names (experiment-names name)))
     (cond ((null names)
-           (reject-line "There is no experiment ~A.~@[ Did you mean ~A?~] TRIAL lists all; (load ~
-                         \"FILE\") loads others."
-                        (string-upcase name)
-                        (nearest-name name (mapcar #'experiment-name (all-experiments)))))
-          ((rest names)
-           (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it." (string-upcase name)
-                        names))
+           (reject-absent "experiment" name (mapcar #'experiment-name (all-experiments))
+                        "TRIAL lists all; (load \"FILE\") loads others."))
+          ((rest names) (reject-ambiguous name names))
           (t (find-experiment (first names))))))
 
 (defun condition-meant (experiment text)

@@ -53,8 +53,7 @@ goes on here is over."
 
 (defun robot-called (name)
   (or (find name (robot-names) :test #'same-name-p)
-      (reject-line "There is no robot ~A.~@[ Did you mean ~A?~]" (string-upcase name)
-                   (nearest-name name (robot-names)))))
+      (reject-absent "robot" name (robot-names))))
 
 (defun list-robots ()
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))

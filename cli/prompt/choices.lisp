@@ -36,7 +36,8 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
 
 (defmethod choices ((type (eql :world)) session typed)
   (append (mapcar #'map-name (all-worlds))
-          (remove-if-not (lambda (file) (or (ends-like-p file "/") (ends-like-p file ".lisp")))
+          (remove-if-not (lambda (file)
+                           (or (uiop:string-suffix-p file "/") (uiop:string-suffix-p file ".lisp")))
                          (choices :file session typed))))
 
 (define-choices :robot-name (robot-names))
@@ -68,7 +69,7 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
 
 (defmethod choices ((type (eql :command)) session typed)
   (declare (ignore session))
-  (let ((names (if (lines-starting (string-upcase typed) (all-lines) #'line-name)
+  (let ((names (if (all-starting (string-upcase typed) (all-lines) #'line-name)
                    (mapcar #'line-name (all-lines))
                    (all-line-names))))
     (mapcar #'string-downcase (append names (mapcar #'first *aliases*)))))

@@ -20,15 +20,22 @@
                                (remove nil (mapcar #'line-full-name (robot-lines))))
                        :test #'string= :from-end t)))
 
-(defun lines-starting (start lines key)
-  (remove-if-not (lambda (line)
-                   (let ((name (funcall key line)))
+(defun all-starting (start items key)
+  "Return those of ITEMS whose names, which KEY returns, begin with START."
+  (remove-if-not (lambda (item)
+                   (let ((name (funcall key item)))
                      (and name (starts-with-subseq start name))))
-                 lines))
+                 items))
 
-(defun reject-ambiguous (name lines)
-  (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it.~@[ ~A~]" name
-               (mapcar #'line-name lines) (hint-for name)))
+(defun reject-ambiguous (name names &optional hint)
+  "Signal BAD-LINE as NAME, which was typed, may be any of NAMES."
+  (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it.~@[ ~A~]" (string-upcase name)
+               names hint))
+
+(defun reject-absent (kind name names &optional hint)
+  "Signal BAD-LINE as there is nothing of KIND, words, called NAME; NAMES are known."
+  (reject-line "There is no ~A ~A.~@[ Did you mean ~A?~]~@[ ~A~]" kind (string-upcase name)
+               (nearest-name name names) hint))
 
 (defparameter *other-names*
   '(("?" "HELP") ("EXIT" "QUIT") ("BYE" "QUIT") ("LOGOUT" "QUIT"))
@@ -112,11 +119,11 @@
 (defun complete-line (name)
   "Return the line command whose name, or else full name, begins with NAME: the only one, or the one
 that all others go on from."
-  (let ((candidates (or (lines-starting name (all-lines) #'line-name)
-                        (lines-starting name (robot-lines) #'line-full-name))))
+  (let ((candidates (or (all-starting name (all-lines) #'line-name)
+                        (all-starting name (robot-lines) #'line-full-name))))
     (cond ((null candidates) (reject-unknown name))
           ((beginning-of-all candidates))
-          (t (reject-ambiguous name candidates)))))
+          (t (reject-ambiguous name (mapcar #'line-name candidates) (hint-for name))))))
 
 (defun find-line (name)
   "Return the line command called NAME, a string of any case: its name, the full name of a command's
@@ -124,6 +131,6 @@ function, or the beginning of a name; if several begin so, of the one that the o
 What other programs call it will do, too. Signals BAD-LINE."
   (let* ((typed (string-upcase name))
          (name (or (second (assoc typed *other-names* :test #'string=)) typed)))
-    (or (find name (all-lines) :key #'line-name :test #'string=)
+    (or (line-called name)
         (find name (robot-lines) :key #'line-full-name :test #'equal)
         (complete-line name))))
