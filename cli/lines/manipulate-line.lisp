@@ -15,23 +15,17 @@
             (and (by-part-p by) (first by))
             (mapcar #'first others))))
 
-(defun manipulation-usages (manipulation)
-  "Return how MANIPULATION may be typed after the word MANIPULATE, a list of different texts."
+(defun manipulation-usages (manipulation &optional (usage #'method-usage))
+  "Return how MANIPULATION may be typed after the word MANIPULATE, a list of different texts; or
+what USAGE, a function like METHOD-USAGE, returns of its methods."
   (remove-duplicates (loop for method in (manipulation-methods manipulation)
-                           collect (method-usage (manipulation-name manipulation) method))
+                           collect (funcall usage (manipulation-name manipulation) method))
                      :test #'string=))
-
-(defun write-manipulations ()
-  (if (all-manipulations)
-      (dolist (manipulation (all-manipulations))
-        (format t "~{  ~A~%~}" (manipulation-usages manipulation)))
-      (format t "No manipulation is defined. DEFMANIPULATION defines one.~%")))
 
 (defun manipulation-called (name)
   (or (find-manipulation name nil)
-      (reject-line "There is no manipulation ~A.~@[ Did you mean ~A?~] MANIPULATE lists all."
-                   (string-upcase name)
-                   (nearest-name name (mapcar #'manipulation-name (all-manipulations))))))
+      (reject-absent "manipulation" name (mapcar #'manipulation-name (all-manipulations))
+                   "MANIPULATE lists all.")))
 
 (defun doer (by data robot)
   "Return what carries out a method whose resource is BY, if DATA, a list of its number, or (), says
@@ -72,7 +66,9 @@ few."
     (:manipulating)
     "List the manipulations, or carry out the manipulation NAME on the things that the designators
 with the numbers in ARGS denote."
-  (if name
-      (send-manipulation session (manipulation-called name)
-                         (read-data (or args "") (find-line "MANIPULATE")))
-      (write-manipulations)))
+  (cond (name (send-manipulation session (manipulation-called name)
+                                 (read-data (or args "") (find-line "MANIPULATE"))))
+        ((all-manipulations)
+         (dolist (manipulation (all-manipulations))
+           (format t "~{  ~A~%~}" (manipulation-usages manipulation))))
+        (t (format t "No manipulation is defined. DEFMANIPULATION defines one.~%"))))

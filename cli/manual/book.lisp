@@ -58,14 +58,10 @@ first page."
         (if page (page-file page) "index.html"))
       (copy-of-file name book)))
 
-(defun split-address (address)
-  "Return ADDRESS up to a #, and what follows, with the #."
-  (let ((mark (or (position #\# address) (length address))))
-    (values (subseq address 0 mark) (subseq address mark))))
-
 (defun new-address (address page book)
   "Return where ADDRESS, as PAGE of the project has it, leads in the manual."
-  (multiple-value-bind (file place) (split-address address)
+  (multiple-value-bind (file place) (let ((mark (or (position #\# address) (length address))))
+                                      (values (subseq address 0 mark) (subseq address mark)))
     (cond ((or (search "://" address) (starts-with-subseq "mailto:" address)) address)
           ((string= "" file) place)
           (t (let* ((name (name-from (page-source page) file))

@@ -43,15 +43,12 @@
           (when (command-section command)
             (list (list "Cited" (format nil "Manual ~A" (command-section command)))))))
 
-(defun command-use (command)
-  (format nil "(~(~A ~A~{ ~A~}~) [continuation])" (command-name command)
-          (spec-name (command-resource command))
-          (mapcar #'spec-name (command-parameters command))))
-
 (defun command-entry (command)
   (make-entry :name (string-downcase (command-name command)) :chapter :commands
               :section (heading-of (command-family command)) :symbol (command-name command)
-              :use (command-use command)
+              :use (format nil "(~(~A ~A~{ ~A~}~) [continuation])" (command-name command)
+                           (spec-name (command-resource command))
+                           (mapcar #'spec-name (command-parameters command)))
               :facts (append (argument-facts (cons (command-resource command)
                                                    (command-parameters command)))
                              (list (result-fact command) (error-fact command))

@@ -119,14 +119,10 @@ if it is not known."
     (format nil "(manipulate ~(~A~{ ~A~} ~A~{ ~A~}~) [continuation])" name objects (first by)
             (mapcar #'first others))))
 
-(defun manipulation-uses (manipulation)
-  (remove-duplicates (loop for method in (manipulation-methods manipulation)
-                           collect (manipulation-use (manipulation-name manipulation) method))
-                     :test #'string=))
-
 (defun manipulation-entry (name manipulation file)
   (make-entry :name (string-downcase name) :chapter :manipulations
-              :use (format nil "~{~A~^ or ~}" (manipulation-uses manipulation))
+              :use (format nil "~{~A~^ or ~}"
+                           (manipulation-usages manipulation #'manipulation-use))
               :facts (list (list "At the prompt"
                                  (format nil "~{`manipulate ~A`~^ or ~}"
                                          (manipulation-usages manipulation))))

@@ -103,10 +103,6 @@ it is, FILE where it is defined."
         else collect item into items
         finally (return (append items (and rest (list '&rest rest))))))
 
-(defun use-of-symbol (symbol)
-  (when (fboundp symbol)
-    (plain-use symbol (lambda-list-of symbol))))
-
 (defun text-of-symbol (symbol)
   (format nil "~{~A~^~2%~}"
           (remove-duplicates (loop for kind in '(function variable type)

@@ -130,16 +130,13 @@ HTML of its Markdown, its headings with anchors."
     ("ars-magna merge" "usage-merge.txt") ("ars-magna compare" "usage-compare.txt"))
   "Lists (command file): what --help prints.")
 
-(defun usage-markdown ()
-  (format nil "# Options of the command~%~%What `--help` prints.~%~%~
-               ~:{## ~A~%~%```text~%~A~%```~%~%~}"
-          (loop for (command file) in *usages*
-                collect (list command
-                              (file-text (project-path (format nil "cli/shell/~A" file)))))))
-
 (defun markdown-of (source)
   (if (string= source "cli/shell/usage.txt")
-      (usage-markdown)
+      (format nil "# Options of the command~%~%What `--help` prints.~%~%~
+                   ~:{## ~A~%~%```text~%~A~%```~%~%~}"
+              (loop for (command file) in *usages*
+                    collect (list command
+                                  (file-text (project-path (format nil "cli/shell/~A" file))))))
       (file-text (project-path source))))
 
 (defun read-page (source)

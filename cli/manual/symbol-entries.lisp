@@ -76,7 +76,9 @@
   (let ((chapter (chapter-of-symbol symbol)))
     (make-entry :name (string-downcase symbol) :chapter chapter :symbol symbol
                 :section (section-of-symbol symbol chapter)
-                :use (or (use-of-symbol symbol) (string-downcase symbol))
+                :use (if (fboundp symbol)
+                         (plain-use symbol (lambda-list-of symbol))
+                         (string-downcase symbol))
                 :facts (append (symbol-facts symbol)
                                (unless (member chapter '(:fluents :colours)) (value-facts symbol)))
                 :text (or (first-text symbol) (word-text symbol) (restart-text symbol))
