@@ -184,12 +184,6 @@ for it.")
 
 ;;; The history.
 
-(defun enter-history (stream)
-  "Let the whole history be older than the line that begins."
-  (setf (edited-older stream) (history-entries (edited-history stream))
-        (edited-newer stream) '()
-        (edited-listed stream) nil))
-
 (defun show-entry (stream from to)
   "Show the entry that the place FROM of STREAM begins with; what is shown goes before those at TO."
   (let ((entry (first (slot-value stream from))))
@@ -255,7 +249,9 @@ for it.")
   (let ((console (edited-console stream)))
     (unwind-protect (progn (take-keys stream)
                            (begin-line console)
-                           (enter-history stream)
+                           (setf (edited-older stream) (history-entries (edited-history stream))
+                                 (edited-newer stream) '()
+                                 (edited-listed stream) nil)
                            (when (edited-put-off stream)
                              (apply #'change-to stream (shiftf (edited-put-off stream) nil)))
                            (funcall function))

@@ -50,9 +50,6 @@ typed ahead."
   "Let whoever reads STREAM read KEY, as in keys.lisp."
   (revise-octets (typed-octets stream) (lambda (octets) (with-key stream octets key))))
 
-(defun end-keys (stream)
-  (end-octets (typed-octets stream)))
-
 ;;; What waits.
 
 (defun typed-ahead (stream)

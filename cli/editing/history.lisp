@@ -63,16 +63,12 @@ NIL: the newest entry then has a fill pointer."
     (when entries (ignore-errors (shorten-file file entries)))
     (%make-history :entries entries :file file)))
 
-(defun drop-repetition (history)
-  "Leave the newest entry of HISTORY out if it is the same as the one before it."
+(defun save-entry (history)
   (destructuring-bind (&optional newest before &rest others) (history-entries history)
     (declare (ignore others))
     (when (and newest (equal newest before))
       (pop (history-entries history))
-      (setf (history-unsaved-p history) nil))))
-
-(defun save-entry (history)
-  (drop-repetition history)
+      (setf (history-unsaved-p history) nil)))
   (when (and (shiftf (history-unsaved-p history) nil) (history-file history))
     (ignore-errors
      (call-with-history-file (lambda (out)

@@ -80,7 +80,9 @@ what was not in INBOX before."
 Signals BAD-LINE if that waits for RESUME. INBOX is what did so before."
   (check-time-passes session cmd errands inbox)
   (await-errands session errands)
-  (unless (waits-for-resume-p session) (await-lisp))
+  ;; For what Lisp has issued, too.
+  (unless (waits-for-resume-p session)
+    (await-requests (lambda (request) (lisp-asker-p (request-asker request)))))
   (check-time-passes session cmd errands inbox))
 
 (defun repeat-once (session cmd)

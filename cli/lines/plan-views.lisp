@@ -11,19 +11,15 @@
   (call-reading-plan (plan-name-of (if (task-p which) which (first (plans))))
                      (lambda () (with-output-to-string (out) (print-tasks which out t)))))
 
-(defun tree-text-of-number (n)
-  "Return the text for the task number N, or for all tasks if it is NIL; NIL if there is none."
-  (call-with-plans-in-use
-   (lambda (runner)
-     (let ((which (cond ((null (plans)) nil)
-                        (n (task-numbered n runner))
-                        (t runner))))
-       (and which (tree-text which))))))
-
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
     "Show the plans under way, or the task N of one with its parts, whole: each task with all that
 it is in the middle of, its variables, what it waits for and since when; and who has which valve."
-  (let ((text (tree-text-of-number n)))
+  (let ((text (call-with-plans-in-use
+               (lambda (runner)
+                 (let ((which (cond ((null (plans)) nil)
+                                    (n (task-numbered n runner))
+                                    (t runner))))
+                   (and which (tree-text which)))))))
     (cond (text (write-string (visible text)))
           ((null (plans)) (reject-line "No plan is under way."))
           (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))

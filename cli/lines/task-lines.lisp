@@ -39,19 +39,14 @@ message."
     (format t "Task ~A ~:[goes on without stopping~;stops when it goes on~].~%" (task-text task)
             on-p)))
 
-(defun trace-from-now-on ()
-  "Let the plans in use, if there are any, keep a trace from now on."
-  (call-with-plans-in-use (lambda (runner) (when runner (start-trace runner)))))
-
-(defun trace-no-longer ()
-  (call-with-plans-in-use (lambda (runner) (when runner (stop-trace runner)))))
-
 (define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)
     "Keep a trace of what plans do, those under way included, from now on: for WHY, PLAN-TIMELINE
 and the window's timeline. OFF keeps none, and forgets it; without ON or OFF, say which it is."
   (when switch
     (let ((on-p (switch-setting "TRACE-PLANS" switch)))
       ;; A plan may keep the thread of all: then none is asked, and nothing changes.
-      (if on-p (trace-from-now-on) (trace-no-longer))
+      (call-with-plans-in-use
+       (lambda (runner)
+         (when runner (if on-p (start-trace runner) (stop-trace runner)))))
       (setf *trace-plans* on-p)))
   (format t "~:[No trace of plans is kept~;A trace of plans is kept~].~%" *trace-plans*))

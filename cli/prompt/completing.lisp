@@ -127,12 +127,6 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
 
 ;;; Arguments.
 
-(defun datum-end (text start)
-  "Return where the Lisp datum ends that begins in TEXT at START, or NIL if it goes on."
-  (let ((*read-suppress* t))
-    (handler-case (nth-value 1 (read-data-from-string text start))
-      (error () nil))))
-
 (defun unit-end (text position)
   "Return where the unit ends that stands in TEXT from POSITION on, or POSITION if there is none, or
 it is being typed."
@@ -144,7 +138,9 @@ it is being typed."
   (let ((end (typecase (slot-type slot)
                (rest-type nil)
                (keyword (token-end text start))
-               (t (datum-end text start)))))
+               (t (let ((*read-suppress* t))
+                    (handler-case (nth-value 1 (read-data-from-string text start))
+                      (error () nil)))))))
     (cond ((or (null end) (= end (length text))) nil)
           ((dimension-of (slot-type slot)) (unit-end text end))
           (t end))))

@@ -128,18 +128,11 @@ the current simulation."
   "True if no command but those of plans waits to begin, or goes on, in the current simulation."
   (not (some-request-p #'awaited-p)))
 
-(defun settle ()
-  "Let time pass until no robot carries out a command that Lisp has issued, within patience. True
-if none does."
+(defun await-requests (&optional (test #'awaited-p))
+  "Let time pass until no request of which TEST is true waits or is carried out, within patience.
+True if none does."
   (let ((simulation *simulation*))
-    (await (lambda () (let ((*simulation* simulation)) (settled-p))))))
-
-(defun await-lisp ()
-  "Let time pass until what Lisp in lines has issued is done, within patience."
-  (let ((simulation *simulation*))
-    (flet ((of-lisp-p (request) (lisp-asker-p (request-asker request))))
-      (await (lambda ()
-               (let ((*simulation* simulation)) (not (some-request-p #'of-lisp-p))))))))
+    (await (lambda () (let ((*simulation* simulation)) (not (some-request-p test)))))))
 
 (defun waits-p (session)
   "True if SESSION reads on when what was issued has completed."
@@ -160,7 +153,7 @@ if none does."
       (progn (await-errands session)
              (setf (session-lisp-p session)
                    (and (shiftf (session-lisp-p session) nil)
-                        (not (settle))
+                        (not (await-requests))
                         (held-up-p *simulation*)))
              (tell-whereabouts session))
       (setf (session-errands session) (errands-under-way session))))

@@ -11,30 +11,16 @@
   "Lists (name kind new-p) of what the compiler has found undefined in the forms at hand, newest
 first. NEW-P is true if it had no value then.")
 
-(defun note-undefined (condition)
-  "Note the name that CONDITION says is not defined, and tell nothing yet. NIL if it says something
-else."
-  (multiple-value-bind (name kind) (undefined-name condition)
-    (when name
-      (pushnew (list name kind (still-undefined-p name kind)) *undefined* :test #'equal)
-      (muffle-warning condition))))
-
-(defun tell-undefined (file)
-  "Tell what of *UNDEFINED* is not defined yet, in the forms of FILE, or typed if that is NIL."
-  (loop for (name kind new-p) in (reverse *undefined*)
-        do (cond ((still-undefined-p name kind)
-                  (warning-set (format nil "~@[~A: ~]The ~(~A~) ~(~A~) is not defined."
-                                       file kind (safe-text name))))
-                 ((and new-p (null file) (eq :variable kind))
-                  (tell-of-new-variable name)))))
-
 (defun quiet-warning (condition)
   "Keep the compiler from telling users at length what they will be told in a moment. Doubts about
 definitions are messages like others."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
-    (t (note-undefined condition)
+    (t (multiple-value-bind (name kind) (undefined-name condition)
+         (when name
+           (pushnew (list name kind (still-undefined-p name kind)) *undefined* :test #'equal)
+           (muffle-warning condition)))
        (when (typep condition '(or style-warning compiler-note)) (muffle-warning condition)))))
 
 (defun call-quietly (function)
@@ -47,22 +33,17 @@ definitions are messages like others."
 nobody has defined at its end are messages."
   (let ((*undefined* '()))
     (multiple-value-prog1 (funcall function)
-      (tell-undefined file))))
+      (loop for (name kind new-p) in (reverse *undefined*)
+            do (cond ((still-undefined-p name kind)
+                      (warning-set (format nil "~@[~A: ~]The ~(~A~) ~(~A~) is not defined."
+                                           file kind (safe-text name))))
+                     ((and new-p (null file) (eq :variable kind))
+                      (tell-of-new-variable name)))))))
 
 (defun call-telling-doubts (function)
   "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
 together, are messages."
   (call-quietly (lambda () (call-as-unit function))))
-
-(defun write-but-diagnostics (text stream)
-  "Write the lines of TEXT to STREAM, but not those that begin with a semicolon, the compiler's, nor
-what Lisp says of a full stack, of which users are told."
-  (with-input-from-string (in text)
-    (loop for line = (read-line in nil)
-          while line
-          unless (or (string= line "") (char= #\; (char line 0))
-                     (starts-with-subseq "Control stack guard page" line))
-            do (format stream "~&~A~%" line))))
 
 (defun eval-quietly (form)
   "Evaluate FORM. What it writes to the error output comes when it is done."
@@ -70,10 +51,20 @@ what Lisp says of a full stack, of which users are told."
     (unwind-protect (let ((*error-output* diagnostics)
                           (*read-default-float-format* 'single-float))
                       (call-quietly (lambda () (eval (with-own-name form)))))
-      (write-but-diagnostics (get-output-stream-string diagnostics) *standard-output*))))
+      ;; But for the compiler's, and what Lisp says of a full stack, of which users are told.
+      (dolist (line (lines-in (get-output-stream-string diagnostics)))
+        (unless (or (string= line "") (char= #\; (char line 0))
+                    (starts-with-subseq "Control stack guard page" line))
+          (format *standard-output* "~&~A~%" line))))))
 
 (defun eval-placing (form)
-  (call-placing-trouble (lambda () (eval-quietly form))))
+  "Evaluate FORM. What cannot be read in a file that it loads, by LOAD, is told with its place."
+  (handler-bind ((reader-error (lambda (condition)
+                                 (multiple-value-bind (file line) (reading-place condition)
+                                   (when file
+                                     (error 'file-trouble :file file :line line
+                                                          :cause condition))))))
+    (eval-quietly form)))
 
 (defun reject-value (value trouble)
   (reject-line "The value, of type ~(~A~), cannot be printed: ~A. Perhaps a method for ~

@@ -11,18 +11,3 @@
                      (file-trouble-file condition) (file-trouble-line condition)
                      (condition-text (file-trouble-cause condition)))))
   (:documentation "A form in a file that is being loaded has failed; those before it have not."))
-
-(defun placed-p (condition)
-  "True if CONDITION says itself where the trouble is."
-  (or (typep condition 'file-trouble)
-      (and (typep condition 'malformed-definition)
-           (malformed-definition-place condition))))
-
-(defun call-placing-trouble (function)
-  "Call FUNCTION. What cannot be read in a file that it loads, by LOAD, is told with its place."
-  (handler-bind ((reader-error (lambda (condition)
-                                 (multiple-value-bind (file line) (reading-place condition)
-                                   (when file
-                                     (error 'file-trouble :file file :line line
-                                                          :cause condition))))))
-    (funcall function)))

@@ -98,15 +98,6 @@ if it is an error or warning in a script, with the place of its line."
         (write-after-prompt (fitted text console (console-prompt console)) console)
         (write-fitted console "~A" text))))
 
-(defgeneric error-counts-p (message listener)
-  (:documentation "True if LISTENER counts the error MESSAGE, and not what has caused it."))
-
-(defun told-often-p (message listener)
-  "True if MESSAGE is an error that somebody who sits at LISTENER has been told often."
-  (and (eq :error (message-kind message))
-       (listener-terminal-p listener)
-       (repeated-often-p message (listener-told listener))))
-
 (defun count-error (listener message)
   "Count the error MESSAGE in LISTENER: if it is of an earlier line, not for the line under way."
   (let ((account (listener-account listener)))
@@ -120,7 +111,9 @@ if it is an error or warning in a script, with the place of its line."
   (dolist (message messages)
     (when (and (eq :error (message-kind message)) (error-counts-p message listener))
       (count-error listener message)))
-  (remove-if (lambda (message) (told-often-p message listener))
+  (remove-if (lambda (message) (and (eq :error (message-kind message))
+                                    (listener-terminal-p listener)
+                                    (repeated-often-p message (listener-told listener))))
              (if (listener-quiet-p listener) (remove-if #'others-p messages) messages)))
 
 (defun texts-about (listener messages)

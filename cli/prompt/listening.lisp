@@ -34,14 +34,19 @@
                (and heard (eq queue (simulation-messages heard)))))
            (with-lock (*sessions-lock*) *sessions*)))
 
-(defgeneric session-meant (item)
-  (:documentation "Return the session that is to show, whatever run it is in, a message that begins
-with ITEM; or NIL.")
-  (:method (item) (declare (ignore item)) nil))
+(defstruct (verdict (:constructor make-verdict (text &optional session)) (:copier nil))
+  "How what SESSION, if that is known, has started comes to its end, such as a plan, as an item of a
+message. Prints as TEXT. SESSION shows the message, whatever run it is in."
+  (text "" :type string :read-only t)
+  (session nil :type (or null session) :read-only t))
+
+(defmethod print-object ((verdict verdict) stream)
+  (write-string (verdict-text verdict) stream))
 
 (defun session-addressed (message)
   "Return the session at work that MESSAGE is for in any case, in a list, or NIL."
-  (let ((session (session-meant (first (message-items message)))))
+  (let* ((item (first (message-items message)))
+         (session (and (verdict-p item) (verdict-session item))))
     (and session
          (member session (with-lock (*sessions-lock*) *sessions*))
          (list session))))
@@ -67,7 +72,8 @@ and those that listen to its run; or if there is none, SESSION."
 (defun session-of-thread ()
   (find (current-thread) (with-lock (*sessions-lock*) *sessions*) :key #'session-thread))
 
-(defmethod mirrors-of ((console console))
+(defun mirrors-of (console)
+  "Return the other consoles that show what this thread writes to CONSOLE."
   (when (and *simulation* (rest *sessions*) (not (session-of-thread)))
     (remove console (mapcar #'session-console (sessions-hearing *simulation*)))))
 
@@ -89,10 +95,6 @@ the prompts again. One whose user is not there any more leaves them to others."
 
 (defvar *first-messages* '()
   "The messages about the definitions of the program, that the prompt has shown before any run.")
-
-(defun show-first-messages (session)
-  "Show in SESSION what is said of what has been defined, and keep it for windows to come."
-  (tell-messages session (setf *first-messages* (take-all-messages))))
 
 (defun tell-first-messages (session)
   "Show in SESSION, of a new window, what was said of the definitions before."
@@ -144,15 +146,11 @@ another, so that nobody waits for the tick to end, which it may never."
     (with-lock ((session-lock session)) (take-counts copy (session-told session)))
     copy))
 
-(defun share-counts (session simulation)
-  "Let SESSION know what others that listen to SIMULATION have been told often, as a new window does
-not."
+(defun listen-to (session simulation)
+  ;; A new window does not know what others have been told often.
   (dolist (other (remove session (sessions-hearing simulation)))
     (let ((counts (copy-of-counts other)))
-      (with-lock ((session-lock session)) (take-counts (session-told session) counts)))))
-
-(defun listen-to (session simulation)
-  (share-counts session simulation)
+      (with-lock ((session-lock session)) (take-counts (session-told session) counts))))
   (setf (session-simulation session) simulation)
   (set-listener session simulation)
   (keep-history simulation)

@@ -18,7 +18,9 @@
   "Call FUNCTION, which deals with what FILE has on the line that the function LINE returns of a
 condition, or of NIL."
   (handler-bind ((error (lambda (condition)
-                          (unless (placed-p condition)
+                          (unless (or (typep condition 'file-trouble)
+                                      (and (typep condition 'malformed-definition)
+                                           (malformed-definition-place condition)))
                             (error 'file-trouble :file file :cause condition
                                                  :line (funcall line condition))))))
     (call-watched-at (lambda () (format nil "~A, line ~D" file (funcall line nil))) function)))

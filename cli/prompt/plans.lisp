@@ -79,18 +79,6 @@ be done, a list of two texts, or is NIL."
               (mapcar #'safe-text (failure-data failure)))
       (condition-text failure)))
 
-(defstruct (verdict (:constructor make-verdict (text &optional session)) (:copier nil))
-  "How what SESSION, if that is known, has started comes to its end, such as a plan, as an item of a
-message. Prints as TEXT."
-  (text "" :type string :read-only t)
-  (session nil :type (or null session) :read-only t))
-
-(defmethod print-object ((verdict verdict) stream)
-  (write-string (verdict-text verdict) stream))
-
-(defmethod session-meant ((verdict verdict))
-  (verdict-session verdict))
-
 (defun verdict-of (errand control &rest arguments)
   (make-verdict (format nil "~(~A~) ~?" (plan-errand-plan errand) control arguments)
                 (plan-errand-session errand)))
@@ -108,7 +96,8 @@ message. Prints as TEXT."
 
 ;; Those of a trial are the trial's, and those of commands that a plan, GO-TO or a program gives
 ;; that is told of them are its own.
-(defmethod error-counts-p (message (session session))
+(defun error-counts-p (message session)
+  "True if SESSION counts the error MESSAGE, and not what has caused it."
   (and (null (session-visit session))
        (or (verdict-p (first (message-items message)))
            (not (or (left-to-program-p message)
@@ -154,11 +143,6 @@ message. Prints as TEXT."
 
 ;;; Deadlocks.
 
-(defun advice-text (tasks)
-  "Return on a line what could be done about it that nothing wakes TASKS, or NIL."
-  (let ((advice (one-line (in-user-words (lambda () (advice-on-stillness tasks))))))
-    (and (string/= "" advice) (cut advice 1000))))
-
 (defun stuck-texts (runner task)
   "Return in words what TASK of RUNNER waits for, and what could be done, if no plan of RUNNER can
 ever go on; else NIL. To be called while no plan reacts."
@@ -167,7 +151,8 @@ ever go on; else NIL. To be called while no plan reacts."
       (list (user-text (lambda (tasks)
                          (format nil "waits for ~A" (or (text-of-waits tasks) "what cannot come")))
                        tasks)
-            (advice-text tasks)))))
+            (let ((advice (one-line (in-user-words (lambda () (advice-on-stillness tasks))))))
+              (and (string/= "" advice) (cut advice 1000)))))))
 
 (defun note-if-stuck (errand runner)
   (setf (plan-errand-stuck errand) (stuck-texts runner (plan-errand-task errand))))
@@ -216,18 +201,14 @@ answer to the last such question."
 
 ;;; Headless.
 
-(defun finish-headless (errand)
-  "Tell how the plan of ERRAND has ended, or end it if it is stuck. True unless it goes on."
-  (cond ((plan-over-p errand) (tell-end errand) t)
-        ((plan-errand-stuck errand)
-         (tell-stuck errand)
-         (end-plan (plan-errand-task errand))
-         t)))
-
 (defun await-plan-headless (errand)
   (let ((runner (plan-runner-now)))
     (await (lambda () (or (plan-over-p errand) (note-if-stuck errand runner))))
-    (let ((finished-p (finish-headless errand)))
+    (let ((finished-p (cond ((plan-over-p errand) (tell-end errand) t)
+                            ((plan-errand-stuck errand)
+                             (tell-stuck errand)
+                             (end-plan (plan-errand-task errand))
+                             t))))
       (close-errand errand)
       (unless finished-p
         (reject-line "~(~A~) has not ended within ~D ticks; it goes on."

@@ -16,10 +16,6 @@
   "Return the item of MESSAGE that says whose code that runs by itself is at fault, or NIL."
   (find-if #'recurring-code (message-items message)))
 
-(defun code-at-fault (message)
-  (let ((item (item-at-fault message)))
-    (and item (recurring-code item))))
-
 (defun tick-of (message)
   (let ((run (message-run message)))
     (if run (simulation-tick run) 0)))
@@ -31,7 +27,8 @@
 
 (defun tally-for (message told)
   (let* ((text (message-text message))
-         (code (code-at-fault message))
+         (code (let ((item (item-at-fault message)))
+                 (and item (recurring-code item))))
          (tally (gethash text told)))
     (if (and tally (eq code (tally-code tally)) (<= (tally-tick tally) (tick-of message)))
         tally

@@ -60,7 +60,7 @@ lost: others are asked what he cannot answer any more, and told what its run say
 being typed, or has been typed ahead, is not carried out."
   (setf (session-over-p session) t)
   (interrupt-session session)
-  (end-keys (session-input session)))
+  (end-octets (typed-octets (session-input session))))
 
 (defun enter-line (session text)
   "Let TEXT be a line that was entered in SESSION; what is being typed there stays."

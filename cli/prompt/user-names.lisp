@@ -35,17 +35,14 @@ been read, or is a robot's of another world."
 (defun call-by-name (names)
   (mapc #'call-by-its-name names))
 
-(defun names-other-robot-p (form)
-  (and (consp form)
-       (eq 'defrobot (first form))
-       (consp (rest form))
-       (symbolp (second form))
-       (eq (second form) (find-symbol (symbol-name (second form)) (user-package)))
-       (other-robot-p (second form))))
-
 (defun with-own-name (form)
   "Return FORM, with a name of ARS-USER's own if it would define another world's robot anew."
-  (if (names-other-robot-p form)
+  (if (and (consp form)
+           (eq 'defrobot (first form))
+           (consp (rest form))
+           (symbolp (second form))
+           (eq (second form) (find-symbol (symbol-name (second form)) (user-package)))
+           (other-robot-p (second form)))
       (destructuring-bind (operator name &rest clauses) form
         (unintern name (user-package))
         (list* operator (intern (symbol-name name) (user-package)) clauses))

@@ -41,14 +41,11 @@ to say of that."
   "Answer what other threads, such as a window's, ask of the current simulation."
   (answer-questions (timeline-custody (timeline-of *simulation*))))
 
-(defun show-prompt-once (session)
-  (let ((console (session-console session)))
-    (unless (or (session-batch-p session) (unanswered-p console))
-      (with-lock ((session-lock session)) (show-prompt console "Robot> ")))))
-
 (defun await-typed-line (session seconds)
   "Wait until somebody has typed a line for SESSION, for SECONDS at most. True if he has."
-  (show-prompt-once session)
+  (let ((console (session-console session)))
+    (unless (or (session-batch-p session) (unanswered-p console))
+      (with-lock ((session-lock session)) (show-prompt console "Robot> "))))
   (loop with end = (+ (seconds-now) seconds)
         for left = (- end (seconds-now))
         do (answer-others)

@@ -145,8 +145,10 @@ of what has been interrupted."
   (cond ((option-value :save-executable options)
          (save-program (option-value :save-executable options)))
         ((option-value :missing options) (print-missing experiment options))
-        ((option-value :parallel options) (spread-by-parallel experiment words options))
-        ((option-value :slurm options) (spread-by-slurm experiment words options))
+        ((option-value :parallel options)
+         (spread experiment words options "run.sh" "spread-parallel.sh" #'parallel-settings))
+        ((option-value :slurm options)
+         (spread experiment words options "job.sh" "spread-slurm.sh" #'slurm-settings))
         (t (run-here experiment options))))
 
 (defun known-experiment (words)

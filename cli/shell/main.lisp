@@ -99,7 +99,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 
 (defun run-in-world (session robot-name options)
   ;; What has been said of the world's definitions; a headless run has messages of its own.
-  (show-first-messages session)
+  (tell-messages session (setf *first-messages* (take-all-messages)))
   (let ((*forks-to-keep* t))
     (if (and (session-batch-p session) (null (option-value :rate options)))
         (run-batch session robot-name (option-value :seed options 0))

@@ -78,9 +78,3 @@ and what SETTINGS, a function, returns. Return the status to exit with."
                               directory)))
       (or (run-attached "sh" (list (native-name path)))
           (reject-line "~A cannot be started." (native-name path))))))
-
-(defun spread-by-parallel (experiment words options)
-  (spread experiment words options "run.sh" "spread-parallel.sh" #'parallel-settings))
-
-(defun spread-by-slurm (experiment words options)
-  (spread experiment words options "job.sh" "spread-slurm.sh" #'slurm-settings))

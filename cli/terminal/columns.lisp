@@ -10,18 +10,14 @@
 (defun char-columns (char)
   (if (< (char-code char) 256) 1 (char-width char)))
 
-(defun code-end (text position)
-  "Return where the code ends that begins in TEXT at POSITION, or NIL if none does."
-  (and (char= +escape+ (char text position))
-       (let ((letter (position-if #'alpha-char-p text :start position)))
-         (and letter (1+ letter)))))
-
 (defun columns-of-chars (text)
   "Return a vector of how many columns each character of TEXT takes."
   (loop with columns = (map 'vector #'char-columns text)
         with position = 0
         while (< position (length text))
-        do (let ((end (code-end text position)))
+        do (let ((end (and (char= +escape+ (char text position))
+                           (let ((letter (position-if #'alpha-char-p text :start position)))
+                             (and letter (1+ letter))))))
              (when end (fill columns 0 :start position :end end))
              (setf position (or end (1+ position))))
         finally (return columns)))

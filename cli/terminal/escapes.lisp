@@ -29,17 +29,9 @@
   "Return TEXT as a terminal shows it in INK, the name of a colour, line by line; TEXT itself if INK
 is no ink."
   (let ((code (and ink (string/= text "") (ink-code ink))))
-    (if (null code)
-        text
-        (with-output-to-string (out)
-          (loop for start = 0 then (1+ end)
-                for end = (position #\Newline text :start start)
-                for line = (subseq text start end)
-                do (if (string= line "")
-                       (write-string line out)
-                       (format out "~A~A~A" (escape "~Am" code) line (escape "0m")))
-                when end do (terpri out)
-                while end)))))
+    (flet ((paint-line (line)
+             (if (string= line "") line (uiop:strcat (escape "~Am" code) line (escape "0m")))))
+      (if (null code) text (format nil "~{~A~^~%~}" (mapcar #'paint-line (lines-in text)))))))
 
 (defun ink-of-code (code)
   (let ((ink (rassoc code *inks* :test #'string=)))

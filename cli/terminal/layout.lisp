@@ -63,11 +63,7 @@
 (defvar *text-width* 79 "How many characters a line of running text has at most.")
 
 (defun split-words (text)
-  (loop for start = (position-if-not #'blank-p text)
-          then (position-if-not #'blank-p text :start end)
-        while start
-        for end = (or (position-if #'blank-p text :start start) (length text))
-        collect (subseq text start end)))
+  (remove "" (uiop:split-string (one-line text) :separator " ") :test #'string=))
 
 (defun filled-lines (text width)
   (loop with line = ""
