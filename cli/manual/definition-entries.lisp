@@ -9,14 +9,12 @@
     (:setting . "a setting"))
   "What the kinds of parameters are, in words.")
 
-(defun shortest-number (value)
-  "Return VALUE; of a double-float that a single-float was made of, that one: it has less digits."
-  (if (and (typep value 'double-float) (= value (coerce value 'single-float)))
-      (coerce value 'single-float)
-      value))
-
 (defun number-words (value)
-  (let ((value (shortest-number value)) (*print-case* :downcase))
+  ;; A double-float that a single-float was made of is written like that: it has less digits.
+  (let ((value (if (and (typep value 'double-float) (= value (coerce value 'single-float)))
+                   (coerce value 'single-float)
+                   value))
+        (*print-case* :downcase))
     (if (and (floatp value) (< 1d-6 (abs value) 1d-3))
         (format nil "~F" value)
         (let ((*read-default-float-format* (if (floatp value) (type-of value) 'single-float)))
@@ -47,18 +45,13 @@
   (let ((name (and (not (eq :own source)) source (project-name (native-name source)))))
     (and name (not (starts-with-subseq "tests/" name)) name)))
 
-(defun definitions-of (kind)
-  "Return lists (name object file) for the definitions of KIND that are the project's; FILE is NIL
-if it is not known."
+(defun entries-of (kind function)
+  "Return what FUNCTION makes of name, object and file of each definition of KIND that is the
+project's; the file is NIL if it is not known."
   (loop for (name object source) in (all-definitions kind)
         for file = (file-in-project source)
         when (or file (eq :own source))
-          collect (list name object file)))
-
-(defun entries-of (kind function)
-  "Return what FUNCTION makes of name, object and file of each definition of KIND."
-  (loop for (name object file) in (definitions-of kind)
-        collect (funcall function name object file)))
+          collect (funcall function name object file)))
 
 (defun attribute-facts (attribute)
   (append
@@ -139,17 +132,15 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
 
 (defun robot-entry (name blueprint file)
   (declare (ignore blueprint))
-  (make-robot-entry name (find-robot name) file))
-
-(defun make-robot-entry (name robot file)
-  (make-entry :name (string-downcase name) :chapter :robots :section "Robots"
-              :use (string-downcase name) :symbol name
-              :facts (list (list "Map" (in-code (map-name (world-map (robot-world robot)))))
-                           (list "Parts" (format nil "~R camera~:P, ~R hand~:P, ~R storage bin~:P"
-                                                 (length (robot-cameras robot))
-                                                 (length (robot-hands robot))
-                                                 (length (robot-bins robot)))))
-              :text (or (first-text name) "A robot; see DEFROBOT.") :file file))
+  (let ((robot (find-robot name)))
+    (make-entry :name (string-downcase name) :chapter :robots :section "Robots"
+                :use (string-downcase name) :symbol name
+                :facts (list (list "Map" (in-code (map-name (world-map (robot-world robot)))))
+                             (list "Parts" (format nil "~R camera~:P, ~R hand~:P, ~R storage bin~:P"
+                                                   (length (robot-cameras robot))
+                                                   (length (robot-hands robot))
+                                                   (length (robot-bins robot)))))
+                :text (or (first-text name) "A robot; see DEFROBOT.") :file file)))
 
 (defun plan-entry (name procedure file)
   (make-entry :name (string-downcase name) :chapter :plans :symbol name

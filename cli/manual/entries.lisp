@@ -110,13 +110,6 @@ it is, FILE where it is defined."
                                    when text collect text)
                              :test #'string= :from-end t)))
 
-(defun value-text (symbol)
-  "Return what the variable SYMBOL has for its value, if that is short."
-  (when (and (boundp symbol) (not (constantp symbol)))
-    (let ((value (symbol-value symbol)))
-      (when (typep value '(or real keyword boolean))
-        (let ((*print-case* :downcase)) (prin1-to-string value))))))
-
 (defun sorts-of-symbol (symbol)
   (append (cond ((macro-function symbol) '("macro"))
                 ((not (fboundp symbol)) '())

@@ -65,8 +65,11 @@
     (t "")))
 
 (defun value-facts (symbol)
-  (let ((value (value-text symbol)))
-    (when value (list (list "Value" value)))))
+  "Return the fact that says what value the variable SYMBOL has, if that is short."
+  (when (and (boundp symbol) (not (constantp symbol)))
+    (let ((value (symbol-value symbol)) (*print-case* :downcase))
+      (when (typep value '(or real keyword boolean))
+        (list (list "Value" (prin1-to-string value)))))))
 
 (defun restart-text (symbol)
   (format nil "~@[~A ~]The name of a restart: (invoke-restart '~(~A~))."
