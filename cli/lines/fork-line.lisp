@@ -22,24 +22,19 @@
            ~{~A~^, ~}.~]~%"
           (simulation-tick *simulation*) (mapcar #'task-label (plans))))
 
-(defun call-with-errands-of-its-own (session function)
-  "Call FUNCTION, while SESSION waits for nothing that it has asked for before."
+(defun enter-fork (session fork)
+  "Let SESSION, which waits for nothing that it has asked for before, be in FORK until a line leads
+out."
   (let ((errands (shiftf (session-errands session) '()))
         (depth (session-forks session)))
     (setf (session-forks session) (1+ depth))
-    (unwind-protect (funcall function)
+    (unwind-protect (catch 'left-fork
+                      (call-in-fork fork (lambda ()
+                                           (tell-fork session)
+                                           (read-in-fork session))))
       (drop-errands session)
       (setf (session-errands session) errands
             (session-forks session) depth))))
-
-(defun enter-fork (session fork)
-  (call-with-errands-of-its-own
-   session
-   (lambda ()
-     (catch 'left-fork
-       (call-in-fork fork (lambda ()
-                            (tell-fork session)
-                            (read-in-fork session)))))))
 
 (defun go-to-fork (session seed)
   "Let SESSION be in a fork of the current run until a line leads out; then forget it."

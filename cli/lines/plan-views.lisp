@@ -2,14 +2,12 @@
 
 (in-package :ars-magna.cli)
 
-(defun plan-name-of (task)
-  (loop for each = task then (task-parent each)
-        unless (task-parent each) return (task-name each)))
-
 (defun tree-text (which)
   "Return the whole stacks and variables of WHICH, a task or a plan runner with plans, as text."
-  (call-reading-plan (plan-name-of (if (task-p which) which (first (plans))))
-                     (lambda () (with-output-to-string (out) (print-tasks which out t)))))
+  (let ((plan (loop for task = (if (task-p which) which (first (plans))) then (task-parent task)
+                    unless (task-parent task) return task)))
+    (call-reading-plan (task-name plan)
+                       (lambda () (with-output-to-string (out) (print-tasks which out t))))))
 
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
     "Show the plans under way, or the task N of one with its parts, whole: each task with all that
