@@ -282,11 +282,6 @@ not work."
       (format t "~&*** ~A~%" (one-line condition))
       (uiop:quit 1))))
 
-(defun ensure-window-libraries ()
-  "Let ASDF find McCLIM, which Quicklisp fetches if need be."
-  (when (missing-p "mcclim/looks")
-    (get-window-libraries)))
-
 ;;; The prompt.
 
 (defun save-prompt (&optional (system "ars-magna/cli"))
@@ -302,7 +297,8 @@ not work."
 (defun save-window-prompt ()
   "Save a core that runs the prompt, and has what opens windows, in the file that the environment
 says."
-  (ensure-window-libraries)
+  (when (missing-p "mcclim/looks")
+    (get-window-libraries))
   (save-prompt "ars-magna/clim"))
 
 ;;; The manual.

@@ -52,17 +52,14 @@ control C and its like, which are signals.")
 
 ;;; Octets.
 
-(defun await-octets (stream)
-  (when (typep (typed-octets stream) 'descriptor-stream)
-    (loop until (octets-within-p (typed-octets stream) (if *while-typing* 0.05 0.25))
-          do (redraw-if-resized (edited-console stream))
-             (when (shiftf *continued-p* nil) (show-again stream))
-             (when *while-typing* (funcall *while-typing*)))))
-
 (defun next-octet (stream)
   "Return the next octet of STREAM, as a character, or NIL at the end."
   (cond ((not (empty-queue-p (edited-ahead stream))) (take-octet (edited-ahead stream)))
-        (t (await-octets stream)
+        (t (when (typep (typed-octets stream) 'descriptor-stream)
+             (loop until (octets-within-p (typed-octets stream) (if *while-typing* 0.05 0.25))
+                   do (redraw-if-resized (edited-console stream))
+                      (when (shiftf *continued-p* nil) (show-again stream))
+                      (when *while-typing* (funcall *while-typing*))))
            (handler-case (read-char (typed-octets stream) nil)
              (stream-error () nil)))))
 
@@ -87,14 +84,6 @@ control C and its like, which are signals.")
   (:documentation "Let what has been handed over of STREAM before its time be kept where others look
 for it.")
   (:method ((stream edited-text))))
-
-(defun look-ahead (stream)
-  "Take what has been typed after the line that has ended. Control C in it is for that line."
-  (let ((ahead (edited-ahead stream)))
-    (add-octets ahead (octets-come stream))
-    (let ((interrupt-p (forget-until-interrupt ahead)))
-      (keep-ahead stream)
-      (when interrupt-p (heed-interrupt)))))
 
 (defun tell-pastes-apart (console on)
   "Let the terminal tell what is pasted from what is typed, if ON is true."
@@ -213,15 +202,6 @@ for it.")
 
 ;;; Reading a line.
 
-(defun enter-given (stream text)
-  "Let TEXT be the line that was typed; what was being typed comes again after it."
-  (let ((line (line-of stream)))
-    (setf (edited-put-off stream)
-          (and (string/= "" (drawn-line-text line))
-               (list (drawn-line-text line) (drawn-line-point line))))
-    (change-to stream text (length text))
-    text))
-
 (defun tell-of-answers (stream count)
   "Tell who types into STREAM that COUNT lines at the end of what he has pasted are left out."
   (when (plusp count)
@@ -235,7 +215,13 @@ for it.")
     (:paste (tell-of-answers stream (answers-at-end text))
      (insert-typed stream (without-answers text))
      nil)
-    (:entry (enter-given stream text))))
+    ;; What was being typed comes again after it.
+    (:entry (let ((line (line-of stream)))
+              (setf (edited-put-off stream)
+                    (and (string/= "" (drawn-line-text line))
+                         (list (drawn-line-text line) (drawn-line-point line))))
+              (change-to stream text (length text))
+              text))))
 
 (defun press (stream key)
   "Do what KEY does. Return a text, or :EOF, if the line has ended."
@@ -288,7 +274,12 @@ they are read."
 of the input."
   (flet ((edit () (call-editing (lambda () (press-keys stream)) stream)))
     (prog1 (if *program-reads* (call-asking (edited-console stream) #'edit) (edit))
-      (look-ahead stream))))
+      ;; Control C in what has been typed after the line is for that line.
+      (let ((ahead (edited-ahead stream)))
+        (add-octets ahead (octets-come stream))
+        (let ((interrupt-p (forget-until-interrupt ahead)))
+          (keep-ahead stream)
+          (when interrupt-p (heed-interrupt)))))))
 
 ;;; As a stream.
 

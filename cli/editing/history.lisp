@@ -22,12 +22,8 @@ NIL: the newest entry then has a fill pointer."
 ;;; The file.
 
 (defun entry-on-a-line (entry)
-  (with-output-to-string (out)
-    (loop for char across entry
-          do (case char
-               (#\\ (write-string "\\\\" out))
-               (#\Newline (write-string "\\n" out))
-               (t (write-char char out))))))
+  (flet ((escaped (line) (format nil "~{~A~^\\\\~}" (uiop:split-string line :separator "\\"))))
+    (format nil "~{~A~^\\n~}" (mapcar #'escaped (lines-in entry)))))
 
 (defun entry-of-line (line)
   (with-output-to-string (out)

@@ -46,15 +46,12 @@
   (let ((end (position-if-not (lambda (char) (find char "0123456789.")) version)))
     (string-right-trim "." (subseq version 0 end))))
 
-(defun misreads-p (clx lisp-version)
-  "True if the system CLX reads in a way that SBCL of LISP-VERSION does not support."
-  (and (uiop:version<= "2.4.7" (leading-numbers lisp-version))
-       (null (asdf:find-component clx "common"))))
-
 (defun clx-trouble (&optional (clx (find-library "CLX"))
                       (lisp-version (lisp-implementation-version)))
   "Return a text that says why the system CLX does not work on SBCL of LISP-VERSION, and what to do;
 NIL if nothing is known against it."
-  (when (and clx (misreads-p clx lisp-version))
+  (when (and clx
+             (uiop:version<= "2.4.7" (leading-numbers lisp-version))
+             (null (asdf:find-component clx "common")))
     (format nil "~A does not work on SBCL ~A. ~A"
             (library-text "CLX" clx) lisp-version *clx-remedy*)))

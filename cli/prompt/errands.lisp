@@ -42,15 +42,6 @@ and says itself how it has ended. RESOURCE is what carries out a single command,
   (setf (errand-failed-p errand) (not (member error-code '(nil :interrupt)))
         (errand-done-p errand) t))
 
-(defun issue-errand (command resource arguments)
-  "Issue COMMAND on RESOURCE with ARGUMENTS. Return an errand that is done when it completes."
-  (let ((errand (make-errand :resource resource)) (*ticks-follow-p* t))
-    (apply (command-name command) resource
-           (append arguments (list (lambda (&optional error-code &rest results)
-                                     (declare (ignore results))
-                                     (end-errand errand error-code)))))
-    errand))
-
 ;;; Waiting.
 
 (defun held-up-p (simulation)
@@ -90,7 +81,13 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
       (reject-line "The command has not completed within ~D ticks; it goes on." *patience*))))
 
 (defun send (session command resource arguments)
-  (push (issue-errand command resource arguments) (session-errands session)))
+  "Issue COMMAND on RESOURCE with ARGUMENTS, an errand of SESSION that is done when it completes."
+  (let ((errand (make-errand :resource resource)) (*ticks-follow-p* t))
+    (apply (command-name command) resource
+           (append arguments (list (lambda (&optional error-code &rest results)
+                                     (declare (ignore results))
+                                     (end-errand errand error-code)))))
+    (push errand (session-errands session))))
 
 (defun errands-under-way (session)
   (remove-if #'errand-over-p (session-errands session)))

@@ -79,15 +79,15 @@ together, are messages."
 (defun evaluate (session form)
   (setf (session-lisp-p session) t)
   (let ((values (multiple-value-list
-                 (call-telling-doubts (lambda () (call-staying (lambda () (eval-placing form))))))))
+                 (call-telling-doubts
+                  (lambda ()
+                    (call-refusing-exits
+                     (lambda () (eval-placing form))
+                     "EXIT would end the simulator amid a line. QUIT leaves."))))))
     (shiftf *** ** * (first values))
     (unless (report-values (session-account session) (mapcar #'value-line values))
       (when values (fresh-line))
       (format t "~{~A~%~}" (mapcar #'value-line values)))))
-
-(defun call-staying (function)
-  "Call FUNCTION, in which what ends this Lisp, such as (sb-ext:exit), is an error."
-  (call-refusing-exits function "EXIT would end the simulator amid a line. QUIT leaves."))
 
 (defun check-parenthesis (text position)
   (let ((start (skip-blanks text position)))

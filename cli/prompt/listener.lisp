@@ -66,9 +66,6 @@ told, and may recover from an error."
   "Return the ink of what is of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, of others' commands."
   (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
 
-(defun message-ink (message)
-  (ink-of (if (others-p message) :others (message-kind message))))
-
 (defun other-robot (message listener)
   "Return the name of the robot that MESSAGE tells of, unless LISTENER has to do with that."
   (let ((own (listener-robot-name listener)) (name (message-robot message)))
@@ -86,7 +83,8 @@ if it is an error or warning in a script, with the place of its line."
 (defun write-painted (message listener out)
   (write-string (painted (visible (with-output-to-string (text)
                                     (write-message message text (message-words message listener))))
-                         (message-ink message) (listener-console listener))
+                         (ink-of (if (others-p message) :others (message-kind message)))
+                         (listener-console listener))
                 out))
 
 ;; As reading 197 says.

@@ -69,12 +69,11 @@ and those that listen to its run; or if there is none, SESSION."
 ;;; What users' programs print in a simulator's thread, as continuations do, goes to the terminal,
 ;;; and to the windows of that simulation.
 
-(defun session-of-thread ()
-  (find (current-thread) (with-lock (*sessions-lock*) *sessions*) :key #'session-thread))
-
 (defun mirrors-of (console)
   "Return the other consoles that show what this thread writes to CONSOLE."
-  (when (and *simulation* (rest *sessions*) (not (session-of-thread)))
+  (when (and *simulation*
+             (rest *sessions*)
+             (not (find (current-thread) (sessions-at-work) :key #'session-thread)))
     (remove console (mapcar #'session-console (sessions-hearing *simulation*)))))
 
 (defvar *showing-p* nil

@@ -4,13 +4,6 @@
 
 (export '(run-session prompt))
 
-(defun do-next (session text)
-  "Do what TEXT, a line, says, or let it answer the oldest break, if a program waits for that."
-  (let ((breakage (first (session-breaks session))))
-    (if breakage
-        (debug-line session breakage text)
-        (run-text session text))))
-
 (defun waits-for-time-p (session errands inbox)
   "True if something has been asked for that waits for time to pass, which stands still, since
 SESSION had ERRANDS, and the simulation INBOX."
@@ -24,8 +17,11 @@ SESSION had ERRANDS, and the simulation INBOX."
 (defun do-telling-of-time (session text)
   "Do what TEXT, a line of SESSION, says. If it asks for what cannot begin, since time stands still,
 tell somebody who sits there."
-  (let ((errands (session-errands session)) (inbox (requests-waiting)))
-    (do-next session text)
+  (let ((errands (session-errands session)) (inbox (requests-waiting))
+        (breakage (first (session-breaks session))))
+    (if breakage
+        (debug-line session breakage text)
+        (run-text session text))
     (when (and (session-terminal-p session) (waits-for-time-p session errands inbox))
       (write-fitted (session-console session)
                     "Time stands still. RESUME lets it go on, STEP 10 for 10 ticks.~%"))))

@@ -4,13 +4,6 @@
 
 ;;; Functions that nobody has defined.
 
-(defun shipped-advice (name)
-  "Return in a sentence the function that the worlds have under NAME, a symbol's; NIL if none."
-  (multiple-value-bind (symbol status) (find-symbol name :ars-worlds)
-    (and (eq :external status)
-         (fboundp symbol)
-         (format nil "There is ARS-WORLDS:~A." symbol))))
-
 (defun advice-on-function (condition)
   "Return in a sentence what may be meant by the name that CONDITION says is of no function; NIL of
 other conditions."
@@ -18,7 +11,10 @@ other conditions."
     (when (and name (symbolp name))
       (or (plan-advice name)
           (line-advice (symbol-name name))
-          (shipped-advice (symbol-name name))))))
+          (multiple-value-bind (symbol status) (find-symbol (symbol-name name) :ars-worlds)
+            (and (eq :external status)
+                 (fboundp symbol)
+                 (format nil "There is ARS-WORLDS:~A." symbol)))))))
 
 ;;; Calls.
 

@@ -17,17 +17,13 @@
        (boundp symbol)
        (robot-p (symbol-value symbol))))
 
-(defun give-way-p (symbol status)
-  "True if SYMBOL, which ARS-USER has with STATUS, may give way to a robot's name: it has merely
-been read, or is a robot's of another world."
-  (and (not (eq status :inherited))
-       (or (not (defined-p symbol)) (other-robot-p symbol))))
-
 (defun call-by-its-name (name)
   "Let NAME, a robot's variable, be known in ARS-USER, unless its name means something else there."
   (multiple-value-bind (known status) (find-symbol (symbol-name name) (user-package))
     (unless (eq known name)
-      (when (and status (give-way-p known status))
+      ;; What has merely been read, or is a robot's of another world, gives way.
+      (when (and (member status '(:internal :external))
+                 (or (not (defined-p known)) (other-robot-p known)))
         (unintern known (user-package))
         (setf status nil))
       (unless status (import (list name) (user-package))))))

@@ -11,12 +11,6 @@
 (defun experiment-among (name experiments)
   (find name experiments :key #'experiment-name :test #'same-name-p))
 
-(defun load-aside (path)
-  "Load the Lisp file at PATH. What it writes goes to the error output. It is not to end us."
-  (let ((*standard-output* *error-output*))
-    (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
-      (finish-output *error-output*))))
-
 (defun experiments-of (file experiments)
   "Return those of EXPERIMENTS, of what was loaded with FILE, that are meant by it: its own, or if
 it has none, those of the files that it loads."
@@ -26,8 +20,10 @@ it has none, those of the files that it loads."
 (defun load-experiments (path)
   "Load the Lisp file at PATH. Return the experiments that it defines. Signals BAD-LINE if there are
 none."
-  (let ((before (all-experiments)))
-    (load-aside path)
+  ;; What the file writes goes to the error output.
+  (let ((before (all-experiments)) (*standard-output* *error-output*))
+    (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
+      (finish-output *error-output*))
     (or (experiments-of path (set-difference (all-experiments) before))
         (reject-line "~A defines no experiment; a file of experiments has a DEFEXPERIMENT."
                      (native-name path)))))
