@@ -1,4 +1,4 @@
-;;;; help.lisp -- what HELP says of lines, from their definitions, and its menus.
+;;;; help.lisp -- HELP, APROPOS and the menus: what is said of lines, from their definitions.
 
 (in-package :ars-magna.cli)
 
@@ -41,3 +41,73 @@ is edited. What has left the screen is still in your terminal's memory: scroll u
   (write-filled (line-sentence line) 2)
   (dolist (slot (line-parameters line)) (write-filled (slot-help slot) 4))
   (dolist (detail (line-details line)) (write-filled detail 2)))
+
+(defun write-help-on (name)
+  (let ((line (find name (all-lines) :key #'line-name :test #'string-equal))
+        (alias (assoc name *aliases* :test #'string-equal))
+        (plan (plan-called name)))
+    (cond (line (write-help line))
+          (alias (format t "~{~A is an alias of ~A~}~%" alias))
+          (plan (write-plan-help plan))
+          (t (let ((topics (topics-called name)))
+               (if topics
+                   (mapc #'write-topic topics)
+                   (write-help (line-to-help-with name))))))))
+
+(defun line-to-help-with (name)
+  "Return the line whose name begins with NAME. Signals BAD-LINE."
+  (handler-bind ((bad-line (lambda (condition)
+                             (reject-line "~A APROPOS ~(~A~) searches all that has a name."
+                                          (bad-line-text condition) name))))
+    (find-line name)))
+
+(define-line "HELP" (session (name :topic "a command, a plan, or whatever has a name" :optional))
+    (:general)
+    "List the commands of the prompt and those that move the robot, or tell what NAME does or is: a
+command, plan, parameter, place type, attribute, value, error code, name of Lisp ..."
+  (if name (write-help-on name) (write-main-menu)))
+
+(define-line "MENU-BIN" (session) (:general)
+    "List the commands of storage bins."
+  (write-menu (lines-of :storage-bin)))
+
+(define-line "MENU-CAMERA" (session) (:general)
+    "List the commands of cameras."
+  (write-menu (lines-of :camera)))
+
+(define-line "MENU-HAND" (session) (:general)
+    "List the commands of hands."
+  (write-menu (lines-of :hand)))
+
+;;; Searching.
+
+(defparameter *most-topics* 40
+  "How many topics APROPOS lists that have a word in their texts only.")
+
+(defun topics-with (word)
+  "Return the topics that have WORD in their names, and those that have it in their texts only."
+  (flet ((in-p (text) (search word text :test #'char-equal)))
+    (let ((topics (all-topics)))
+      (values (remove-if-not (lambda (topic) (in-p (topic-name topic))) topics)
+              (remove-if-not (lambda (topic)
+                               (and (not (in-p (topic-name topic))) (in-p (topic-words topic))))
+                             topics)))))
+
+(defun write-topics (topics)
+  (dolist (topic topics)
+    (put-line "~A" (cut (format nil "  ~24A ~13A ~A" (topic-name topic) (topic-title topic)
+                                (one-line (topic-words topic)))
+                        *text-width*))))
+
+(define-line "APROPOS" (session (word :rest "a word, or a part of one"))
+    (:general)
+    "List all that has WORD in its name, or else in what is said of it: lines, plans, parameters,
+place types, attributes, error codes, names of Lisp. HELP tells more of each."
+  (multiple-value-bind (named others) (topics-with word)
+    (let ((more (- (length others) *most-topics*)))
+      (unless (or named others) (reject-line "Nothing has ~A in it." word))
+      (write-topics named)
+      (when others
+        (format t "~:[Said of it~;Also said of it~]:~%" named)
+        (write-topics (subseq others 0 (min *most-topics* (length others)))))
+      (when (plusp more) (format t "  and ~D more.~%" more)))))

@@ -1,4 +1,4 @@
-;;;; map-lines.lisp -- MAP: the world as characters.
+;;;; map-lines.lisp -- MAP: the world as characters; WATCH: while the robot moves.
 
 (in-package :ars-magna.cli)
 
@@ -93,3 +93,132 @@ go, BELIEF where it believes itself and what its designators denote to be, LEGEN
 characters mean. What PICTURE calls WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS, those words mean
 here, too."
   (write-string (map-text session (map-options what))))
+
+;;; WATCH.
+
+;;; On a terminal each map is written over the one before, and a key ends that. What comes
+;;; meanwhile, such as messages, is shown afterwards, its last line at once. Elsewhere the maps
+;;; follow one another.
+
+(defconstant +frame-seconds+ 0.1d0 "How long a map is seen at least, in seconds.")
+(defconstant +usual-rate+ 20 "How many ticks pass in a second where time has no pace of its own.")
+
+(defun time-passes-p (session simulation)
+  (and (live-p simulation)
+       (null (session-visit session))
+       (not (paused-p simulation))))
+
+(defun idle-here-p (session simulation)
+  "True if no ticks of SIMULATION, in which SESSION is, pass by themselves until somebody asks for
+something."
+  (and (time-passes-p session simulation) (idle-p simulation)))
+
+(defun pass-tick (session simulation)
+  "Let a tick of SIMULATION pass, or wait until one has passed, or none will."
+  (let ((goal (1+ (simulation-tick simulation))))
+    (unless (time-passes-p session simulation) (step-ticks 1 simulation))
+    (await (lambda ()
+             (or (>= (simulation-tick simulation) goal)
+                 (idle-here-p session simulation))))))
+
+;;; One after the other.
+
+(defun print-maps (session simulation count options)
+  (loop repeat count
+        until (or (simulation-over simulation) (idle-here-p session simulation))
+        do (pass-tick session simulation)
+           (format t "Tick ~D.~%~A" (simulation-tick simulation) (map-text session options))
+           (finish-output))
+  (when (idle-here-p session simulation) (format t "~A~%" (time-text session simulation))))
+
+;;; In place.
+
+(defun screen-p (session)
+  "True if SESSION is on a terminal that can be written over, and can hear keys."
+  (and (watched-p session)
+       (terminal-stream-p (session-input session))
+       (not (session-batch-p session))
+       (console-edited-p (session-console session))))
+
+(defun frame (session simulation options)
+  "Return what is to be seen now: the map, and below it the time and what was said last."
+  (let ((columns (1- (terminal-size session)))
+        (said (last-held-back (session-console session))))
+    (format nil "~A~A A key ends this.~%~A" (map-text session options 2)
+            (time-text session simulation)
+            (subseq said 0 (min columns (length said))))))
+
+(defun frame-seconds (session simulation)
+  "Return how many seconds pass from one map of SIMULATION to the next."
+  (let ((rate (simulation-rate simulation)))
+    (if (time-passes-p session simulation)
+        +frame-seconds+
+        (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
+
+(defun seen-enough-p (session simulation end)
+  "True if WATCH is to end at the tick that it is in SIMULATION, whatever is typed: it is END, or no
+more tick will come, if END is not NIL; other lines wait; or there is something to be answered."
+  (or (if end
+          (or (>= (simulation-tick simulation) end) (idle-here-p session simulation))
+          (typed-ahead-p (session-input session)))
+      (simulation-over simulation)
+      (session-breaks session)))
+
+(defun pressed-within-p (session seconds)
+  (octets-within-p (source-of (session-input session)) seconds))
+
+(defun watch-screen (session simulation count options)
+  "Show maps of SIMULATION in place until COUNT ticks have passed, or no more will, if COUNT is not
+NIL, or a key is pressed, or there is something else to be done. True if it was a key."
+  (loop with end = (and count (+ (simulation-tick simulation) count))
+        with console = (session-console session)
+        do (write-at-once (over-screen (frame session simulation options)) console)
+        until (seen-enough-p session simulation end)
+        do (when (pressed-within-p session (frame-seconds session simulation)) (return t))
+           (unless (time-passes-p session simulation) (pass-tick session simulation))))
+
+(defun watch-in-place (session simulation count options)
+  ;; The key that has ended it is no beginning of a line.
+  (when (handler-case (call-with-screen
+                       (lambda () (watch-screen session simulation count options))
+                       (session-console session))
+          (user-interrupt () nil))
+    (swallow-key (session-input session)))
+  (format t "~A~%" (time-text session simulation)))
+
+;;; The line.
+
+(defun take-count (text)
+  "Return the number that TEXT begins with, or NIL, and what follows it."
+  (let* ((words (split-words (or text "")))
+         (count (and words (number-typed (first words)))))
+    (when (and count (not (whole-p count 1)))
+      (reject-line "WATCH cannot show ~A ticks. Give a whole number, from 1 to 1e9." count))
+    (values count (format nil "~{~A~^ ~}" (if count (rest words) words)))))
+
+(defun check-watchable (session simulation count)
+  "Signal BAD-LINE if WATCH would show nothing, or for ever."
+  (cond ((session-visit session)
+         (reject-line "In a trial time passes between lines only. STEP and MAP show it tick by ~
+                       tick."))
+        (count)
+        ((not (screen-p session))
+         (reject-line "There is no key here that would end this. WATCH n shows n ticks."))
+        ((not (time-passes-p session simulation))
+         (reject-line "Time stands still here. WATCH n lets n ticks pass.~@[ RESUME lets it go ~
+                       on.~]"
+                      (live-p simulation)))))
+
+(define-line "WATCH" (session (what :map-words "how many ticks, then what MAP takes" :optional))
+    (:seeing)
+    "Show the map again and again while time passes, in place on a terminal, where a key or
+Control-C ends it: for as many ticks as the number that comes first says, or until nothing happens
+any more. Where time stands still, these ticks pass. What follows that number is as for MAP. Lines
+that were pasted with it, or are meanwhile, come after it; without a number they end it."
+  (check-run)
+  (multiple-value-bind (count rest) (take-count what)
+    (let ((simulation (current-simulation)) (options (map-options rest)))
+      (check-watchable session simulation count)
+      (if (screen-p session)
+          (watch-in-place session simulation count options)
+          (print-maps session simulation count options)))))

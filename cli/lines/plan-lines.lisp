@@ -1,4 +1,4 @@
-;;;; plan-lines.lisp -- PLAN, PLANS and STOP-PLAN.
+;;;; plan-lines.lisp -- lines that start, show and stop plans, their tasks and their traces.
 
 (in-package :ars-magna.cli)
 
@@ -149,3 +149,100 @@ also where and why."
         (n (end-plan (or (find n (plans) :key #'task-serial)
                          (reject-line "No plan ~D is under way. PLANS shows which are." n))))
         (t (end-plan :all))))
+
+;;; PLAN-TREE, WHY and PLAN-TIMELINE: what goes on, and how it came to that.
+
+(defun tree-text (which)
+  "Return the whole stacks and variables of WHICH, a task or a plan runner with plans, as text."
+  (let ((plan (loop for task = (if (task-p which) which (first (plans))) then (task-parent task)
+                    unless (task-parent task) return task)))
+    (call-reading-plan (task-name plan)
+                       (lambda () (with-output-to-string (out) (print-tasks which out t))))))
+
+(define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
+    "Show the plans under way, or the task N of one with its parts, whole: each task with all that
+it is in the middle of, its variables, what it waits for and since when; and who has which valve."
+  (let ((text (call-with-plans-in-use
+               (lambda (runner)
+                 (let ((which (cond ((null (plans)) nil)
+                                    (n (task-numbered n runner))
+                                    (t runner))))
+                   (and which (tree-text which)))))))
+    (cond (text (write-string (visible text)))
+          ((null (plans)) (reject-line "No plan is under way."))
+          (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))
+
+(defun task-why-text (n)
+  (call-reading-plan
+   (let ((plan (first (plans)))) (and plan (task-name plan)))
+   (lambda ()
+     (with-output-to-string (out)
+       (call-with-plans-in-use (lambda (runner) (why n :runner runner :stream out)))))))
+
+(define-line "WHY" (session (n count "the number of a task" :optional)) (:planning)
+    "Tell why the command that failed last did so: what was asked for and when, what its error code
+means and what to try. With N, tell what brought the task N where it is, also one that is over:
+which fluent woke it, who had set that, and how it was started. That needs a trace:
+(setf *trace-plans* t) before the plan starts."
+  (if n
+      (write-string (visible (task-why-text n)))
+      (let ((robot (session-robot)))
+        (still (dolist (sentence (failure-sentences robot)) (write-filled sentence 0))))))
+
+(define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
+    (:planning)
+    "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
+ticks, with what it waited for and the commands that it gave. Needs a trace: (setf *trace-plans* t)
+before the plan starts."
+  (format t "~A~%" (native-name (save-plan-timeline (path-called file)))))
+
+;;; END-TASK, STEP-TASK and TRACE-PLANS: what one does to plans under way.
+
+(define-choices :task-number
+  (call-with-plans-in-use
+   (lambda (runner) (and runner (mapcar #'task-serial (all-tasks runner))))))
+
+(defun task-meant (text)
+  "Return the task under way whose number TEXT says. Signals BAD-LINE."
+  (unless (plans) (reject-line "No plan is under way."))
+  (let ((number (ignore-errors (parse-integer text))))
+    (call-with-plans-in-use
+     (lambda (runner)
+       (or (and number (task-numbered number runner))
+           (reject-line "No task ~A is under way. PLANS shows which are." text))))))
+
+(defun task-text (task) (format nil "~D, ~A" (task-serial task) (task-label task)))
+
+(define-line "END-TASK" (session (n :task-number "the number of a task under way")) (:planning)
+    "End the task N of a plan, and all that it consists of: it evaporates, as when what it is part
+of needs it no longer, without stopping if it is stepped. What it has told the robot to do is
+interrupted. STOP-PLAN ends whole plans."
+  (let ((task (task-meant n)))
+    (step-task task nil)
+    (end-plan task)
+    (format t "Task ~A ends.~%" (task-text task))))
+
+(define-line "STEP-TASK" (session (n :task-number "the number of a task under way")
+                                  (off :off "OFF: no longer" :optional))
+    (:planning)
+    "Stop before each expression of the task N, and of those that it consists of, and ask how far to
+go on: STEP, NEXT, OUT or CONTINUE; no longer with OFF. Where nobody can answer, each stop is a
+message."
+  (let ((task (task-meant n)) (on-p (null off)))
+    (unless (or on-p (string-equal off "off"))
+      (reject-line "After the number of a task comes OFF or nothing, not ~A." off))
+    (step-task task on-p)
+    (format t "Task ~A ~:[goes on without stopping~;stops when it goes on~].~%" (task-text task)
+            on-p)))
+
+(define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)
+    "Keep a trace of what plans do, those under way included, from now on: for WHY, PLAN-TIMELINE
+and the window's timeline. OFF keeps none, and forgets it; without ON or OFF, say which it is."
+  (when switch
+    (let ((on-p (switch-setting "TRACE-PLANS" switch)))
+      ;; A plan may keep the thread of all: then none is asked, and nothing changes.
+      (call-with-plans-in-use
+       (lambda (runner)
+         (when runner (if on-p (start-trace runner) (stop-trace runner)))))
+      (setf *trace-plans* on-p)))
+  (format t "~:[No trace of plans is kept~;A trace of plans is kept~].~%" *trace-plans*))

@@ -1,4 +1,4 @@
-;;;; experiments.lisp -- which experiment a user means by a file, a name, or both.
+;;;; experiments.lisp -- which experiment a user means by a file, a name, or both; what came of it.
 
 (in-package :ars-magna.cli)
 
@@ -68,3 +68,14 @@ is one of several in a file. Signals BAD-LINE."
   "Return the path of the directory NAME, made if there is none."
   (handler-case (ensure-store-directory name)
     (misuse (condition) (reject-line "~A" condition))))
+
+;;; What is said of results.
+
+(defun report-results (results plot)
+  "Print RESULTS. If they are kept, keep that text beside them, and with PLOT their pictures."
+  (print-results results *standard-output*)
+  (when (results-directory results)
+    (write-file-anew (lambda (out) (call-on-page (lambda () (print-results results out))))
+                     (merge-pathnames "summary.txt" (results-directory results))
+                     "the summary" :remedy "remove it, or give another directory"))
+  (when plot (save-result-pictures results (results-directory results))))
