@@ -292,15 +292,13 @@
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "line-askers")
                    (:file "repetition")
-                   (:file "listener") (:file "reader")
+                   (:file "listener")
                    (:file "break-state") (:file "session") (:file "visit")
                    (:file "listening") (:file "going-on")
                    (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
-                   (:file "skipping")
                    (:file "comments") (:file "robot-lines") (:file "finding")
                    (:file "foreign-files")
-                   (:file "evaluation")
                    (:file "carrying-out") (:file "breakage") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds")
                    (:file "choices")
@@ -363,7 +361,7 @@
   :serial t
   :components
   ((:module "cli/manual" :serial t
-    :components ((:file "package") (:file "html") (:file "markdown") (:file "guide")
+    :components ((:file "package") (:file "html") (:file "guide")
                  (:file "examples") (:file "entries") (:file "command-entries")
                  (:file "definition-entries") (:file "symbol-entries") (:file "book")
                  (:file "linking") (:file "frame") (:file "reference") (:file "writing")))))

@@ -1,8 +1,8 @@
-;;;; html.lisp -- characters that HTML and JavaScript take for their own, and anchors.
+;;;; html.lisp -- HTML: its characters and anchors; made of Markdown, and taken apart.
 
 (in-package :ars-magna.manual)
 
-(export '(escaped anchor))
+(export '(escaped anchor html-tokens tag-p tag-name attribute-value))
 
 (defun escaped (text)
   "Return TEXT as it is written in HTML, between tags or in an attribute's double quotes."
@@ -49,3 +49,86 @@ addresses, and no two names have the same."
               (remove-if-not (lambda (char)
                                (or (alphanumericp char) (find char " -_")))
                              (string-downcase heading))))
+
+;;; From Markdown to HTML, by the program cmark-gfm, and HTML taken apart.
+
+(defun markdown-html (text)
+  "Return the HTML of TEXT, in Markdown as GitHub has it. HTML in TEXT is left out."
+  (multiple-value-bind (status html)
+      (with-input-from-string (in text)
+        (run-command "cmark-gfm" '("--extension" "table" "--extension" "autolink")
+                     :input in :output :string))
+    (unless (eql 0 status)
+      (reject-use "The manual needs the program cmark-gfm, of Debian's package of that name: ~
+                   apt-get install cmark-gfm."))
+    html))
+
+;;; The HTML that comes of it is simple: a < begins a tag, the next > ends it, and elements are
+;;; nested properly.
+
+(defun html-tokens (html)
+  "Return the tags in HTML and the texts between them, in a list of strings."
+  (loop with start = 0
+        while (< start (length html))
+        collect (let* ((tag-p (char= #\< (char html start)))
+                       (end (if tag-p
+                                (1+ (position #\> html :start start))
+                                (or (position #\< html :start start) (length html)))))
+                  (prog1 (subseq html start end)
+                    (setf start end)))))
+
+(defun tag-p (token)
+  "True if TOKEN, of HTML-TOKENS, is a tag."
+  (char= #\< (char token 0)))
+
+(defun tag-name (token)
+  "Return the name of the tag TOKEN, with the slash of one that ends an element; NIL of text."
+  (and (tag-p token)
+       (subseq token 1 (position-if (lambda (char) (find char " >")) token))))
+
+(defun tag-called-p (name token)
+  (equal name (tag-name token)))
+
+(defun attribute-value (attribute tag)
+  "Return the value of ATTRIBUTE, a string, in TAG, or NIL."
+  (let* ((mark (format nil " ~A=\"" attribute))
+         (start (search mark tag)))
+    (when start
+      (let ((start (+ start (length mark))))
+        (unescaped (subseq tag start (position #\" tag :start start)))))))
+
+(defun with-attribute (attribute value tag)
+  "Return TAG with VALUE for ATTRIBUTE, which it may have or not."
+  (let* ((mark (format nil " ~A=\"" attribute))
+         (start (search mark tag))
+         (end (if start
+                  (1+ (position #\" tag :start (+ start (length mark))))
+                  (position-if (lambda (char) (find char " />")) tag :start 1))))
+    (format nil "~A~A~A\"~A" (subseq tag 0 (or start end)) mark (escaped value)
+            (subseq tag end))))
+
+(defun element-at (tokens)
+  "Return the tokens of the element that TOKENS begin with, both its tags included, and the tokens
+that follow it."
+  (let ((name (tag-name (first tokens))))
+    (loop with depth = 0
+          for rest on tokens
+          for token = (first rest)
+          do (cond ((tag-called-p name token) (incf depth))
+                   ((tag-called-p (format nil "/~A" name) token) (decf depth)))
+          collect token into element
+          until (zerop depth)
+          finally (return (values element (rest rest))))))
+
+(defun parts-of (tokens whole-p)
+  "Return TOKENS in lists: the elements of whose first tag WHOLE-P is true, other tokens alone."
+  (loop with rest = tokens
+        while rest
+        collect (if (funcall whole-p (first rest))
+                    (multiple-value-bind (element left) (element-at rest)
+                      (setf rest left)
+                      element)
+                    (list (pop rest)))))
+
+(defun text-of (tokens)
+  (unescaped (format nil "~{~A~}" (remove-if #'tag-p tokens))))

@@ -1,6 +1,161 @@
-;;;; carrying-out.lisp -- doing what a line says.
+;;;; carrying-out.lisp -- doing what a line says, which is Lisp or a line command.
 
 (in-package :ars-magna.cli)
+
+;;; A line that begins with a parenthesis, or with # as forms do, is Lisp, in the package ARS-USER
+;;; and the syntax of the readtable :NISP; IN-PACKAGE holds for the lines that follow. A form may go
+;;; on over lines. Numbers typed are exact, double-floats. What runs, files that it loads included,
+;;; finds what Lisp has for it everywhere else.
+
+(defvar *undefined* '()
+  "Lists (name kind new-p) of what the compiler has found undefined in the forms at hand, newest
+first. NEW-P is true if it had no value then.")
+
+(defun quiet-warning (condition)
+  "Keep the compiler from telling users at length what they will be told in a moment. Doubts about
+definitions are messages like others."
+  (typecase condition
+    (definition-warning (warning-set (one-line (princ-to-string condition)))
+                        (muffle-warning condition))
+    (t (multiple-value-bind (name kind) (undefined-name condition)
+         (when name
+           (pushnew (list name kind (still-undefined-p name kind)) *undefined* :test #'equal)
+           (muffle-warning condition)))
+       (when (typep condition '(or style-warning compiler-note)) (muffle-warning condition)))))
+
+(defun call-quietly (function)
+  (handler-bind ((warning #'quiet-warning)
+                 (compiler-note #'muffle-warning))
+    (funcall function)))
+
+(defun call-telling-undefined (function &optional file)
+  "Call FUNCTION and return its values. What the forms that it evaluates, of FILE or typed, use and
+nobody has defined at its end are messages."
+  (let ((*undefined* '()))
+    (multiple-value-prog1 (funcall function)
+      (loop for (name kind new-p) in (reverse *undefined*)
+            do (cond ((still-undefined-p name kind)
+                      (warning-set (format nil "~@[~A: ~]The ~(~A~) ~(~A~) is not defined."
+                                           file kind (safe-text name))))
+                     ((and new-p (null file) (eq :variable kind))
+                      (tell-of-new-variable name)))))))
+
+(defun call-telling-doubts (function)
+  "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
+together, are messages."
+  (call-quietly (lambda () (call-as-unit function))))
+
+(defun eval-quietly (form)
+  "Evaluate FORM. What it writes to the error output comes when it is done."
+  (let ((diagnostics (make-string-output-stream)))
+    (unwind-protect (let ((*error-output* diagnostics)
+                          (*read-default-float-format* 'single-float))
+                      (call-quietly (lambda () (eval (with-own-name form)))))
+      ;; But for the compiler's, and what Lisp says of a full stack, of which users are told.
+      (dolist (line (lines-in (get-output-stream-string diagnostics)))
+        (unless (or (string= line "") (char= #\; (char line 0))
+                    (starts-with-subseq "Control stack guard page" line))
+          (format *standard-output* "~&~A~%" line))))))
+
+(defun eval-placing (form)
+  "Evaluate FORM. What cannot be read in a file that it loads, by LOAD, is told with its place."
+  (handler-bind ((reader-error (lambda (condition)
+                                 (multiple-value-bind (file line) (reading-place condition)
+                                   (when file
+                                     (error 'file-trouble :file file :line line
+                                                          :cause condition))))))
+    (eval-quietly form)))
+
+(defun reject-value (value trouble)
+  (reject-line "The value, of type ~(~A~), cannot be printed: ~A. Perhaps a method for ~
+                PRINT-OBJECT fails."
+               (class-name (class-of value)) (one-line-text trouble)))
+
+(defun value-line (value)
+  (let ((*print-circle* (or *print-circle* (not (tree-p value)))))
+    (handler-bind ((error (lambda (trouble) (reject-value value trouble))))
+      (format nil "~S" (if (readtablep value) (readtable-name value) value)))))
+
+(defun evaluate (session form)
+  (setf (session-lisp-p session) t)
+  (let ((values (multiple-value-list
+                 (call-telling-doubts
+                  (lambda ()
+                    (call-refusing-exits
+                     (lambda () (eval-placing form))
+                     "EXIT would end the simulator amid a line. QUIT leaves."))))))
+    (shiftf *** ** * (first values))
+    (unless (report-values (session-account session) (mapcar #'value-line values))
+      (when values (fresh-line))
+      (format t "~{~A~%~}" (mapcar #'value-line values)))))
+
+(defun check-parenthesis (text position)
+  (let ((start (skip-blanks text position)))
+    (when (char= #\) (char text start))
+      (reject-line "There is a parenthesis too many: ~A~:[~;  What is before it has been done.~]"
+                   (one-line (subseq text start)) (plusp position)))))
+
+(defun wrong-parameter ()
+  (handler-case (check-parameters)
+    (wrong-argument (condition) condition)))
+
+(defun call-checking-parameters (function)
+  "Call FUNCTION; signal WRONG-ARGUMENT if it has given a parameter a value that it cannot have."
+  (let ((before (wrong-parameter)))
+    (funcall function)
+    (let ((after (wrong-parameter)))
+      (unless (equal (and before (princ-to-string before)) (and after (princ-to-string after)))
+        (when after (error after))))))
+
+(defun note-clause-line (session text form clause)
+  "Note on which line CLAUSE of FORM stands, in TEXT, which ends with what SESSION has read last."
+  (let ((line (line-of-clause text form clause)))
+    (when line
+      (note-trouble-line (session-account session)
+                         (- (+ line (lines-typed (session-input session)))
+                            (count #\Newline text)
+                            1)))))
+
+(defun evaluate-placing (session text form)
+  "Evaluate FORM, read from TEXT in SESSION, and note on which line a clause makes no sense."
+  (handler-bind ((malformed-definition
+                   (lambda (condition)
+                     (unless (malformed-definition-place condition)
+                       (ignore-errors
+                        (note-clause-line session text form
+                                          (malformed-definition-clause condition)))))))
+    (evaluate session form)))
+
+(defun check-legible (session text start end)
+  "Signal BAD-LINE if TEXT, which ends with what SESSION has read last, has bytes from START to END
+that could not be read."
+  (let ((place (position +illegible+ text :start start :end end)))
+    (when place
+      (note-trouble-line (session-account session)
+                         (- (lines-typed (session-input session))
+                            (count #\Newline text :start place)))
+      (reject-line "The line has bytes that are not UTF-8, or U+FFFD, which stands for such. Write ~
+                    it in UTF-8."))))
+
+(defun evaluate-forms (session text)
+  (loop with position = 0
+        with start = 0
+        with form
+        do (setf (values text position) (skip-comments session text position))
+        until (= (skip-blanks text position) (length text))
+        do (check-parenthesis text position)
+           (setf start position
+                 (values form position text) (read-form session text position))
+           (check-legible session text start position)
+           (check-line-in-parentheses form)
+           (check-typed-call form)
+           (check-typed-load form)
+           (call-checking-parameters (lambda () (evaluate-placing session text form)))))
+
+(defun evaluate-text (session text)
+  (call-telling-undefined (lambda () (evaluate-forms session text))))
+
+;;; Lines of both kinds.
 
 (defun expand-alias (text &optional known)
   "Return TEXT with the alias that it begins with, if any, replaced; again, but each only once."

@@ -5,6 +5,25 @@
 (export '(session make-session session-robot session-errors session-input session-quiet-p
           *prompt-robot*))
 
+(defstruct (reader (:copier nil))
+  "What lines come from."
+  (input *standard-input* :type stream :read-only t)
+  ;; Files to load, and lines to do, before any is read.
+  (files '() :type list)
+  (lines '() :type list)
+  ;; In which package they are read at first; NIL for the users' own.
+  (package nil :type (or null package) :read-only t)
+  ;; No prompt is shown.
+  (batch-p nil :type boolean :read-only t)
+  ;; What is read is shown, for transcripts.
+  (echo-p nil :type boolean :read-only t)
+  ;; The first line that is an error is the last.
+  (stop-p nil :type boolean :read-only t)
+  ;; A line has been read of what is typed.
+  (typed-p nil :type boolean)
+  ;; Nothing more is typed: nobody has said QUIT.
+  (ended-p nil :type boolean))
+
 (defvar *prompt-robot* nil
   "The name of the robot that the prompt commands: the one last given to SIMULATOR, or chosen.")
 
