@@ -114,8 +114,12 @@
 
 ;;; Names of Lisp.
 
-(defun documented-p (symbol)
-  (some (lambda (kind) (documentation symbol kind)) '(function variable type)))
+(defun documentation-texts (symbol)
+  "Return what is documented of SYMBOL as a function, variable and type, each text once."
+  (remove-duplicates (loop for kind in '(function variable type)
+                           for text = (documentation symbol kind)
+                           when text collect text)
+                     :test #'string= :from-end t))
 
 (defun lisp-names ()
   "Return a list of the names that users have of the simulator and the worlds, and of their own, as
@@ -125,9 +129,9 @@ far as they are documented; but for parameters."
       (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
     (do-symbols (symbol (user-package))
       (when (eq (user-package) (symbol-package symbol)) (pushnew symbol names :test #'string=)))
-    (sort (remove-if #'find-parameter-called (remove-if-not #'documented-p names)) #'string<)))
-
-(defun find-parameter-called (symbol) (find-parameter symbol nil))
+    (sort (remove-if (lambda (name) (find-parameter name nil))
+                     (remove-if-not #'documentation-texts names))
+          #'string<)))
 
 (defun lisp-title (symbol)
   (cond ((member symbol (all-constructs) :test #'string=) "construct")
@@ -137,11 +141,7 @@ far as they are documented; but for parameters."
         (t "type")))
 
 (defun lisp-words (symbol)
-  (format nil "~{~A~^~%~}"
-          (remove-duplicates (loop for kind in '(function variable type)
-                                   for text = (documentation symbol kind)
-                                   when text collect text)
-                             :test #'string=)))
+  (format nil "~{~A~^~%~}" (documentation-texts symbol)))
 
 (defun typed-name (symbol)
   "Return how SYMBOL is typed at the prompt: with its package, if ARS-USER has another of its name,

@@ -26,30 +26,29 @@
     ("Range" ,(describe-type (parameter-type parameter)))
     ("Kind" ,(rest (assoc (parameter-kind parameter) *effects-of-cleaning*)))))
 
-(defun parameter-entry (parameter)
-  (let ((symbol (parameter-symbol parameter)))
-    (make-entry :name (parameter-name parameter) :chapter :parameters :symbol symbol
-                :section (parameter-group parameter) :use (parameter-name parameter)
-                :facts (append (parameter-facts parameter) (symbol-facts symbol))
-                :text (parameter-sentence parameter) :file (file-of-symbol symbol))))
-
 (defun parameter-entries ()
   (loop for parameter in (all-parameters)
-        when (packages-showing (parameter-symbol parameter))
-          collect (parameter-entry parameter)))
+        for symbol = (parameter-symbol parameter)
+        when (packages-showing symbol)
+          collect (make-entry :name (parameter-name parameter) :chapter :parameters :symbol symbol
+                              :section (parameter-group parameter)
+                              :use (parameter-name parameter)
+                              :facts (append (parameter-facts parameter) (symbol-facts symbol))
+                              :text (parameter-sentence parameter)
+                              :file (file-of-symbol symbol))))
 
 ;;; What is defined by name. Where the simulator's own definitions are from is not kept with them.
-
-(defun file-in-project (source)
-  "Return the file SOURCE as a name in the project; NIL if it is not of the project, or of a test."
-  (let ((name (and (not (eq :own source)) source (project-name (native-name source)))))
-    (and name (not (starts-with-subseq "tests/" name)) name)))
 
 (defun entries-of (kind function)
   "Return what FUNCTION makes of name, object and file of each definition of KIND that is the
 project's; the file is NIL if it is not known."
   (loop for (name object source) in (all-definitions kind)
-        for file = (file-in-project source)
+        for name-of-file = (and source
+                                (not (eq :own source))
+                                (project-name (native-name source)))
+        for file = (and name-of-file
+                        (not (starts-with-subseq "tests/" name-of-file))
+                        name-of-file)
         when (or file (eq :own source))
           collect (funcall function name object file)))
 
@@ -147,11 +146,6 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
               :use (plain-use name (procedure-lambda-list procedure))
               :text (text-of-symbol name) :file file))
 
-(defun plan-entries ()
-  "Return the entries of the plans for users to call, but none of what only those call."
-  (remove-if-not (lambda (entry) (packages-showing (entry-symbol entry)))
-                 (entries-of 'plan #'plan-entry)))
-
 (defun experiment-entry (name experiment file)
   (make-entry :name (string-downcase name) :chapter :experiments :symbol name
               :use (format nil "(run-experiment '~(~A~))" name)
@@ -165,5 +159,7 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
           (entries-of 'robot #'robot-entry)
           (entries-of 'kicker #'kicker-entry)
           (entries-of 'manipulation #'manipulation-entry)
-          (plan-entries)
+          ;; Of plans, those for users to call.
+          (remove-if-not (lambda (entry) (packages-showing (entry-symbol entry)))
+                         (entries-of 'plan #'plan-entry))
           (entries-of 'experiment #'experiment-entry)))

@@ -104,11 +104,7 @@ it is, FILE where it is defined."
         finally (return (append items (and rest (list '&rest rest))))))
 
 (defun text-of-symbol (symbol)
-  (format nil "~{~A~^~2%~}"
-          (remove-duplicates (loop for kind in '(function variable type)
-                                   for text = (documentation symbol kind)
-                                   when text collect text)
-                             :test #'string= :from-end t)))
+  (format nil "~{~A~^~2%~}" (documentation-texts symbol)))
 
 (defun sorts-of-symbol (symbol)
   (append (cond ((macro-function symbol) '("macro"))

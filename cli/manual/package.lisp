@@ -26,4 +26,4 @@ reference of what is defined in this Lisp.")
   (:import-from :ars-magna.cli
                 #:all-lines #:line-name #:line-family #:line-sentence #:line-details
                 #:line-parameters #:line-full-name #:line-action #:usage #:slot-help
-                #:manipulation-usages))
+                #:manipulation-usages #:documentation-texts))

@@ -27,15 +27,14 @@
   "True if EXAMPLE is to be shown with the entry, which it names if NAMED-P is true."
   (or named-p (<= (count #\Newline (example-text example)) *longest-example*)))
 
-(defun kind-of-words (entry)
-  (let ((chapter (entry-chapter entry)))
-    (cond ((eq :prompt chapter) :typed)
-          ((member chapter *chapters-of-lisp*) :called)
-          (t :written))))
-
 (defun examples-of-entry (entry examples)
   "Return those of EXAMPLES that are for ENTRY, and true if they name it."
-  (examples-for (entry-key entry) (kind-of-words entry) examples))
+  (let ((chapter (entry-chapter entry)))
+    (examples-for (entry-key entry)
+                  (cond ((eq :prompt chapter) :typed)
+                        ((member chapter *chapters-of-lisp*) :called)
+                        (t :written))
+                  examples)))
 
 (defun examples-html (entry book)
   (multiple-value-bind (examples named-p) (examples-of-entry entry (book-examples book))
@@ -99,14 +98,12 @@ defined there, further up."
 
 ;;; All names.
 
-(defun entries-by-name (book)
-  (sort (copy-list (book-entries book)) #'string< :key #'entry-key))
-
 (defun write-names (out book)
   (write-frame out "All names"
                (format nil "<h1>All names</h1>~%~A"
                        (list-html
-                        (loop for entry in (entries-by-name book)
+                        (loop for entry in (sort (copy-list (book-entries book)) #'string<
+                                                 :key #'entry-key)
                               collect (format nil "~A (~(~A~)): ~A"
                                               (link (entry-address entry)
                                                     (escaped (entry-name entry)))
