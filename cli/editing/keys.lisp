@@ -66,17 +66,14 @@
 (defun key-called (control &rest arguments)
   (make-keyword (string-upcase (apply #'format nil control arguments))))
 
-(defun read-coded-key (next)
-  (let ((key (second (assoc (read-code next) *keys-of-codes* :test #'string=))))
-    (if (member key '(:paste :entry))
-        (list key (read-paste next))
-        (or key :unknown))))
-
 (defun read-key-after-escape (next)
   (let ((char (funcall next)))
     (case char
       ((nil) nil)
-      ((#\[ #\O) (read-coded-key next))
+      ((#\[ #\O) (let ((key (second (assoc (read-code next) *keys-of-codes* :test #'string=))))
+                   (if (member key '(:paste :entry))
+                       (list key (read-paste next))
+                       (or key :unknown))))
       (#\Rubout :meta-rubout)
       (t (if (graphic-char-p char) (key-called "meta-~A" char) :unknown)))))
 

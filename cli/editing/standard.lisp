@@ -93,18 +93,14 @@ What is no whole line is being typed."
         (setf (edited-put-off input) (list (ahead-text ahead) (ahead-point ahead))))
       (ahead-lines ahead))))
 
-(defun one-key-p (octets)
-  (let ((next (text-reader (coerce octets 'string))))
-    (read-key next)
-    (null (funcall next))))
-
 (defgeneric swallow-key (input)
   (:documentation "Take the key that was pressed in INPUT; but leave it to be read if more was typed
 or pasted with it.")
   (:method (input) (clear-input input))
   (:method ((input edited-text))
-    (let ((octets (octets-come input)))
-      (unless (one-key-p octets) (add-octets (edited-ahead input) octets)))))
+    (let* ((octets (octets-come input)) (next (text-reader (coerce octets 'string))))
+      (read-key next)
+      (when (funcall next) (add-octets (edited-ahead input) octets)))))
 
 (defun drop-waiting (input)
   "Leave the lines that wait to be read of INPUT; the history has them as one entry. Return how many

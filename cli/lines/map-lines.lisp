@@ -155,15 +155,6 @@ something."
         +frame-seconds+
         (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
 
-(defun seen-enough-p (session simulation end)
-  "True if WATCH is to end at the tick that it is in SIMULATION, whatever is typed: it is END, or no
-more tick will come, if END is not NIL; other lines wait; or there is something to be answered."
-  (or (if end
-          (or (>= (simulation-tick simulation) end) (idle-here-p session simulation))
-          (typed-ahead-p (session-input session)))
-      (simulation-over simulation)
-      (session-breaks session)))
-
 (defun pressed-within-p (session seconds)
   (octets-within-p (source-of (session-input session)) seconds))
 
@@ -173,7 +164,11 @@ NIL, or a key is pressed, or there is something else to be done. True if it was 
   (loop with end = (and count (+ (simulation-tick simulation) count))
         with console = (session-console session)
         do (write-at-once (over-screen (frame session simulation options)) console)
-        until (seen-enough-p session simulation end)
+        until (or (if end
+                      (or (>= (simulation-tick simulation) end) (idle-here-p session simulation))
+                      (typed-ahead-p (session-input session)))
+                  (simulation-over simulation)
+                  (session-breaks session))
         do (when (pressed-within-p session (frame-seconds session simulation)) (return t))
            (unless (time-passes-p session simulation) (pass-tick session simulation))))
 

@@ -2,11 +2,6 @@
 
 (in-package :ars-magna.cli)
 
-(defun list-aliases ()
-  (if *aliases*
-      (format t "~:{~A = ~A~%~}" (sort (copy-list *aliases*) #'string< :key #'first))
-      (format t "No aliases. ALIAS name command defines one.~%")))
-
 (defun circle-of (name text)
   "Return the aliases that TEXT, which the alias NAME is to stand for, leads through on the way back
 to NAME, that one first and last; NIL if it does not."
@@ -41,7 +36,10 @@ back to NAME."
     (:general)
     "List the aliases, or let ALIAS stand for CMD."
   (let ((name (and alias (string-upcase alias))))
-    (cond ((null name) (list-aliases))
+    (cond ((and (null name) (null *aliases*))
+           (format t "No aliases. ALIAS name command defines one.~%"))
+          ((null name)
+           (format t "~:{~A = ~A~%~}" (sort (copy-list *aliases*) #'string< :key #'first)))
           (cmd (define-alias name cmd))
           (t (let ((known (assoc name *aliases* :test #'string=)))
                (unless known (reject-line "There is no alias ~A." name))

@@ -89,17 +89,12 @@ or else what the user types next."
                        (t rest))))
     (unless (and asks-p (null answer))
       (order session breakage
-             (lambda () (call-answering-restart answer
-                                                (lambda ()
-                                                  (invoke-restart-interactively restart))))))))
-
-(defun call-answering-restart (answer function)
-  "Call FUNCTION. What it asks the user is answered by the text ANSWER, if that is not NIL."
-  (if answer
-      (with-input-from-string (in answer)
-        (let ((*query-io* (make-two-way-stream in (make-broadcast-stream))))
-          (funcall function)))
-      (funcall function)))
+             (lambda ()
+               (let ((*query-io* (if answer
+                                     (make-two-way-stream (make-string-input-stream answer)
+                                                          (make-broadcast-stream))
+                                     *query-io*)))
+                 (invoke-restart-interactively restart)))))))
 
 (defun read-debug-line (session breakage)
   (let ((text (read-input session "Break> ")))

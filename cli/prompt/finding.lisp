@@ -178,16 +178,12 @@ takes."
 
 ;;; New variables.
 
-(defun starred-p (name)
-  "True if the symbol NAME ends in a star, as special variables' do."
-  (let ((place (position #\* (symbol-name name) :from-end t)))
-    (and place (plusp place) (= place (1- (length (symbol-name name)))))))
-
 (defun tell-of-new-variable (name)
   "Tell of the variable NAME, which something typed has set and nobody has defined, if it may be a
 slip or is called as defined ones are."
   (let ((meant (variable-slip name)))
-    (when (or meant (starred-p name))
+    (when (or meant (let ((place (position #\* (symbol-name name) :from-end t)))
+                      (and place (plusp place) (= place (1- (length (symbol-name name)))))))
       (warning-set (format nil "~(~A~) is a new variable, as nobody has defined it before.~@[ Did ~
                                 you mean ~A?~] (defvar ~:*~:*~(~A~) ...) defines one."
                            name meant)))))

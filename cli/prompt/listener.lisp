@@ -102,7 +102,9 @@ if it is an error or warning in a script, with the place of its line."
     (incf (listener-errors listener))
     (when (and account (not (eql (line-of-message account message) (line-under-way account))))
       (incf (account-errors account))
-      (note-error-of-line account (line-of-message account message)))))
+      ;; That line may wait for time to pass.
+      (let ((waiting (assoc (line-of-message account message) (account-waiting account))))
+        (when waiting (setf (third waiting) nil))))))
 
 (defun messages-for (listener messages)
   "Count the errors among MESSAGES, and return those that LISTENER is to show."

@@ -43,18 +43,12 @@ message. Prints as TEXT. SESSION shows the message, whatever run it is in."
 (defmethod print-object ((verdict verdict) stream)
   (write-string (verdict-text verdict) stream))
 
-(defun session-addressed (message)
-  "Return the session at work that MESSAGE is for in any case, in a list, or NIL."
-  (let* ((item (first (message-items message)))
-         (session (and (verdict-p item) (verdict-session item))))
-    (and session
-         (member session (with-lock (*sessions-lock*) *sessions*))
-         (list session))))
-
 (defun hearers (message session)
   "Return the sessions that are to show MESSAGE, which SESSION has taken: the one that it is for,
 and those that listen to its run; or if there is none, SESSION."
-  (or (union (session-addressed message)
+  (or (union (let* ((item (first (message-items message)))
+                    (meant (and (verdict-p item) (verdict-session item))))
+               (and meant (member meant (sessions-at-work)) (list meant)))
              (sessions-hearing (or (message-run message) (session-simulation session))))
       (list session)))
 

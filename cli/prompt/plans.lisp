@@ -231,11 +231,6 @@ answer to the last such question."
     (push errand (session-errands session))
     (when (live-p *simulation*) (start-watching-plan errand))))
 
-(defun take-up-p (session task)
-  "True if TASK is to be waited for like a plan that SESSION has started, but is not yet."
-  (and (member (task-name task) (session-plans session) :test #'eq)
-       (not (find task *plan-errands* :key #'plan-errand-task))))
-
 (defun take-up-plans (session)
   "Let SESSION, whose plans are of a run that was rewound, wait for those that go on in the place of
 them."
@@ -243,4 +238,6 @@ them."
     (mapc #'close-errand (remove-if-not #'let-go-p (session-errands session)))
     (setf (session-errands session) (remove-if #'let-go-p (session-errands session))))
   (dolist (task (plans))
-    (when (take-up-p session task) (take-up-plan session task))))
+    (when (and (member (task-name task) (session-plans session))
+               (not (find task *plan-errands* :key #'plan-errand-task)))
+      (take-up-plan session task))))

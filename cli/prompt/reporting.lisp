@@ -92,11 +92,6 @@ nothing to do in it, is about to be done, and that there were ERRORS so far."
           (report-line account "done" line text
                        :ok (if (and good-p (eq :ok how)) t :false)))))))
 
-(defun note-error-of-line (account line)
-  "Note that there was an error in LINE, which may wait for time to pass."
-  (let ((waiting (find line (account-waiting account) :key #'first)))
-    (when waiting (setf (third waiting) nil))))
-
 (defun give-up-waiting-lines (account)
   "Report that lines that wait for time to pass have not ended, and never will."
   (dolist (waiting (reverse (shiftf (account-waiting account) '())))

@@ -11,19 +11,16 @@
   (when (find-package :ars-magna.build)
     (uiop:symbol-call :ars-magna.build :configure)))
 
-(defun call-as-in-bare-lisp (function)
-  "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
-is of no interest."
-  (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream))
-        (*package* (find-package :cl-user))
-        (*readtable* (copy-readtable nil))
-        (*read-default-float-format* 'single-float))
-    (handler-bind ((warning #'muffle-warning)) (funcall function))))
-
 (defun call-or-say (function trouble)
-  "Call FUNCTION as in a bare Lisp. If that fails, signal BAD-LINE with TROUBLE, the control string
-of a text that says why."
-  (handler-case (call-as-in-bare-lisp function)
+  "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
+is of no interest. If that fails, signal BAD-LINE with TROUBLE, the control string of a text that
+says why."
+  (handler-case
+      (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream))
+            (*package* (find-package :cl-user))
+            (*readtable* (copy-readtable nil))
+            (*read-default-float-format* 'single-float))
+        (handler-bind ((warning #'muffle-warning)) (funcall function)))
     (error (condition)
       (reject-line trouble (one-line (condition-text condition))))))
 
@@ -35,9 +32,6 @@ of a text that says why."
                   WINDOW again."))
   (call-or-say (lambda () (asdf:load-system "ars-magna/clim"))
                "No window: McCLIM is there, but cannot be loaded: ~A"))
-
-(defun display-named-p ()
-  (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
 
 ;; Read when this file is loaded, so that a saved program has it with it.
 (defparameter *how-to-get-windows*
@@ -53,7 +47,7 @@ of a text that says why."
   "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM, or
 if CLX does not work."
   (unless *display-opener*
-    (unless (display-named-p)
+    (when (member (environment-value "DISPLAY") '(nil "") :test #'equal)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
                     world here, PICTURE in a file."))
     (configure-asdf)

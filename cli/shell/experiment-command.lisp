@@ -80,13 +80,9 @@
 
 ;;; Running here.
 
-(defun directory-for-rows (options)
-  "Return the name of the directory that OPTIONS want rows in, or NIL."
-  (let ((out (option-value :out options)) (shard (option-value :shard options)))
-    (if shard (shard-directory out (car shard) (cdr shard)) out)))
-
 (defun results-of (experiment options)
-  (let ((directory (directory-for-rows options)))
+  (let ((directory (let ((out (option-value :out options)) (shard (option-value :shard options)))
+                     (if shard (shard-directory out (car shard) (cdr shard)) out))))
     (when directory (ensure-results-directory directory))
     (apply #'run-experiment experiment
            :trials (option-value :trials options)

@@ -21,11 +21,6 @@ calls were begun before. Without a second value, which form of a file is loaded,
           ((user-calls-place calls) (whose-code calls))
           ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
 
-(defun say-who-stays (session whose)
-  (say-where session (format nil "~A has not returned for ~D s and goes on. Control-C ends the ~
-                                  batch, and so does the option --time-limit SECONDS."
-                             whose *hog-patience*)))
-
 (defun watch-for-calls (session calls ended)
   "Name users' code that keeps SESSION, of which CALLS tells, until the semaphore ENDED is
 signalled. What is seen four times on end, a third of *HOG-PATIENCE* apart, has been there so long."
@@ -33,7 +28,11 @@ signalled. What is seen four times on end, a third of *HOG-PATIENCE* apart, has 
         until (wait-on-semaphore ended (/ *hog-patience* 3))
         do (multiple-value-bind (whose count) (call-under-way session calls)
              (unless (eql count seen) (setf seen count looks 0))
-             (when (and whose count (= 4 (incf looks))) (say-who-stays session whose)))))
+             (when (and whose count (= 4 (incf looks)))
+               (say-where session
+                          (format nil "~A has not returned for ~D s and goes on. Control-C ends ~
+                                       the batch, and so does the option --time-limit SECONDS."
+                                  whose *hog-patience*))))))
 
 (defun say-stopped (session whose reason)
   (say-where session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))

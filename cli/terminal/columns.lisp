@@ -41,19 +41,14 @@ last blank in time, or else the first; NIL if it need not be broken or has no bl
            (incf taken columns-of-char)
            (when (and best (> taken columns)) (return best))))
 
-(defun label-end (line indent)
-  "Return where what follows the label begins in LINE, indented by INDENT, such as STATUS has:
-\"Time:    Tick 0\". If there is none, INDENT."
-  (let ((colon (position #\: line :start indent)))
-    (or (and colon
-             (null (search "  " line :start2 indent :end2 colon))
-             (position #\Space line :start (1+ colon) :test #'char/=))
-        indent)))
-
 (defun table-line-p (line indent)
   "True if LINE, indented by INDENT, is not to be read as a sentence: it has gaps, as a table or a
-map has."
-  (search "  " line :start2 (label-end line indent)))
+map has, but for one behind a label, such as STATUS has: \"Time:    Tick 0\"."
+  (let ((colon (position #\: line :start indent)))
+    (search "  " line :start2 (or (and colon
+                                       (null (search "  " line :start2 indent :end2 colon))
+                                       (position #\Space line :start (1+ colon) :test #'char/=))
+                                  indent))))
 
 (defun pieces-of-line (line first columns)
   "Return LINE as a list of lines of at most COLUMNS, the first of FIRST, as far as blanks allow.
