@@ -132,8 +132,7 @@
                  (:file "stillness") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "names") (:file "items")
-                 (:file "scope") (:file "suspension") (:file "checking") (:file "comparing")
-                 (:file "no-values")
+                 (:file "scope") (:file "suspension") (:file "checking") (:file "mistakes")
                  (:file "known-fluents") (:file "leaf") (:file "compiler") (:file "expression")
                  (:file "construct") (:file "steps") (:file "binding") (:file "leaving")
                  (:file "branching") (:file "repeating") (:file "tags") (:file "calling")

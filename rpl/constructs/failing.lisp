@@ -12,12 +12,8 @@
 (defun check-fail (form)
   "Warn if the word that FORM, a FAIL, begins with may be a slip for :CLASS."
   (when (and (cddr form) (keywordp (second form)) (resembles-p (second form) :class))
-    (call-at-place form
-                   (lambda ()
-                     (warn-of-call #'doubt-definition form
-                                   "fail takes ~(~S~) for the class of the failure. Did you mean ~
-                                    :class?"
-                                   (second form))))))
+    (doubt-form form "fail takes ~(~S~) for the class of the failure. Did you mean :class?"
+                (second form))))
 
 (defun check-class (form scope)
   "Warn if the class that FORM, a FAIL in SCOPE, gives is a name and no variable."

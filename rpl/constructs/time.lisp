@@ -34,10 +34,7 @@
 (defun check-span (span form)
   "Warn if SPAN, a form in FORM, is less than no time."
   (when (and (realp span) (minusp span))
-    (call-at-place form (lambda ()
-                          (warn-of-call #'doubt-definition form
-                                        "~(~A~) does not wait for ~A, which is less than 0."
-                                        (first form) span)))))
+    (doubt-form form "~(~A~) does not wait for ~A, which is less than 0." (first form) span)))
 
 (defun span-lambda (operator span unit form scope)
   "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, a use of

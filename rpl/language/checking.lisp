@@ -2,23 +2,33 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(warn-of-call doubt-own-form *advice-on-call* find-call fail-p may-return-p
+(export '(doubt-form doubt-own-form *advice-on-call* find-call fail-p may-return-p
           endless-whenever-p))
 
 ;;; Plans and functions may be defined in any order, and in several files. So calls are looked at
 ;;; when all has been read that is compiled or loaded together, as Lisp does with its functions.
 ;;; What Lisp code calls is for Lisp to see.
 
-(defun warn-of-call (warn form control &rest arguments)
-  "Let WARN, a function, say of FORM what is formatted from CONTROL and ARGUMENTS."
-  (funcall warn "~A~@[ (~A)~]: ~A" (author) (clause-place form)
-           (let ((*print-case* :downcase) (*print-pretty* nil))
-             (apply #'format nil control arguments))))
+(defun say-of-form (warn form control arguments)
+  "Let WARN, a function, say of FORM, at its place, what is formatted from CONTROL and ARGUMENTS."
+  (call-at-place form
+                 (lambda ()
+                   (funcall warn "~A~@[ (~A)~]: ~A" (author) (clause-place form)
+                            (let ((*print-case* :downcase) (*print-pretty* nil))
+                              (apply #'format nil control arguments))))))
+
+(defun warn-of-form (form control &rest arguments)
+  "Warn of FORM as WARN-OF-DEFINITION does."
+  (say-of-form #'warn-of-definition form control arguments))
+
+(defun doubt-form (form control &rest arguments)
+  "Warn of FORM as DOUBT-DEFINITION does."
+  (say-of-form #'doubt-definition form control arguments))
 
 (defun doubt-own-form (form control &rest arguments)
-  "Warn as DOUBT-DEFINITION does, of FORM, if that is of the plan's own text."
+  "Do as DOUBT-FORM if FORM is of the plan's own text."
   (when (own-text-p form)
-    (apply #'warn-of-call #'doubt-definition form control arguments)))
+    (say-of-form #'doubt-definition form control arguments)))
 
 (defun known-operators (&optional (package *package*))
   "Return the names that calls in PACKAGE could be meant for. Those of one letter, such as ?, are
@@ -41,7 +51,7 @@ letter is like no other."
   "Warn if the call FORM does not fit LAMBDA-LIST, or that of the type of a function."
   (let ((trouble (misfit (shape-of lambda-list) (rest form))))
     (when trouble
-      (warn-of-call #'warn-of-definition form "~(~A~) takes ~A, not ~A."
+      (warn-of-form form "~(~A~) takes ~A, not ~A."
                     (first form) (shape-text lambda-list) trouble))))
 
 (defun nisps-own (name)
@@ -60,12 +70,8 @@ construct of NISP, as WAIT-FOR is in packages that do not use NISP."
                (lisps-own-p name)
                (not (eq (find-package "COMMON-LISP") (symbol-package name)))
                (nisps-own name))
-      (call-at-place form
-                     (lambda ()
-                       (warn-of-call #'doubt-definition form
-                                     "~(~A~) is not that of plans; NISP has one. Write (in-package ~
-                                      :ars-user), or nisp:~:*~(~A~)."
-                                     (symbol-name name)))))))
+      (doubt-form form "~(~A~) is not that of plans; NISP has one. Write (in-package :ars-user), ~
+                        or nisp:~:*~(~A~)." (symbol-name name)))))
 
 ;; What knows more names than plans' and functions' sets it.
 (defvar *advice-on-call* (constantly nil)
@@ -74,33 +80,28 @@ why, and what to write; or NIL.")
 
 (defun warn-of-unknown (form)
   (let* ((name (first form))
-         (namesake (find-procedure name nil)))
+         (namesake (find-procedure name nil))
+         (advice (funcall *advice-on-call* name)))
     (cond (namesake
-           (warn-of-call #'doubt-definition form
-                         "there is no plan procedure or function ~S. If the plan of another ~
-                          package is meant, write ~S."
-                         name (procedure-name namesake)))
-          ((funcall *advice-on-call* name)
-           (warn-of-call #'doubt-definition form "there is no plan procedure or function ~(~A~): ~A"
-                         name (funcall *advice-on-call* name)))
+           (doubt-form form "there is no plan procedure or function ~S. If the plan of another ~
+                             package is meant, write ~S."
+                       name (procedure-name namesake)))
+          (advice (doubt-form form "there is no plan procedure or function ~(~A~): ~A" name advice))
           ((nisps-own name)
-           (warn-of-call #'doubt-definition form
-                         "there is no plan procedure or function ~S; NISP has one. Write ~
-                          (in-package :ars-user), or use the package NISP in yours." name))
+           (doubt-form form "there is no plan procedure or function ~S; NISP has one. Write ~
+                             (in-package :ars-user), or use the package NISP in yours." name))
           ((same-name-p name "TAG")
-           (warn-of-call #'doubt-definition form "a tag has a colon: (:tag name form...)."))
+           (doubt-form form "a tag has a colon: (:tag name form...)."))
           (t
-           (warn-of-call #'doubt-definition form
-                         "there is no plan procedure or function ~(~A~).~@[ Did you mean ~A?~]"
-                         name (nearest-operator name))))))
+           (doubt-form form "there is no plan procedure or function ~(~A~).~@[ Did you mean ~A?~]"
+                       name (nearest-operator name))))))
 
 (defun look-at-call (form)
   "Warn if the call FORM is not right, as far as anybody knows now."
   (let ((name (first form)))
     (cond ((procedure-name-p name) (check-fit form (known-lambda-list name)))
           ((macro-function name)
-           (warn-of-call #'warn-of-definition form "~(~A~) is a macro that is defined only later."
-                         name))
+           (warn-of-form form "~(~A~) is a macro that is defined only later." name))
           ((known-function-p name nil)
            (multiple-value-bind (arguments known) (function-arguments name)
              (when known (check-fit form arguments))))
@@ -122,15 +123,14 @@ why, and what to write; or NIL.")
 right."
   (let ((local (assoc (first form) (scope-procedures scope))))
     (if local
-        (call-at-place form (lambda () (check-fit form (fourth local))))
+        (check-fit form (fourth local))
         (look-later #'look-at-call form))))
 
 (defun look-at-lisp-call (form)
   "Warn if FORM, a call in a Lisp form that a plan cannot wait inside, turns out to call a plan."
   (when (procedure-name-p (first form))
-    (warn-of-call #'warn-of-definition form
-                  "~(~A~) is a plan procedure, defined only later. It cannot be called inside of a ~
-                   lambda, or another form that only Lisp runs."
+    (warn-of-form form "~(~A~) is a plan procedure, defined only later. It cannot be called inside ~
+                        of a lambda, or another form that only Lisp runs."
                   (first form))))
 
 (defun list-slip (part expected)
@@ -164,51 +164,6 @@ of LAMBDA-LIST's, or what stands there for such a list; or NIL."
                                 (or (list-slip part expected)
                                     (slip-in-construct (cons (first form) part) expected))))))))
 
-;;; Commands. They tell a continuation of their end, and no fluent, when they are not given by the
-;;; plan's own functions.
-
-(defun command-among (forms)
-  "Return the first call in FORMS, of a plan's text, of what plans call by another function, or NIL:
-not in what is called later."
-  (loop for tail = forms then (rest tail)
-        while (consp tail)
-        thereis (let ((form (first tail)))
-                  (cond ((atom form) nil)
-                        ((has-twin-p (first form)) form)
-                        ((member (first form) '(quote function lambda)) nil)
-                        ((same-name-p (if (symbolp (first form)) (first form) "") 'continuation)
-                         nil)
-                        (t (command-among form))))))
-
-(defun doubt-command (form)
-  "Warn that FORM, a command, does not tell its plan of its end."
-  (warn-of-call #'doubt-definition form
-                "~(~A~) does not tell plans of its end. In a plan write ~A."
-                (first form) (twin-text (first form))))
-
-(defun check-commands (form)
-  "Warn of the first command in FORM, of a plan's text."
-  (let ((command (and *definition* (command-among (list form)))))
-    (when command (call-at-place command (lambda () (doubt-command command))))))
-
-;;; Handlers of Lisp's. A failure is no error.
-
-(defun errors-only-p (clauses)
-  "True if each of CLAUSES, of a handler, is for errors."
-  (every (lambda (clause)
-           (and (consp clause)
-                (or (eq :no-error (first clause))
-                    (nth-value 0 (ignore-errors (subtypep (first clause) 'error))))))
-         clauses))
-
-(defun forms-with-errors-handled (form)
-  "Return the forms in FORM, of Lisp's, in which errors are handled and failures are not."
-  (cond ((operator-in-p form '("IGNORE-ERRORS")) (rest form))
-        ((operator-in-p form '("HANDLER-CASE"))
-         (and (cddr form) (errors-only-p (cddr form)) (list (second form))))
-        ((operator-in-p form '("HANDLER-BIND"))
-         (and (consp (second form)) (errors-only-p (second form)) (cddr form)))))
-
 (defun find-call (test forms)
   "Return the first call in FORMS for which TEST is true, or NIL; not in what is called later."
   (loop for tail = forms then (rest tail)
@@ -216,57 +171,14 @@ not in what is called later."
         thereis (let ((form (first tail)))
                   (cond ((atom form) nil)
                         ((funcall test form) form)
-                        ((not (member (first form) '(quote function lambda)))
+                        ((not (or (member (first form) '(quote function lambda))
+                                  (and (symbolp (first form))
+                                       (same-name-p (first form) 'continuation))))
                          (find-call test form))))))
 
 (defun fail-p (form)
   "True if FORM is a call of FAIL."
   (operator-in-p form '("FAIL")))
-
-(defun vain-handler-p (form)
-  "True if FORM is a handler of errors around a FAIL."
-  (find-call #'fail-p (forms-with-errors-handled form)))
-
-(defun check-handlers (form)
-  "Warn of the first handler of errors in FORM, of a plan's text, around a FAIL."
-  (let ((handler (and *definition* (find-call #'vain-handler-p (list form)))))
-    (when handler
-      (call-at-place handler
-                     (lambda ()
-                       (warn-of-call #'doubt-definition handler
-                                     "~(~A~) does not handle failures of plans, as FAIL makes ~
-                                      them. Write (handle-failure ((class (e) ...)) body...)."
-                                     (first handler)))))))
-
-;;; What lets time pass, and not for plans.
-
-(defparameter *vain-waits*
-  '(("SLEEP" . "sleep stops all plans for so many seconds, and no tick need pass meanwhile.")
-    ("RUN-TICKS" . "run-ticks is for programs: it cannot be called inside of a tick or plan.")
-    ("STEP-TICKS" . "step-ticks is for programs: it cannot be called inside of a tick or plan.")
-    ("AWAIT-IDLE" . "await-idle is for programs: a plan would wait for itself.")
-    ("RUN-UNTIL" . "run-until is for programs: it cannot be called inside of a tick or plan."))
-  "Lists (operator . what is wrong with it in plans).")
-
-(defun vain-wait-p (form)
-  "True if FORM lets time pass for programs, and not for plans."
-  (operator-in-p form (mapcar #'car *vain-waits*)))
-
-(defun doubt-vain-wait (form)
-  "Warn that FORM is not how plans wait."
-  (destructuring-bind (name &optional (time 'ticks) &rest options) form
-    (declare (ignore options))
-    (warn-of-call #'doubt-definition form "~A In a plan write ~A."
-                  (cdr (assoc (symbol-name name) *vain-waits* :test #'string=))
-                  (cond ((string= "RUN-UNTIL" name) "(wait-until condition)")
-                        ((string= "AWAIT-IDLE" name) "(wait-for fluent), such as robot-stopped*")
-                        ((string= "SLEEP" name) (format nil "(wait-time ~S :unit :seconds)" time))
-                        (t (format nil "(wait-time ~S), for so many ticks" time))))))
-
-(defun check-waits (form)
-  "Warn of the first form in FORM, of a plan's text, that lets time pass for programs only."
-  (let ((wait (and *definition* (find-call #'vain-wait-p (list form)))))
-    (when wait (call-at-place wait (lambda () (doubt-vain-wait wait))))))
 
 ;;; What comes after what goes on for ever.
 
@@ -294,12 +206,9 @@ not in what is called later."
 the last."
   (let ((form (find-if #'endless-whenever-p (butlast forms))))
     (when (and form *definition*)
-      (call-at-place form
-                     (lambda ()
-                       (warn-of-call #'doubt-definition form
-                                     "what stands after whenever is never done, as that goes on ~
-                                      until something in it calls (return). Put both into (par ~
-                                      ...), or use (with-policy (whenever ...) body...)."))))))
+      (doubt-form form "what stands after whenever is never done, as that goes on until something ~
+                        in it calls (return). Put both into (par ...), or use (with-policy ~
+                        (whenever ...) body...)."))))
 
 ;;; Variables.
 
@@ -309,12 +218,8 @@ mention: declarations count."
   (when (in-source-p form)
     (dolist (variable variables)
       (when (and (symbol-package variable) (not (mentions-p variable where)))
-        (call-at-place form
-                       (lambda ()
-                         (warn-of-call #'doubt-definition form
-                                       "the variable ~(~A~) is never used. If that is meant, ~
-                                        say (declare (ignore ~:*~(~A~)))."
-                                       variable)))))))
+        (doubt-form form "the variable ~(~A~) is never used. If that is meant, say (declare ~
+                          (ignore ~:*~(~A~)))." variable)))))
 
 (defun check-distinct (variables form)
   "Signal MALFORMED-DEFINITION if one of VARIABLES, bound by FORM at once, is there twice."

@@ -29,8 +29,7 @@
                (list* (remove-if #'symbolp parameters) body)
                (if *definition* (defining-form *definition*) form))
     (with-own-text (form)
-      (doubt-comparisons body)
-      (doubt-values body)
+      (doubt-text body)
       (multiple-value-bind (body documentation) (split-documentation body)
         (multiple-value-bind (scope entry) (procedure-parts parameters environment)
           `(progn
@@ -70,9 +69,7 @@ the variables around it, but not blocks, tags and local plans. Run it by CALL-PL
         (form (list* 'interp-lambda parameters body))
         (inside-p (and *own-conses* t)))
     (with-own-text (form)
-      (unless inside-p
-        (doubt-comparisons body)
-        (doubt-values body))
+      (unless inside-p (doubt-text body))
       (multiple-value-bind (scope entry) (procedure-parts parameters environment)
         `(anonymous-procedure ',parameters ,entry
                               ,(procedure-body-code nil form body scope)

@@ -101,7 +101,7 @@ one."
                            (*print-right-margin* 10000))
                        (advice-on-awaited condition form (scope-environment scope))))))
     (when advice
-      (call-at-place form (lambda () (warn-of-call #'warn-of-definition form "~A" advice))))))
+      (warn-of-form form "~A" advice))))
 
 ;;; Arguments.
 
@@ -171,14 +171,10 @@ one."
 (defun warn-of-counting (form)
   "Warn that FORM, an INCF or DECF, has a fluent as its place."
   (destructuring-bind (name fluent &optional (by 1)) form
-    (call-at-place
-     form
-     (lambda ()
-       (warn-of-call #'warn-of-definition form
-                     "~(~A~) cannot change ~S, which is a fluent. Write ~S."
-                     name fluent
-                     `(set-value ,fluent (,(if (same-name-p name 'incf) '+ '-)
-                                          (fluent-value ,fluent) ,by)))))))
+    (warn-of-form form "~(~A~) cannot change ~S, which is a fluent. Write ~S."
+                  name fluent
+                  `(set-value ,fluent (,(if (same-name-p name 'incf) '+ '-)
+                                       (fluent-value ,fluent) ,by)))))
 
 (defun assigned-over-p (place value environment)
   "True if PLACE, in ENVIRONMENT, is a variable of a fluent, and VALUE a form that gives none."
@@ -188,21 +184,13 @@ one."
 
 (defun warn-of-assignment (form fluent value)
   "Warn that FORM puts what VALUE gives in the place of FLUENT."
-  (call-at-place
-   form
-   (lambda ()
-     (warn-of-call #'warn-of-definition form
-                   "~(~A~) puts ~S in the place of the fluent ~S, which is lost. Write ~S."
-                   (first form) value fluent `(set-value ,fluent ,value)))))
+  (warn-of-form form "~(~A~) puts ~S in the place of the fluent ~S, which is lost. Write ~S."
+                (first form) value fluent `(set-value ,fluent ,value)))
 
 (defun warn-of-fluent (form fluent &optional (what "cannot take"))
-  (call-at-place
-   form
-   (lambda ()
-     (warn-of-call #'warn-of-definition form
-                   "~(~A~) ~A ~S, which is a fluent. Write (fluent-value ~:*~S) for its ~
-                    value now, or (fl-funcall #'~(~3:*~A~) ...) for a network."
-                   (first form) what fluent))))
+  (warn-of-form form "~(~A~) ~A ~S, which is a fluent. Write (fluent-value ~:*~S) for its value ~
+                      now, or (fl-funcall #'~(~3:*~A~) ...) for a network."
+                (first form) what fluent))
 
 ;;; Variables.
 

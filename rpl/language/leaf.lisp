@@ -118,9 +118,7 @@
 (defun as-lisp (form scope)
   "Return FORM, a leaf's, as Lisp is to compile it."
   (cond ((and (atom form) (not (symbol-macro-p form (scope-environment scope)))) form)
-        (t (check-commands form)
-           (check-handlers form)
-           (check-waits form)
+        (t (doubt-leaf form)
            (let ((*fluents-here* (scope-fluents scope)))
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 

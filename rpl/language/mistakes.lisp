@@ -1,0 +1,221 @@
+;;;; mistakes.lisp -- what in a plan's text is right for Lisp, and most likely a mistake.
+
+(in-package :ars-magna.rpl.language)
+
+;;; Each mistake is a rule: a function of a call that returns what is wrong with it, or NIL. A rule
+;;; for :TEXT is asked about each call in the text of a plan, one for :LEAF about those in the forms
+;;; that Lisp runs, but not in what these only call later.
+
+(defvar *mistakes* '()
+  "The names of the rules, a property list by where they look: :TEXT or :LEAF.")
+
+(defmacro define-mistake (name where (form) documentation &body body)
+  "Define the rule NAME, which looks for a mistake in FORM, a call, and returns in sentences what is
+wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
+  `(progn
+     (defun ,name (,form) ,documentation ,@body)
+     (pushnew ',name (getf *mistakes* ,where))))
+
+(defun doubt-text (form)
+  "Warn of the mistakes in FORM, the text of a plan."
+  (map-calls (lambda (call)
+               (dolist (rule (getf *mistakes* :text))
+                 (let ((text (call-rule rule call)))
+                   (when text (doubt-own-form call "~A" text)))))
+             form))
+
+(defun doubt-leaf (form)
+  "Warn of the first mistake of each kind in FORM, which Lisp runs."
+  (when *definition*
+    (dolist (rule (getf *mistakes* :leaf))
+      (let ((call (find-call rule (list form))))
+        (when call (doubt-form call "~A" (call-rule rule call)))))))
+
+(defun call-rule (rule form)
+  (let ((*print-case* :downcase) (*print-pretty* nil))
+    (funcall rule form)))
+
+;;; Comparisons that are never true: of task states and error codes.
+
+(defparameter *task-states*
+  '(:created :running :blocked :suspended :succeeded :failed :evaporated)
+  "The values of TASK-STATUS.")
+
+(defun compared-fluent (form)
+  "Return the form for the fluent whose value FORM is: what FLUENT-VALUE or VREF is given, or FORM."
+  (if (and (operator-in-p form '("FLUENT-VALUE" "VREF")) (consp (rest form)))
+      (compared-fluent (second form))
+      form))
+
+(defun status-doubt (word)
+  "Return in a sentence why no task is ever in the state WORD, or NIL if one may be."
+  (unless (member word *task-states*)
+    (let ((like (nearest-name word *task-states*)))
+      (format nil "the status of a task is never ~(~S~). ~:[It is one of ~{~(~S~)~^, ~}.~;~
+                   ~:*Did you mean ~(~S~)?~]"
+              word like *task-states*))))
+
+(defun error-fluent-p (form)
+  "True if FORM is the variable of a fluent of ours whose value is an error code."
+  (and form
+       (symbolp form)
+       (our-symbol-p form)
+       (search "-ERROR*" (symbol-name form))))
+
+(define-mistake comparison-doubt :text (form)
+  "FORM compares the value of a fluent with a word that it never is."
+  (multiple-value-bind (words subject) (compared-words form)
+    (let ((fluent (compared-fluent subject)))
+      (cond ((operator-in-p fluent '("TASK-STATUS")) (some #'status-doubt words))
+            ((error-fluent-p fluent) (some #'code-doubt words))))))
+
+;;; Pulses take no time: between two waits nobody finds them true.
+
+(defun tests-in-loop (form)
+  "Return the tests after UNTIL and WHILE in FORM, a call, if that is a LOOP or N-TIMES."
+  (when (and (operator-in-p form '("LOOP" "N-TIMES")) (proper-list-p form))
+    (loop for (word test) on (rest form)
+          when (and (symbolp word) (member word '("UNTIL" "WHILE") :test #'string=))
+            collect test)))
+
+(defun pulse-form-p (form)
+  "True if FORM is the variable of a fluent that is only pulsed, or one of a vector of such."
+  (or (known-pulse-p form)
+      (and (operator-in-p form '("VREF")) (consp (rest form)) (known-pulse-p (second form)))))
+
+(defun pulse-in-test (test)
+  "Return the form of a fluent that is only pulsed if TEST reads one by value; or NIL."
+  (cond ((pulse-form-p test) test)
+        ((not (proper-list-p test)) nil)
+        ((operator-in-p test '("FLUENT-VALUE" "NOT" "NULL" "AND" "OR"))
+         (some #'pulse-in-test (rest test)))))
+
+(define-mistake pulse-tested :text (form)
+  "FORM tests the value of a fluent that is only pulsed."
+  (let ((pulse (if (and (operator-in-p form '("WAIT-UNTIL")) (proper-list-p form))
+                   ;; It waits for what gives a fluent.
+                   (and (operator-in-p (second form) '("FLUENT-VALUE"))
+                        (pulse-in-test (second form)))
+                   (some #'pulse-in-test (append (tests-in-loop form) (tested-in form))))))
+    (and pulse
+         (format nil "the test of ~A is never true: a pulse takes no time. (wait-for ~:*~A) ~
+                      waits for the next one. A view that is made first, (fl-pulsed ~:*~A), ~
+                      is true if there was one since." pulse))))
+
+;; Each pulse has ended before the next begins.
+(defun joined-pulses (form)
+  "Return the pulses that FORM, a call, joins by AND, if it is one of several; or NIL."
+  (and (operator-in-p form '("AND"))
+       (proper-list-p form)
+       (let ((pulses (remove-duplicates (remove-if-not #'pulse-form-p (rest form)) :test #'equal)))
+         (and (rest pulses) pulses))))
+
+(define-mistake pulses-joined :text (form)
+  "FORM waits for several pulses at one time."
+  (let ((join (and (operator-in-p form '("WAIT-FOR" "WAIT-UNTIL" "WHENEVER"))
+                   (proper-list-p form)
+                   (find-call #'joined-pulses (list (second form))))))
+    (and join
+         (format nil "~A is never true: a pulse takes no time, and no two come at once. To wait ~
+                      for all of them write (par~{ (wait-for ~A)~})." join (joined-pulses join)))))
+
+;;; Commands return nothing, and those that are not the plan's own tell no fluent of their end.
+
+(defun values-used-in-plan (form)
+  "Return the forms whose values FORM, a call in a plan's text, uses."
+  (let ((name (first form)))
+    (cond ((not (and (symbolp name) (proper-list-p form))) '())
+          ((operator-in-p form '("WAIT-FOR" "WHENEVER" "WAIT-UNTIL")) (list (second form)))
+          ((operator-in-p form '("OUT")) (rest form))
+          ((and (fboundp name) (not (macro-function name)) (not (special-operator-p name)))
+           (rest form))
+          (t (append (values-used-in form) (tests-in-loop form))))))
+
+(define-mistake command-used :text (form)
+  "FORM uses the value of one of the robot's commands."
+  (destructuring-bind (&optional name part &rest arguments)
+      (find-if (lambda (used)
+                 (and (consp used) (proper-list-p used) (plan-function-p (first used))))
+               (values-used-in-plan form))
+    (declare (ignore arguments))
+    (and name
+         (format nil "~A returns nothing: its command only begins. Write it alone~@[, then ~A~]~
+                      ~@[; what it has found is then in ~{~A~^, ~}~]."
+                 name (end-text name part) (results-of-command name part)))))
+
+(define-mistake command-of-others :leaf (form)
+  "FORM is a command that plans call by another function."
+  (and (has-twin-p (first form))
+       (format nil "~(~A~) does not tell plans of its end. In a plan write ~A."
+               (first form) (twin-text (first form)))))
+
+;;; Handlers of Lisp's. A failure is no error.
+
+(defun errors-only-p (clauses)
+  "True if each of CLAUSES, of a handler, is for errors."
+  (every (lambda (clause)
+           (and (consp clause)
+                (or (eq :no-error (first clause))
+                    (nth-value 0 (ignore-errors (subtypep (first clause) 'error))))))
+         clauses))
+
+(defun forms-with-errors-handled (form)
+  "Return the forms in FORM, of Lisp's, in which errors are handled and failures are not."
+  (cond ((operator-in-p form '("IGNORE-ERRORS")) (rest form))
+        ((operator-in-p form '("HANDLER-CASE"))
+         (and (cddr form) (errors-only-p (cddr form)) (list (second form))))
+        ((operator-in-p form '("HANDLER-BIND"))
+         (and (consp (second form)) (errors-only-p (second form)) (cddr form)))))
+
+(define-mistake vain-handler :leaf (form)
+  "FORM is a handler of errors around a FAIL."
+  (and (find-call #'fail-p (forms-with-errors-handled form))
+       (format nil "~(~A~) does not handle failures of plans, as FAIL makes them. Write ~
+                    (handle-failure ((class (e) ...)) body...)." (first form))))
+
+;;; What lets time pass, and not for plans.
+
+(defparameter *vain-waits*
+  '(("SLEEP" . "sleep stops all plans for so many seconds, and no tick need pass meanwhile.")
+    ("RUN-TICKS" . "run-ticks is for programs: it cannot be called inside of a tick or plan.")
+    ("STEP-TICKS" . "step-ticks is for programs: it cannot be called inside of a tick or plan.")
+    ("AWAIT-IDLE" . "await-idle is for programs: a plan would wait for itself.")
+    ("RUN-UNTIL" . "run-until is for programs: it cannot be called inside of a tick or plan."))
+  "Lists (operator . what is wrong with it in plans).")
+
+(define-mistake vain-wait :leaf (form)
+  "FORM lets time pass for programs only."
+  (when (operator-in-p form (mapcar #'car *vain-waits*))
+    (destructuring-bind (name &optional (time 'ticks) &rest options) form
+      (declare (ignore options))
+      (format nil "~A In a plan write ~A."
+              (cdr (assoc (symbol-name name) *vain-waits* :test #'string=))
+              (cond ((string= "RUN-UNTIL" name) "(wait-until condition)")
+                    ((string= "AWAIT-IDLE" name) "(wait-for fluent), such as robot-stopped*")
+                    ((string= "SLEEP" name) (format nil "(wait-time ~S :unit :seconds)" time))
+                    (t (format nil "(wait-time ~S), for so many ticks" time)))))))
+
+;;; In ordinary Lisp code, what is no plan, a fluent is an object like any other.
+
+(defun read-fluent (form)
+  "Return the variable of the fluent whose value FORM reads, or NIL."
+  (when (and (consp form) (consp (cdr form)) (eq 'fluent-value (first form)))
+    (let ((fluent (second form)))
+      (if (and (consp fluent) (consp (cdr fluent))) (second fluent) fluent))))
+
+(defun test-doubt (form)
+  "Return in a sentence why FORM, a test in Lisp code, is always true, or never; or NIL."
+  (cond ((and (typep form '(cons symbol (cons t null)))
+              (member (first form) '("NOT" "NULL") :test #'string=))
+         (test-doubt (second form)))
+        ((and (symbolp form) (known-fluent-variable-p form))
+         (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
+                      (fluent-value ~:*~(~A~))." form))
+        ((known-pulse-p (read-fluent form))
+         (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. Plans write ~
+                      (wait-for ~(~A~)); in Lisp, (await-idle), or (run-until (idle-p)) headless."
+                 form (read-fluent form)))))
+
+(setf *test-doubt* (lambda (form)
+                     ;; Plans read fluents by value.
+                     (and (null *own-conses*) (test-doubt form))))
