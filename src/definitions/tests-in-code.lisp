@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(*test-doubt* map-calls map-comparisons compared-words tested-in values-used-in code-doubt))
+(export '(*test-doubt* map-calls map-comparisons compared-words tested-in values-used-in
+          code-doubt))
 
 ;; The layer that knows fluents sets it.
 (defvar *test-doubt* (constantly nil)
