@@ -149,9 +149,5 @@ UNKNOWN-GOAL if there is none. (BELIEF of XFRM; the syntax is ours.)"
   "Return the goals that TASK, by default the one that asks, is at work for, each a list such
 as (achieve (on a b)), innermost first: what it does is done for the first, and that for the next.
 Those of the tasks that it is part of come last. (Ours.)"
-  (loop for each = task then (task-parent each)
-        while each
-        append (loop for frame = (task-frame each) then (frame-up frame)
-                     while frame
-                     when (pursuit-p (frame-data frame))
-                       collect (pursuit-form (frame-data frame)))))
+  (mapcar #'pursuit-form
+          (remove-if-not #'pursuit-p (mapcar #'frame-data (and task (frames-around task))))))

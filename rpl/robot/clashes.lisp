@@ -6,12 +6,6 @@
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
 ;;; plans that were begun one after the other know nothing of each other.
 
-(defun common-task (task other)
-  "Return the innermost task that TASK and OTHER are parts of, or NIL."
-  (loop for each = task then (task-parent each)
-        while each
-        when (part-of-p other each) return each))
-
 (defun all-to-succeed-p (task)
   "True if TASK is at a construct all whose branches are to succeed."
   (let ((frame (task-frame task)))
@@ -21,10 +15,9 @@
 (defun reacting-to-events-p (task whole)
   "True if TASK, a part of WHOLE (NIL: of nothing), runs what a construct does when something
 happens."
-  (loop for each = task then (task-parent each)
+  (loop for each in (lineage task)
         until (eq each whole)
-        thereis (loop for frame = (task-frame each) then (frame-up frame)
-                      while frame
+        thereis (loop for frame in (frame-chain (task-frame each))
                       thereis (operator-called-p (node-form (frame-node frame))
                                                  "WHENEVER" "AT-LOCATION"))))
 
@@ -40,7 +33,7 @@ happens."
        (not (task-over-p older))
        (not (evaporating-p older))
        (<= (task-level newer) (task-level older))
-       (let ((common (common-task older newer)))
+       (let ((common (find-if (lambda (whole) (part-of-p newer whole)) (lineage older))))
          (and (not (member common (list older newer)))
               (or (null common) (all-to-succeed-p common))
               (not (reacting-to-events-p newer common))))))
@@ -83,12 +76,11 @@ priority."
 
 (defun step-before (task)
   "Return the form of the innermost list of steps in TASK that it did before the one it is at."
-  (loop for frame = (task-frame task) then (frame-up frame)
-        while frame
-        do (let ((form (node-form (frame-node frame))))
-             (when (operator-called-p form "SEQ")
-               (let ((at (current-form (frame-node frame) frame)))
-                 (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
+  (dolist (frame (frame-chain (task-frame task)))
+    (let ((form (node-form (frame-node frame))))
+      (when (operator-called-p form "SEQ")
+        (let ((at (current-form (frame-node frame) frame)))
+          (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
 
 (defun drives-p (deed)
   "True if DEED drives the robot on, as one may for a tick, too."

@@ -65,7 +65,7 @@
                 #:give-back-all #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
-                #:part-of-p #:frame-node #:frame-up #:node-form #:current-form
+                #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
                 #:entity-realm #:entity-like
                 #:*on-outside-change* #:note-word #:task-now #:*advice-on-call* #:advice-on-goal))

@@ -99,12 +99,6 @@ has been ended by the plan that is at work, if one is."
 
 ;;; Issuing.
 
-(defun cleaning-up-p (task)
-  "True if TASK, or a task that it is part of, is cleaning up."
-  (loop for each = task then (task-parent each)
-        while each
-        thereis (task-cleaning each)))
-
 (defun call-on-robot (interface function)
   "Call FUNCTION, which does something with the robot of INTERFACE. Should that be gone just now,
 the plan at work ends; an error says no more than that."
@@ -117,7 +111,7 @@ the plan at work ends; an error says no more than that."
   "Issue COMMAND on RESOURCE with ARGUMENTS; OUTCOME says what plans hear of its end. ISSUE is what
 the trace knows of it."
   (let* ((task (task-at-work interface))
-         (cleanup-p (and task (cleaning-up-p task) t))
+         (cleanup-p (and task (some #'task-cleaning (lineage task)) t))
          (deed (make-deed command resource outcome task cleanup-p issue
                           (simulation-tick (interface-simulation interface))))
          (issued-p nil))

@@ -34,17 +34,12 @@ that is a leaf; NIL if it begins none, or one that has a step of its own.")
           (values (node-form part) t)
           nil))))
 
-(defun inside-p (frame outer)
-  "True if FRAME is run on behalf of OUTER, another one."
-  (loop for each = (frame-up frame) then (frame-up each)
-        while each thereis (eq each outer)))
-
 (defun note-return (course task frame)
   "Let COURSE know if TASK, about to take a step at FRAME, is back at the frame that it runs to."
   (let ((until (course-until course)))
     (when (and (frame-p until)
                (eq task (course-within course))
-               (not (inside-p frame until)))
+               (not (member until (rest (frame-chain frame)))))
       (setf (course-until course) :next))))
 
 (defun stops-p (course task)
@@ -88,15 +83,10 @@ this task."
       (let ((outer (if leaf-p frame (frame-up frame))))
         (go-on course :over task (and outer (frame-up outer)))))))
 
-(defun course-of (task courses)
-  "Return the one of COURSES that TASK is part of, or NIL."
-  (loop for each = task then (task-parent each)
-        while each
-        thereis (find each courses :key #'course-task)))
-
 (defun consider-stop (courses task frame)
   "Stop TASK before its step at FRAME, if one of COURSES says so."
-  (let ((course (course-of task courses)))
+  (let ((course (some (lambda (whole) (find whole courses :key #'course-task))
+                      (lineage task))))
     (when course
       (note-return course task frame)
       (multiple-value-bind (form leaf-p) (next-form (frame-node frame) frame)

@@ -44,7 +44,8 @@ variable; or NIL."
            (if (claim-p object) (claim-valves object) '())))
     (remove-duplicates
      (append (valves-in (task-awaiting task))
-             (loop for frame in (stack-frames task) append (valves-in (frame-data frame))))
+             (mapcan (lambda (frame) (copy-list (valves-in (frame-data frame))))
+                     (frame-chain (task-frame task))))
      :from-end t)))
 
 (defun valves-in-use (which)

@@ -5,11 +5,6 @@
 ;;; A node knows the names of the variables that it sees (NODE-NAMES), a frame has the environment
 ;;; with their values. Variables without a home package are the compiler's own, and are not shown.
 
-(defun stack-frames (task)
-  "Return the frames of TASK, innermost first."
-  (loop for frame = (task-frame task) then (frame-up frame)
-        while frame collect frame))
-
 (defun note-task-seen (task)
   "Note that somebody looks at TASK."
   (when (task-runner task) (note-seen (runner-client (task-runner task)))))
@@ -35,8 +30,8 @@ tasks that it is part of. Each call of a plan has one of its own. () when it is 
 
 (defun frame-names (frame)
   "Return the names for the environment of FRAME: a list for each level."
-  (loop for each = frame then (frame-up each)
-        while (and each (eq (frame-environment each) (frame-environment frame)))
+  (loop for each in (frame-chain frame)
+        while (eq (frame-environment each) (frame-environment frame))
         thereis (node-names (frame-node each))))
 
 (defun level-variables (environment names)
@@ -87,7 +82,7 @@ in force where the innermost frame is that sees it."
 (defun stack-entries (task)
   "Return what TASK is at, innermost first: a list of lists (form variable...), each variable, a
 list (name value), with the outermost expression that sees it."
-  (let ((visible (visible-variables (stack-frames task)))
+  (let ((visible (visible-variables (frame-chain (task-frame task))))
         (known (known-environments task))
         (entries '()))
     (dolist (frames (reverse (frame-runs (task-frame task))) entries)

@@ -10,20 +10,13 @@
 
 (defun plan-backtrace (task frame)
   "Return the expressions under way in TASK at FRAME and around it, innermost first."
-  (loop for each = task then (task-parent each)
-        for innermost = frame then (and each (task-frame each))
-        while each
-        append (forms-under-way innermost)))
+  (append (forms-under-way frame)
+          (loop for whole in (rest (lineage task)) append (forms-under-way (task-frame whole)))))
 
 (defun handled-failure (task frame)
   "Return the failure that TASK at FRAME, or a task around it, is handling or cleaning up after."
-  (loop for each = task then (task-parent each)
-        for innermost = frame then (and each (task-frame each))
-        while each
-        do (loop for frame = innermost then (frame-up frame)
-                 while frame
-                 do (when (typep (frame-data frame) 'plan-failure)
-                      (return-from handled-failure (frame-data frame))))))
+  (find-if (lambda (data) (typep data 'plan-failure))
+           (mapcar #'frame-data (frames-around task frame))))
 
 (defvar *failure-hook* nil
   "A function, or its name, called with each failure, its task and frame where it happens; or NIL.")
@@ -47,20 +40,15 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
       (when *failure-hook* (funcall *failure-hook* failure task frame)))
     failure))
 
-(defun engine-call-p (call)
-  (member (first call) '(run-steps step-leaf call-with-care)))
-
-(defun signalling-call-p (call)
-  (and (symbolp (first call)) (string= "%SIGNAL" (first call))))
-
 (defun lisp-backtrace ()
   "Return as a string the Lisp calls under way in a plan's code that has just signalled an error."
   (let* ((calls (calls-under-way))
-         (signalled (member-if #'signalling-call-p calls)))
+         (signalled (member-if (lambda (name) (and (symbolp name) (string= "%SIGNAL" name)))
+                               calls :key #'first)))
     (with-output-to-string (stream)
       (loop for call in (if signalled (rest signalled) calls)
             for number from 0
-            until (engine-call-p call)
+            until (member (first call) '(run-steps step-leaf call-with-care))
             do (format stream "    ~D: ~A~%" number (form-text call 100))))))
 
 (defmethod value-behind ((task task))

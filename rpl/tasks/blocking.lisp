@@ -22,10 +22,9 @@ they do not run; but not those that did not run before."
   (unless (task-doomed task)
     (dolist (child (reverse (task-children task)))
       (unless (plusp (task-blocked child)) (tell-blocked child)))
-    (loop for frame = (task-frame task) then (frame-up frame)
-          while frame
-          do (when (heed-p (frame-data frame))
-               (funcall (heed-function (frame-data frame)) task frame)))))
+    (dolist (frame (frame-chain (task-frame task)))
+      (when (heed-p (frame-data frame))
+        (funcall (heed-function (frame-data frame)) task frame)))))
 
 (defun interrupt-parts (task)
   "If the running task is a part of TASK let it give way after this step."

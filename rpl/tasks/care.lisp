@@ -27,15 +27,9 @@
             (t (setf (task-signal task) failure)
                (make-ready-first task))))))
 
-(defun cleaner-around (task)
-  "Return the innermost of TASK and those that it is part of that is cleaning up, or NIL."
-  (loop for each = task then (task-parent each)
-        while each
-        when (task-cleaning each) return each))
-
 (defun end-plan-of (task)
   "Evaporate the plan of TASK, which is ready; if that was cleaning up, not to the end."
-  (let ((cleaner (cleaner-around task)))
+  (let ((cleaner (find-if #'task-cleaning (lineage task))))
     (evaporate (task-top task))
     (when (and cleaner (not (task-over-p cleaner))) (give-up-cleanup cleaner))))
 

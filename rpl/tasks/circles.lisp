@@ -23,10 +23,8 @@ frames, is about.")
 
 (defun those-who-took-from (task)
   "Return the tasks that keep TASK, or what it is part of, from running by having what it needs."
-  (loop for each = task then (task-parent each)
-        while each
-        append (loop for frame = (task-frame each) then (frame-up frame)
-                     while frame
+  (loop for each in (lineage task)
+        append (loop for frame in (frame-chain (task-frame each))
                      append (taken-from each (frame-data frame)))))
 
 (defun working-parts (task)

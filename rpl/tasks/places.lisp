@@ -6,14 +6,11 @@
 ;;; of that name are under way. Then, for each step inwards, which part: (:tag name), or the number
 ;;; of the branch, from 0. It stays true when the task is over.
 
-(defun namesakes (task)
-  "Return the top-level tasks that are under way and called as TASK, one of them."
-  (remove (task-name task) (runner-roots (task-runner task))
-          :key #'task-name :test-not #'eq))
-
 (defun top-place (task)
+  "Return the place of TASK, a top-level task."
   (cond ((null (task-name task)) (task-serial task))
-        ((remove task (namesakes task)) (list (task-name task) (task-serial task)))
+        ((find (task-name task) (remove task (runner-roots (task-runner task))) :key #'task-name)
+         (list (task-name task) (task-serial task)))
         (t (task-name task))))
 
 (defun part-place (task)
@@ -32,10 +29,8 @@ from 0. Where tasks have the same name, their number comes after it. A task that
 nowhere: NIL (CRAM's paths go from the inside out, and have the operators' names)."
   (check-argument task-place task (task-p task) "a task, as begin-plan returns")
   (unless (eq (task-state task) :created)
-    (loop with place = '()
-          for each = task then (task-parent each)
-          while (task-parent each) do (push (part-place each) place)
-          finally (return (cons (top-place each) place)))))
+    (destructuring-bind (top . parts) (reverse (lineage task))
+      (cons (top-place top) (mapcar #'part-place parts)))))
 
 (defun at-place-p (task step)
   "True if TASK is what STEP, one of a place, names."

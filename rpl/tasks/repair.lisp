@@ -63,8 +63,7 @@ know each other."
   "Return the watchers by which TASK hears of fluents."
   (remove-if-not #'watcher-p
                  (cons (task-awaiting task)
-                       (loop for frame = (task-frame task) then (frame-up frame)
-                             while frame collect (frame-data frame)))))
+                       (mapcar #'frame-data (frame-chain (task-frame task))))))
 
 (defun repair-hearing (runner tasks)
   "Let TASKS of RUNNER hear of the fluents that they wait for, and of what they have missed."

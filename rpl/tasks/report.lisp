@@ -5,16 +5,10 @@
 (export '(*plan-end-hooks* report-end report-failure missed-text *plan-start-hooks*
           task-state-text write-task-line write-task-tree))
 
-(defun blocker-of (task)
-  "Return the task nearest to TASK, itself or one that it is part of, that is blocked; or NIL."
-  (unless (task-doomed task)
-    (loop for each = task then (task-parent each)
-          while each
-          when (plusp (task-blocked each)) return each)))
-
 (defun task-state-text (task)
   "Return in words how TASK is: its state, and whether it evaporates, cleans up or is blocked."
-  (let ((blocker (blocker-of task)))
+  (let ((blocker (and (not (task-doomed task))
+                      (find-if #'plusp (lineage task) :key #'task-blocked))))
     (format nil "~(~A~)~:[~;, evaporating~]~:[~;, cleaning up~]~@[, blocked~A~]" (task-state task)
             (and (task-doomed task) (not (task-over-p task)))
             (task-cleaning task)

@@ -6,7 +6,8 @@
           frame-data frame-environment frame-node frame-state frame-up make-frame make-task node
           node-form task-awaiting task-cleaning task-frame task-index task-label task-level
           task-newest-child task-runner task-signal task-status-fluent task-timer evaporating-p
-          part-of-p under-way-p frame-p node-names task-doomed task-uncounted-p task-older))
+          part-of-p lineage frame-chain frames-around under-way-p frame-p node-names task-doomed
+          task-uncounted-p task-older))
 
 ;;; A plan is a graph of nodes, its expressions. A task runs one of them as a chain of frames, the
 ;;; innermost of which is the task's own FRAME. Everything that a task knows is in its frames and
@@ -152,6 +153,22 @@ over :succeeded, :failed or :evaporated.")
         do (setf task (task-parent task)))
   task)
 
+(defun lineage (task)
+  "Return TASK and the tasks that it is part of, innermost first."
+  (loop for each = task then (task-parent each)
+        while each collect each))
+
+(defun frame-chain (frame)
+  "Return FRAME and those that it is run on behalf of, innermost first."
+  (loop for each = frame then (frame-up each)
+        while each collect each))
+
+(defun frames-around (task &optional (frame (task-frame task)))
+  "Return the frames of TASK from FRAME on, and those of the tasks that it is part of, innermost
+first."
+  (append (frame-chain frame)
+          (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
+
 (defun part-of-p (task whole)
   "True if TASK is WHOLE or a part of it."
   (loop for each = task then (task-parent each)
@@ -178,15 +195,14 @@ over :succeeded, :failed or :evaporated.")
   "Return FRAME and those that it is run on behalf of, innermost first, as a list of lists: the
 frames of one list run one expression."
   (let ((runs '()) (last-form nil))
-    (loop for each = frame then (frame-up each)
-          while each
-          do (let ((form (current-form (frame-node each) each)))
-               (if (and runs
-                        (eq form last-form)
-                        (not (find (frame-node each) (first runs) :key #'frame-node)))
-                   (push each (first runs))
-                   (push (list each) runs))
-               (setf last-form form)))
+    (dolist (each (frame-chain frame))
+      (let ((form (current-form (frame-node each) each)))
+        (if (and runs
+                 (eq form last-form)
+                 (not (find (frame-node each) (first runs) :key #'frame-node)))
+            (push each (first runs))
+            (push (list each) runs))
+        (setf last-form form)))
     (nreverse (mapcar #'nreverse runs))))
 
 (defun forms-under-way (frame)
@@ -239,10 +255,7 @@ makes of its expression."
 (addition task-path)
 (defun task-path (task)
   "Return the labels of the tasks from the top of the plan to TASK."
-  (loop with path = '()
-        for each = task then (task-parent each)
-        while each do (push (task-label each) path)
-        finally (return path)))
+  (reverse (mapcar #'task-label (lineage task))))
 
 ;; Whatever a plan asks for, in whatever task, is asked for by the plan as a whole.
 (defmethod asker-note ((task task))

@@ -14,7 +14,8 @@
 doing of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE
 are: :start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and
 the value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse:
-fluent and value; :command: an ISSUE and the STACKS; :answer: the ISSUE and the error code;
+fluent and value; :command: an ISSUE and, for the task
+and each that it is part of, the expressions under way; :answer: the ISSUE and the error code;
 :evaporate, :clean, :cleaned, :block and :unblock: nothing."
   (tick 0 :type real :read-only t)
   (event :start :type keyword :read-only t)

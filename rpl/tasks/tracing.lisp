@@ -87,19 +87,14 @@ if it keeps one."
 
 ;;; Commands: what tasks ask of others than plans.
 
-(defun stacks (task)
-  "Return for TASK and each that it is part of the expressions under way, innermost first."
-  (loop for each = task then (task-parent each)
-        while each
-        collect (forms-under-way (task-frame each))))
-
 (defun note-command (name arguments)
   "Note in the trace that the task at work calls the plan function NAME with ARGUMENTS. Return a
 record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
   (let ((task *asker*))
     (when (and (task-p task) *runner* (runner-trace *runner*))
       (let ((issue (make-issue name (mapcar #'fluent-value arguments) (task-serial task))))
-        (note-event task :command issue (stacks task))
+        (note-event task :command issue
+                    (loop for each in (lineage task) collect (forms-under-way (task-frame each))))
         issue))))
 
 (defun call-with-answer (issue error function)

@@ -26,8 +26,7 @@
 (defun speaking-task ()
   "Return the task on whose behalf the caller runs, or NIL outside of plans."
   (or *speaking-task*
-      (let ((task (and *runner* (runner-current *runner*))))
-        (and task (eq (task-state task) :running) task))))
+      (and *runner* (running-task *runner*))))
 
 (defun cell-in-frames (name task)
   (loop for frame = (task-frame task) then (frame-up frame)
