@@ -38,13 +38,10 @@
 
 (defun inner-nodes (node)
   "Return the nodes that NODE consists of, in order."
-  (loop for slot in (class-slot-names (class-of node))
-        for value = (slot-value node slot)
-        append (typecase value
-                 (node (list value))
-                 (simple-vector (remove-if-not (lambda (part) (typep part 'node))
-                                               (coerce value 'list)))
-                 (procedure (ensure-list (local-body value))))))
+  (loop for part in (node-parts node)
+        append (typecase part
+                 (node (list part))
+                 (procedure (ensure-list (local-body part))))))
 
 (defun tagged-in (node name)
   "Return the tagged nodes called NAME in NODE, in order; of those within each other the outermost."
