@@ -30,10 +30,6 @@ for each part, or T if a fluent.")
   "True if the variable NAME is known to hold a fluent."
   (eq t (gethash name *known-variables*)))
 
-(defun known-variable-of-fluents-p (name)
-  "True if the variable NAME is known to hold a fluent or a vector of fluents."
-  (and (gethash name *known-variables*) t))
-
 (defun known-vector-variable-p (name)
   "Return the name of the kind of part for which the variable NAME holds fluents, or NIL."
   (let ((kind (gethash name *known-variables*)))

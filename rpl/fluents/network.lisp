@@ -141,7 +141,7 @@ a vector of fluents."
        (let ((value (symbol-value object)))
          (or (fluent-p value)
              (fluents-vector-p value)
-             (and (null value) object (known-variable-of-fluents-p object))))))
+             (and (null value) object (gethash object *known-variables*) t)))))
 
 (defun reject-name-of-fluent (name)
   "Signal MISUSE if NAME, a symbol, is bound to a fluent, which must be meant; else return it."

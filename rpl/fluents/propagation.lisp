@@ -102,11 +102,7 @@ says what has happened."
                  (when next (enqueue-dependents derived backlog next))))))
   (setf (backlog-highest backlog) 0))
 
-;;; Views, see views.lisp.
-
-(defun note-instant (view)
-  "Note that VIEW is true, which it is no longer when the change under way, if any, is spread."
-  (when *spreading* (push view (first *spreading*))))
+;;; Views, see views.lisp, are true for the instant of a change.
 
 (defun end-instants (instants)
   "Let the views in the list that is the element of INSTANTS be false again."
@@ -261,11 +257,6 @@ as soon as the plans at work have come to a pause (manual D.2)."
         (dolist (fluent fluents) (enqueue-dependents fluent backlog))
         (spread-by-height backlog :back)))))
 
-(defun pulse-now (fluent value)
-  (before-change fluent)
-  (incf (fluent-pulses fluent))
-  (pulse-all (list fluent) (list value)))
-
 (public pulse)
 (defun pulse (fluent &optional (value t))
   "Let FLUENT have VALUE for an instant, and then the value of before again. All who wait for it, or
@@ -275,22 +266,18 @@ thread, it is heard as soon as the plans at work have come to a pause (manual C)
   (check-no-circle 'pulse fluent value)
   (note-outside #'pulse fluent value)
   (let* ((fluent (here fluent)) (home (elsewhere fluent)))
-    (if home
-        (post home `((:pulse ,fluent ,value)))
-        (pulse-now fluent value)))
+    (cond (home (post home `((:pulse ,fluent ,value))))
+          (t (before-change fluent)
+             (incf (fluent-pulses fluent))
+             (pulse-all (list fluent) (list value)))))
   value)
-
-(defun settable-here (operator fluent)
-  "Return the fluent that FLUENT, which OPERATOR is to set, is here. Signals WRONG-ARGUMENT."
-  (check-settable operator fluent)
-  (here fluent))
 
 (defun apply-settings (settings)
   "Apply SETTINGS at one instant: first each (:set fluent value), then each (:pulse fluent [value]),
 all together. So whoever sees the pulses sees the values that came with them (reading 177)."
   (let ((changed '()) (pulsed '()) (values '()))
     (loop for (kind given . more) in settings
-          for fluent = (settable-here kind given)
+          for fluent = (progn (check-settable kind given) (here given))
           do (before-change fluent)
              (ecase kind
                (:set (unless (eql (first more) (fluent-now fluent))

@@ -37,7 +37,8 @@
 (defun look (view value)
   "Return what VIEW says, which this uses up. VALUE is the value of its first fluent."
   (let ((answer (if (view-test view) (look-for-change view value) (look-for-event view))))
-    (when answer (note-instant view))
+    ;; It is no longer true when the change under way, if any, is spread.
+    (when (and answer *spreading*) (push view (first *spreading*)))
     answer))
 
 (defun make-view (name sources bases memory &key always-p test key)

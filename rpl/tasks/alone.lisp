@@ -2,24 +2,18 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(defun pass-time (runner)
-  "Let the next tick come at which something happens."
-  (advance-timers runner
-                  (if (idle-p runner)
-                      (next-wake-time runner)
-                      (1+ (runner-tick runner)))))
-
 (defun run-until-over (runner task limit)
   "Run the plans of RUNNER until TASK is over. Return its state, or :deadlock, or :limit when it is
 past tick LIMIT."
   (loop
     (react-to-all runner)
-    (cond ((task-over-p task) (return (task-state task)))
-          ((not (needs-tick-p runner)) (return :deadlock))
-          ((and limit (> (or (next-wake-time runner) (runner-tick runner)) limit))
-           (note-tick runner (max limit (runner-tick runner)))
-           (return :limit))
-          (t (pass-time runner)))))
+    (let ((wake (next-wake-time runner)) (idle-p (idle-p runner)) (tick (runner-tick runner)))
+      (cond ((task-over-p task) (return (task-state task)))
+            ((and idle-p (null wake)) (return :deadlock))
+            ((and limit (> (or wake tick) limit))
+             (note-tick runner (max limit tick))
+             (return :limit))
+            (t (advance-timers runner (if idle-p wake (1+ tick))))))))
 
 (defun end-alone (runner task limit)
   "Let TASK of RUNNER evaporate, if it is not over. It may clean up until tick LIMIT, if that is a

@@ -21,11 +21,6 @@
   (when (task-status-fluent task)
     (set-value (task-status-fluent task) (status-word task state))))
 
-(defun forget-blocks (task)
-  "TASK, which was blocked, is over."
-  (decf (runner-blocks (task-runner task)) (task-blocked task))
-  (release-held (task-runner task)))
-
 (defun finish (task state result &optional (how state))
   "End TASK in STATE with RESULT. HOW says it to the construct that TASK is part of."
   (note-event task (ecase state (:succeeded :succeed) (:failed :fail) (:evaporated :evaporate))
@@ -37,7 +32,9 @@
         (task-value task) nil
         (task-signal task) nil)
   (decf (runner-alive (the plan-runner (task-runner task))))
-  (when (plusp (task-blocked task)) (forget-blocks task))
+  (when (plusp (task-blocked task))
+    (decf (runner-blocks (task-runner task)) (task-blocked task))
+    (release-held (task-runner task)))
   (note-status task state)
   (let ((parent (task-parent task)))
     (cond (parent
@@ -85,11 +82,6 @@ those that are not over."
 
 ;;; Unwinding.
 
-(defun finish-by-signal (task signal)
-  (cond ((eq signal :evaporate) (finish task :evaporated nil))
-        ((escape-p signal) (finish task :succeeded signal :escaped))
-        (t (finish task :failed signal))))
-
 (defun unwind (task frame signal)
   "Send SIGNAL up from FRAME. Return what a step returns: the frame that takes care of it, or, when
 none does and TASK has ended, +PARKED+."
@@ -101,7 +93,9 @@ none does and TASK has ended, +PARKED+."
                  (cond (handled (return-from unwind (values next value)))
                        (next (setf signal next)))))
              (setf frame (frame-up frame))))
-  (finish-by-signal task signal)
+  (cond ((eq signal :evaporate) (finish task :evaporated nil))
+        ((escape-p signal) (finish task :succeeded signal :escaped))
+        (t (finish task :failed signal)))
   +parked+)
 
 (defun receive (task frame signal)
@@ -138,15 +132,11 @@ none does and TASK has ended, +PARKED+."
       (unless (eq frame +parked+)
         (setf (task-frame task) frame
               (task-value task) value)
-        (if queued
-            (go-on-at-once task)
-            (make-ready task))))))
-
-(defun go-on-at-once (task)
-  "Let TASK, which is ready but perhaps put aside, go on when it is its turn."
-  (setf (task-round task) 0)
-  (release-spent (task-runner task))
-  (release-held (task-runner task)))
+        (cond (queued                   ; but perhaps put aside
+               (setf (task-round task) 0)
+               (release-spent (task-runner task))
+               (release-held (task-runner task)))
+              (t (make-ready task)))))))
 
 (defun evaporate-children (task)
   "Evaporate the children of TASK, newest first."

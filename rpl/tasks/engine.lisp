@@ -88,17 +88,14 @@ the end of a tick's budget has broken off goes on in the next tick: each task ge
       (setf (runner-broken-off-p runner) t))
     outcome))
 
-(defun may-hear-p (runner)
-  "True if RUNNER, whose round is over, is to hear what was posted before its tasks go on."
-  (or (null (runner-spent runner))
-      (null (runner-budget runner))
-      (not (runner-charged-p runner))
-      (>= (- (runner-steps runner) (runner-heard-at runner)) +thoughts+)))
-
 (defun hear-next (runner hear)
-  "Call HEAR if RUNNER may hear now. Return what it returns."
+  "Call HEAR if RUNNER, whose round is over, is to hear what was posted before its tasks go on.
+Return what it returns."
   (declare (type function hear))
-  (when (may-hear-p runner)
+  (when (or (null (runner-spent runner))
+            (null (runner-budget runner))
+            (not (runner-charged-p runner))
+            (>= (- (runner-steps runner) (runner-heard-at runner)) +thoughts+))
     (setf (runner-heard-at runner) (runner-steps runner))
     (funcall hear runner)))
 
@@ -140,8 +137,7 @@ often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
                                                         'list)))
                      :key #'task-state))
          (form (and task (task-form task))))
-    (when (and task (not (member form (runner-warned runner))))
-      (push form (runner-warned runner))
+    (when (and task (first-warning-p form runner))
       (warn-at-once "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
                     " in " (task-label task) "; time passes all the same. "
                     (runaway-remedy task)))))
@@ -240,10 +236,6 @@ and nothing heard."
   "True if no task of RUNNER is ready and nothing is posted: only time or a post can change that."
   (not (or (any-ready-p runner) (heard-from-outside-p runner))))
 
-(defun charged-for-p (runner)
-  "True if a tick may cost RUNNER something, or pay what that owes, though no task goes on."
-  (or (runner-charged-p runner) (runner-budget runner)))
-
 (defun rest-in-tick (runner tick)
   "Let it be TICK for RUNNER, without a reaction, if none of its tasks would go on in that. True if
 so."
@@ -252,15 +244,11 @@ so."
                 (not (idle-p runner))
                 (runner-courtesies runner)
                 (runner-on-tick runner)
-                (charged-for-p runner)
+                (runner-charged-p runner)
+                (runner-budget runner)
                 (in-use-p runner))
       (setf (runner-tick runner) tick)
       t)))
-
-(defun needs-tick-p (runner)
-  "True if RUNNER needs the next tick: a task waits for time, or what is to be done had no steps
-left."
-  (and (or (next-wake-time runner) (not (idle-p runner))) t))
 
 (defun plan-deadlocked-p (runner)
   "True if tasks of RUNNER wait and nothing can ever wake them: no timer, and nobody who may post."

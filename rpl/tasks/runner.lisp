@@ -164,7 +164,8 @@ long. Where steps are counted it is one."
 (addition plan-trace)
 (defun plan-trace (&optional (runner *runner*))
   "Return the trace of RUNNER, a vector of trace entries in order; NIL if it keeps none."
-  (and (runner-trace runner) (trace-entries (runner-trace runner))))
+  (and (runner-trace runner)
+       (values (funcall (trace-so-far (runner-trace runner))))))
 
 (addition plan-time)
 (defun plan-time ()
@@ -182,6 +183,11 @@ long. Where steps are counted it is one."
   "Return the task of RUNNER whose step is under way, or NIL."
   (let ((task (runner-current runner)))
     (and task (eq (task-state task) :running) task)))
+
+(defun first-warning-p (form runner)
+  "True if nobody was warned of FORM, of plans of RUNNER, so far. From now on somebody is."
+  (unless (member form (runner-warned runner) :test #'eq)
+    (push form (runner-warned runner))))
 
 ;;; The ready queues.
 

@@ -8,10 +8,8 @@
 ;;; policy reacts to what the last step did before the next one is taken.
 
 (defun warn-of-slow-step (task frame seconds)
-  (let* ((runner (task-runner task))
-         (form (current-form (frame-node frame) frame)))
-    (unless (member form (runner-warned runner) :test #'eq)
-      (push form (runner-warned runner))
+  (let ((form (current-form (frame-node frame) frame)))
+    (when (first-warning-p form (task-runner task))
       (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0)
                    " s without a pause: " (form-text form) " in " (task-label task)))))
 

@@ -21,9 +21,6 @@
                            when (fluent-p subject) append (base-fluents subject))
                      :from-end t))
 
-(defun waits-for-no-fluent-p (task)
-  (eq +no-fluent+ (task-awaiting task)))
-
 (defun text-of-waits (tasks)
   "Return in words what TASKS wait for, or NIL if that is nothing by itself."
   (let ((texts (remove-duplicates (remove nil (mapcar #'wait-text tasks))
@@ -41,17 +38,6 @@
 (defun status-fluent-p (fluent)
   "True if FLUENT is called as TASK-STATUS calls those that it returns."
   (starts-with-subseq "(task-status " (fluent-text fluent)))
-
-(defun split-fluents (fluents)
-  "Return a list of those of FLUENTS that the robot changes, of the status of tasks, and of the
-others."
-  (values (remove-if-not #'robots-fluent-p fluents)
-          (remove-if-not #'status-fluent-p fluents)
-          (remove-if #'status-fluent-p (remove-if #'robots-fluent-p fluents))))
-
-(defun status-text (fluent)
-  "Return in words what FLUENT, of the status of a task, says at last."
-  (format nil "~A is ~(~S~)" (fluent-text fluent) (fluent-value fluent)))
 
 (defun end-elsewhere (name part tasks)
   "Return in words how to wait for the end of the command NAME on PART, unless TASKS do that."
@@ -131,31 +117,32 @@ others."
 
 (defun advice-on-stillness (tasks)
   "Return in sentences what could be done about it that TASKS wait and nothing will wake them."
-  (let ((valueless (find-if #'waits-for-no-fluent-p tasks)))
-    (multiple-value-bind (robots states others) (split-fluents (fluents-awaited tasks))
-      (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is under way: ~
-                   give one before you wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
-                   ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~{~A~^, ~}, and ~
-                   stays so: no task goes on.~]~@[ ~A~]~@[ ~A~]"
-              (and valueless (no-fluent-advice valueless))
-              (and robots
-                   (format nil "~{~A~^, ~} change~:[s~;~]"
-                           (mapcar #'fluent-text robots) (rest robots)))
-              (and robots (command-advice tasks))
-              (remove-duplicates (mapcar #'fluent-text others) :test #'string=)
-              (mapcar #'status-text states)
-              (or (missed-pulses-text tasks) (missed-end-text tasks))
-              (endless-advice tasks)))))
+  (let* ((valueless (find +no-fluent+ tasks :key #'task-awaiting))
+         (fluents (fluents-awaited tasks))
+         (robots (remove-if-not #'robots-fluent-p fluents))
+         (states (remove-if-not #'status-fluent-p fluents))
+         (others (remove-if #'status-fluent-p (remove-if #'robots-fluent-p fluents))))
+    (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is under way: ~
+                 give one before you wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
+                 ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~:{~A is ~(~S~)~:^, ~}~
+                 , and stays so: no task goes on.~]~@[ ~A~]~@[ ~A~]"
+            (and valueless (no-fluent-advice valueless))
+            (and robots
+                 (format nil "~{~A~^, ~} change~:[s~;~]"
+                         (mapcar #'fluent-text robots) (rest robots)))
+            (and robots (command-advice tasks))
+            (remove-duplicates (mapcar #'fluent-text others) :test #'string=)
+            (loop for fluent in states collect (list (fluent-text fluent) (fluent-value fluent)))
+            (or (missed-pulses-text tasks) (missed-end-text tasks))
+            (endless-advice tasks))))
 
 ;;; Reports.
 
 (defun warn-of-wait (task text)
   "Queue a warning that TASK is at a wait that does not do what was meant, as TEXT says, once for
 each form."
-  (let ((form (task-form task)) (runner (task-runner task)))
-    (unless (member form (runner-warned runner) :test #'eq)
-      (push form (runner-warned runner))
-      (warn-notably "In the plan " (task-label (task-top task)) ", " text))))
+  (when (first-warning-p (task-form task) (task-runner task))
+    (warn-notably "In the plan " (task-label (task-top task)) ", " text)))
 
 (defun warn-of-no-fluent (task)
   "Queue a warning that TASK, which has come to wait, was given no fluent, once for each form."

@@ -193,10 +193,6 @@ are."
                       'simple-vector))
             (floor (reduce #'+ full :key #'second :initial-value fill) 5))))
 
-(defun trace-entries (trace)
-  "Return the entries of TRACE, a chronicle, as a vector."
-  (values (funcall (trace-so-far trace))))
-
 (defun write-trace-entry (entry stream)
   (format stream "~6@A ~(~9A~) ~5D ~A~@[  ; ~A~]~%"
           (trace-entry-tick entry) (trace-entry-event entry) (trace-entry-task entry)
