@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(misses-nothing-p))
+(export '(function-given-p misses-nothing-p))
 
 ;;; A view is a network that remembers. To read it, be it by FLUENT-VALUE or by being woken by it,
 ;;; uses up what it says; so each reader needs a view of its own. While somebody waits for it, it is

@@ -100,18 +100,12 @@ nothing succeeded, what the rollouts cost that were counted. NIL if that is unkn
            (average (remove nil (mapcar #'rollout-cost (or good rollouts)))))
           (t (projection-mean-ticks projection)))))
 
-(defun less-p (price other)
-  "True if PRICE is less than OTHER; either may be infinite."
-  (cond ((positive-infinity-p price) nil)
-        ((positive-infinity-p other))
-        (t (< price other))))
-
 (defun better-p (projection other)
   "True if PROJECTION succeeds more often than OTHER, or as often and at a lower price."
   (let ((successes (projection-successes projection)) (others (projection-successes other))
         (price (price-of projection)) (other-price (price-of other)))
     (cond ((/= successes others) (> successes others))
-          ((and price other-price) (less-p price other-price)))))
+          ((and price other-price) (< price other-price)))))
 
 (defun best-of (projections)
   "Return the index of the best of PROJECTIONS, the first of those that are as good."

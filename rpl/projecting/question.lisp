@@ -58,10 +58,6 @@ rollout how that has ended which the asking task does."
 (defparameter *default-horizon* 600
   "How many ticks a rollout is given, unless somebody says otherwise.")
 
-(defun callable-p (object)
-  (or (functionp object)
-      (and object (symbolp object) (fboundp object) (not (macro-function object)))))
-
 (defun check-option (operator name value)
   "Signal WRONG-ARGUMENT unless VALUE is one of the option NAME of OPERATOR."
   (flet ((check (good-p expected)
@@ -71,7 +67,7 @@ rollout how that has ended which the asking task does."
       (:horizon (check (whole-p value 1) "how many ticks, from 1 to 1e9"))
       (:seed (check (integerp value) "an integer"))
       (:until (check (member value '(:plan :branch)) ":plan or :branch"))
-      ((:cost :tell :world) (check (callable-p value) "a function"))
+      ((:cost :tell :world) (check (function-given-p value) "a function"))
       (:print))))
 
 (defun checked-options (operator options)

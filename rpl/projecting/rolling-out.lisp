@@ -20,14 +20,6 @@ it writes is lost unless PRINT is true."
 
 ;;; The moment.
 
-(defun twin-in (fork interface)
-  "Return what INTERFACE is in FORK."
-  (let ((name (robot-name (interface-robot interface))))
-    (find-if (lambda (participant)
-               (and (interface-p participant)
-                    (eq name (robot-name (interface-robot participant)))))
-             (simulation-participants fork))))
-
 (defun lighten (moment)
   "Let MOMENT, a fork, keep no journal and no trace of plans, and tell nobody of errors. Return it."
   (setf (simulation-journal moment) nil
@@ -79,7 +71,7 @@ SCENE, where that has ended in a fork of the scene's moment."
           fork
           (lambda ()
             (let* ((original (scene-question scene))
-                   (interface (twin-in fork (wish-interface original)))
+                   (interface (interface-of (interface-robot (wish-interface original)) fork))
                    (question (twin-question original interface)))
               (funcall then (run-rollout scene trial seed question interface
                                          (lambda ()

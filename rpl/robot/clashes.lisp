@@ -38,16 +38,11 @@ happens."
               (or (null common) (all-to-succeed-p common))
               (not (reacting-to-events-p newer common))))))
 
-(defun made-way-p (task interface)
-  "True if TASK was in what owned the robot's valve of INTERFACE, and gives way to a higher
-priority."
-  (some (lambda (loser) (part-of-p task loser)) (valve-losers (interface-valve interface))))
-
 (defun deed-text (deed)
   "Return in words what DEED is, and whose."
   (let ((task (deed-task deed)))
     (format nil "rpl-~(~A~) of ~@[~A in ~]the plan ~A"
-            (command-name (deed-command deed))
+            (deed-name deed)
             (and (task-parent task) (task-label task))
             (task-label (task-top task)))))
 
@@ -55,22 +50,22 @@ priority."
   "True if DEED takes no time, stops the robot, or cleans up."
   (or (deed-cleanup-p deed)
       (command-instant-p (deed-command deed))
-      (eq 'robot-stop (command-name (deed-command deed)))))
+      (eq 'robot-stop (deed-name deed))))
 
 (defun tell-of-clash (interface older newer)
   "Say once if the deed NEWER of INTERFACE has interrupted the deed OLDER of a task beside its own."
   (when (and newer
              (clash-p (deed-task older) (deed-task newer))
              (not (gentle-p newer))
-             (not (made-way-p (deed-task older) interface)))
+             ;; Who gives way to a higher priority expects it.
+             (notany (lambda (loser) (part-of-p (deed-task older) loser))
+                     (valve-losers (interface-valve interface))))
     (let ((interrupted (deed-text older)) (by (deed-text newer)))
-      (warn-once (list :clash interrupted by)
-                 (simulation-world (interface-simulation interface))
-                 (format nil "~A was interrupted by ~A, which runs beside it: ~A carries out one ~
-                              command at a time. Give them one after the other, or let each task ~
-                              have the robot while it needs it: (with-valve ((rpl-robot-valve)) ~
-                              ...)."
-                         interrupted by (deed-resource older))))))
+      (tell-once interface (list :clash interrupted by)
+                 "~A was interrupted by ~A, which runs beside it: ~A carries out one command at a ~
+                  time. Give them one after the other, or let each task have the robot while it ~
+                  needs it: (with-valve ((rpl-robot-valve)) ...)."
+                 interrupted by (deed-resource older)))))
 
 ;;; A task that gives one command after the other has forgotten to wait, or waits for a tick only.
 
@@ -81,11 +76,6 @@ priority."
       (when (operator-called-p form "SEQ")
         (let ((at (current-form (frame-node frame) frame)))
           (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
-
-(defun drives-p (deed)
-  "True if DEED drives the robot on, as one may for a tick, too."
-  (member (command-name (deed-command deed))
-          '(robot-go-forward robot-go-distance robot-goto-wall robot-follow-wall)))
 
 (defun hurry (older newer)
   "Return how many ticks, 0 or 1, the deed OLDER was given by its task, which cuts it short by the
@@ -98,26 +88,23 @@ deed NEWER, most likely by mistake; NIL if that may be meant, as where it reacts
          (not (reacting-to-events-p task nil))
          (or (= 0 ticks)
              (and (= 1 ticks)
-                  (not (drives-p older))
+                  ;; One may drive on for a tick, too.
+                  (not (member (deed-name older)
+                               '(robot-go-forward robot-go-distance robot-goto-wall
+                                 robot-follow-wall)))
                   (operator-called-p (step-before task) "WAIT-TIME")
                   (not (watches-p task))))
          ticks)))
-
-(defun hurry-text (older newer ticks)
-  "Return in sentences that the deed NEWER has cut the deed OLDER short, which had TICKS, 0 or 1."
-  (format nil "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, as rpl-~(~A~) was given~;~
-               does nothing: rpl-~(~A~) was given before a tick has passed~], and ~A carries out ~
-               one command at a time.~@[ Wait for the end of the first before it: ~A.~]"
-          (command-name (deed-command older)) (task-label (task-top (deed-task older)))
-          (= 0 ticks) (command-name (deed-command newer)) (deed-resource older)
-          (wait-text (deed-outcome older) (deed-resource older))))
 
 (defun tell-of-hurry (interface older newer)
   "Say once if the deed NEWER of INTERFACE has cut the deed OLDER short before that has begun, or
 just after."
   (let ((ticks (and newer (hurry older newer))))
     (when ticks
-      (warn-once (list :hurry-in-plan (command-name (deed-command older))
-                       (command-name (deed-command newer)))
-                 (simulation-world (interface-simulation interface))
-                 (hurry-text older newer ticks)))))
+      (tell-once interface (list :hurry-in-plan (deed-name older) (deed-name newer))
+                 "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, as rpl-~(~A~) was given~;~
+                  does nothing: rpl-~(~A~) was given before a tick has passed~], and ~A carries ~
+                  out one command at a time.~@[ Wait for the end of the first before it: ~A.~]"
+                 (deed-name older) (task-label (task-top (deed-task older))) (= 0 ticks)
+                 (deed-name newer) (deed-resource older)
+                 (wait-text (deed-outcome older) (deed-resource older))))))

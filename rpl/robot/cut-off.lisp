@@ -11,17 +11,13 @@
   (or (watches-p task)
       (some #'watches-anywhere-p (task-children task))))
 
-(defun told-stranded-p (interface task)
-  "True if it was said of TASK, of the plans of INTERFACE, that it waits in vain."
-  (said-p (list :stranded (task-label task))
-          (simulation-world (interface-simulation interface))))
-
 (defun cut-off-p (interface task)
   "True if TASK, of the plans of INTERFACE, is under way and would have ended by itself."
   (not (or (task-parent task)
            (task-over-p task)
            (member task (interface-unwanted interface))
-           (told-stranded-p interface task)
+           (said-p (list :stranded (task-label task))
+                   (simulation-world (interface-simulation interface)))
            (watches-anywhere-p task))))
 
 (defmethod note-seen ((interface interface))

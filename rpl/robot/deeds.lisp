@@ -25,6 +25,10 @@ OUTCOME makes settings of an answer."
   ;; It has been answered for the last time.
   (over-p nil))
 
+(defun deed-name (deed)
+  "Return the name of the command of DEED."
+  (command-name (deed-command deed)))
+
 (defstruct (answer (:constructor make-answer (deed err settings last-p)) (:copier nil))
   "SETTINGS that an answer to DEED with the error code ERR means, not yet heard."
   (deed nil :type deed :read-only t)
@@ -45,20 +49,12 @@ OUTCOME makes settings of an answer."
   "True if DEED is under way, and nobody has been told that it is not."
   (not (or (deed-told-p deed) (deed-over-p deed))))
 
-(defun commands-under-way-p (interface)
-  "True if a command of a plan is still to be answered."
-  (find nil (interface-deeds interface) :key #'deed-over-p))
-
 ;;; Settings. (:error fluent code) sets a fluent as :SET does.
 
 (defun plain-settings (settings)
   "Return SETTINGS as APPLY-SETTINGS takes them."
   (loop for (kind . more) in settings
         collect (cons (if (eq kind :error) :set kind) more)))
-
-(defun state-settings (settings)
-  "Return those of SETTINGS that say what the robot is or has."
-  (remove :set settings :key #'first :test-not #'eq))
 
 ;;; Answers.
 

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(interface-of))
+
 ;;; A run that goes on in the place of another has its tasks up to the tick to which that was
 ;;; rewound, with the numbers that they had. Later tasks of both are others, though their numbers
 ;;; are the same. So an interface knows of which era each task is: a symbol. Its ERAS are a list
@@ -32,13 +34,6 @@
          (same-era-p task interface)
          (task-numbered (task-serial task) (interface-runner interface)))))
 
-(defun reject-stale (task)
-  "Signal MISUSE, as TASK, of a run that was rewound, is not in what goes on."
-  (reject-use "The task ~D, ~A, is of a run that was rewound, and not in the one that goes on: it ~
-               began after the tick to which that was rewound, or RPL-INIT-ROBOT has begun plans ~
-               anew since. (plans) lists those that are under way."
-              (task-serial task) (task-label task)))
-
 (defun task-of-now (task simulation)
   "Return what TASK has become in SIMULATION, a fork of its run or what goes on since that was
 rewound; itself if it is over there. Signals MISUSE if its run was rewound to a tick before it
@@ -48,7 +43,11 @@ began, or plans were begun anew since."
     (cond ((and interface (same-era-p task interface))
            (or (task-numbered (task-serial task) (interface-runner interface)) task))
           ((eq (interface-simulation client) (latest (interface-simulation client))) task)
-          (t (reject-stale task)))))
+          (t (reject-use "The task ~D, ~A, is of a run that was rewound, and not in the one that ~
+                          goes on: it began after the tick to which that was rewound, or ~
+                          RPL-INIT-ROBOT has begun plans anew since. (plans) lists those that are ~
+                          under way."
+                         (task-serial task) (task-label task))))))
 
 ;;; Where a run is rewound.
 

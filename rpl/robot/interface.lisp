@@ -195,12 +195,6 @@ known to be at Lisp code that does not return. One that waits in a debugger can 
      (declare (dynamic-extent #'body))
      (call-with-plans #'body ,interface)))
 
-(defun let-others-hold (interface)
-  "Let others have the plans of INTERFACE, which this thread does not hold, before it takes them
-again."
-  (loop while (plusp (interface-wanted interface))
-        do (yield-thread)))
-
 ;;; The thread of live plans; see thread.lisp.
 
 (defun wake (interface)
@@ -221,12 +215,6 @@ again."
         (wake interface)
         (when (live-p simulation) (wake-owner (simulation-timeline simulation))))))
 
-;;; Which tasks are the same in several runs; see handles.lisp.
-
-(defun first-eras ()
-  "Return the eras of an interface that has had no task."
-  (list (cons (gensym "ERA") 0)))
-
 ;;; Which interface.
 
 (defun interface-valid-p (interface)
@@ -239,6 +227,11 @@ again."
          (eq simulation (robot-simulation robot))
          (member robot (simulation-robots simulation))
          t)))
+
+(defun tell-once (interface key control &rest arguments)
+  "Say once by KEY in the run of INTERFACE what is formatted from CONTROL and ARGUMENTS."
+  (warn-once key (simulation-world (interface-simulation interface))
+             (apply #'format nil control arguments)))
 
 (defun usable-p (interface)
   "True if there is an INTERFACE, valid and for the world that we are in, if any."

@@ -96,12 +96,6 @@ ARGUMENTS."
   "Return the symbol of the plan function for COMMAND-NAME, in the package at hand."
   (symbolicate 'rpl- command-name))
 
-(defun parameters-in-plan (resource parameters)
-  "Return the names of what the plan function takes for a command with RESOURCE, (variable type),
-and PARAMETERS, lists (variable type text)."
-  (append (unless (same-name-p 'robot (second resource)) (list (first resource)))
-          (mapcar #'first parameters)))
-
 (defun check-fluent (name clause)
   (unless (or (assoc name *fluent-variables*) (known-variable-p name nil))
     (reject-clause "define-outcome" clause "a fluent variable, as DEFINE-FLUENTS defines")))
@@ -127,10 +121,6 @@ and PARAMETERS, lists (variable type text)."
   (loop for (kind . more) in clauses
         append (cond ((member kind kinds) (list (first more)))
                      ((eq :when kind) (clause-fluents (rest more) kinds)))))
-
-(defun note-result-fluents (command-name variables)
-  "Note that the fluents in VARIABLES say how a command called COMMAND-NAME ended."
-  (setf (get command-name 'result-fluents) variables))
 
 (defun fluent-in-plan (variable part)
   "Return how plans write the fluent in VARIABLE; of a vector, that of PART."
@@ -161,11 +151,12 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
      ,@(loop for command-name in commands
              for (resource specifications sentence) = (command-shape command-name)
              for name = (plan-function-name command-name)
-             for parameters = (parameters-in-plan resource specifications)
+             for parameters = (append (unless (same-name-p 'robot (second resource))
+                                        (list (first resource)))
+                                      (mapcar #'first specifications))
              collect `(public ,name)
-             collect `(note-result-fluents ',command-name
-                                           ',(remove-duplicates
-                                              (clause-fluents clauses '(:set :error))))
+             collect `(setf (get ',command-name 'result-fluents)
+                            ',(remove-duplicates (clause-fluents clauses '(:set :error))))
              collect `(note-twin ',command-name '(,name ,@parameters)
                                  ',(fluent-form :pulse clauses (first parameters))
                                  ',(fluent-form :error clauses (first parameters))

@@ -6,14 +6,6 @@
 ;;; to do ends unheard, and a plan such as (whenever robot-stopped* ...) stays silent. Plans that
 ;;; wait once are named where that is said of all that wait in vain; see stranded.lisp.
 
-(defun name-of-outside-command (interface)
-  "Return the name of the command that the robot of INTERFACE carries out for others than plans, or
-NIL."
-  (let* ((robot (interface-robot interface)) (event (resource-event robot)))
-    (and (operation-p event)
-         (not (find robot (interface-deeds interface) :key #'deed-resource))
-         (command-name (operation-command event)))))
-
 (defun watcher-of-end (interface command)
   "Return a top-level task of INTERFACE, which this thread holds, that watches for the end of
 commands of the robot such as COMMAND; or NIL."
@@ -27,17 +19,20 @@ commands of the robot such as COMMAND; or NIL."
   "Say once if a plan of INTERFACE watches for the end of COMMAND, which no plan has given."
   (let ((task (call-with-plans-if-free (lambda () (watcher-of-end interface command)) interface)))
     (when task
-      (warn-once (list :outside (task-label task))
-                 (simulation-world (interface-simulation interface))
-                 (format nil "~(~A~) has ended. No plan has given it, so the plan ~A, which waits ~
-                              for ~A, does not hear of it. Let a plan give it: ~A."
-                         command (task-label task)
-                         (fluent-text (symbol-value (pulse-of-command command)))
-                         (twin-text command))))))
+      (tell-once interface (list :outside (task-label task))
+                 "~(~A~) has ended. No plan has given it, so the plan ~A, which waits for ~A, does ~
+                  not hear of it. Let a plan give it: ~A."
+                 command (task-label task)
+                 (fluent-text (symbol-value (pulse-of-command command)))
+                 (twin-text command)))))
 
 (defun look-for-outside (interface)
   "Say so if a command that no plan of INTERFACE has given has ended, and a plan waits for that."
-  (let* ((command (name-of-outside-command interface))
+  (let* ((robot (interface-robot interface))
+         (event (resource-event robot))
+         (command (and (operation-p event)
+                       (not (find robot (interface-deeds interface) :key #'deed-resource))
+                       (command-name (operation-command event))))
          (before (shiftf (interface-outside interface) command)))
     (when (and before (null command) (pulse-of-command before) (tasks-of interface))
       (tell-of-outside interface before))))

@@ -18,12 +18,6 @@
                  (thinking-charged-p timeline)
                  (thinking-budget timeline))))
 
-(defun place-of-robot (interface)
-  "Return how many robots of the run come before that of INTERFACE."
-  (or (position (interface-robot interface)
-                (simulation-robots (interface-simulation interface)))
-      0))
-
 (defun plans-dice (interface)
   "Return what plans of INTERFACE roll by CL:RANDOM: of a run that is or was live dice of their own,
 which its forks take along; or NIL for what all programs of the run roll."
@@ -31,7 +25,11 @@ which its forks take along; or NIL for what all programs of the run roll."
     (when (simulation-plans-dice-p simulation)
       (or (runner-lisps-dice runner)
           (setf (runner-lisps-dice runner)
-                (seeded-lisps-dice (+ (simulation-seed simulation) (place-of-robot interface))))))))
+                (seeded-lisps-dice (+ (simulation-seed simulation)
+                                      ;; How many robots of the run come before it.
+                                      (or (position (interface-robot interface)
+                                                    (simulation-robots simulation))
+                                          0))))))))
 
 (defun react-fully (interface)
   "Let the plans of INTERFACE react to time and to all that was posted, until all of them wait or
@@ -71,15 +69,11 @@ nothing happens."
   "True if a command of a plan is under way, or something else may still happen that tells plans
 something."
   (let ((simulation (interface-simulation interface)))
-    (or (commands-under-way-p interface)
+    (or (find nil (interface-deeds interface) :key #'deed-over-p)
         (wish-to-serve interface)
         (plusp (agenda-pending (simulation-agenda simulation)))
         (timeline-inbox (simulation-timeline simulation))
         (kickers-may-tell-p interface))))
-
-(defun seconds-when-live (simulation)
-  "Return the time in seconds, by which plans that hog their thread are noticed; headless NIL."
-  (and (live-p simulation) (seconds-now)))
 
 ;;; What the journal is told of plans, besides what they did: it is no part of the run.
 
@@ -132,7 +126,8 @@ that this failure happened, if that was just now."
                       :tick (simulation-tick simulation)
                       :client interface
                       :busy-p (lambda () (busy-p interface))
-                      :clock (lambda () (seconds-when-live simulation))
+                      ;; By which plans that hog their thread are noticed.
+                      :clock (lambda () (and (live-p simulation) (seconds-now)))
                       :slow *hog-seconds*
                       :on-post (lambda () (call-to-plans interface))
                       :attended-p (lambda () (thread-of interface))

@@ -29,15 +29,11 @@ if that is NIL, as somebody did then."
     (note-of-plans interface #'say-again word arguments
                    (and (task-p subject) (task-serial subject)))))
 
-(defun command-again (operator arguments)
-  "Call the plan function OPERATOR with ARGUMENTS, as somebody did then from outside of plans."
-  (apply operator arguments))
-
 (defun call-noting-command (interface operator arguments function)
   "Call FUNCTION, which does what the plan function OPERATOR does with ARGUMENTS. If that is called
 from outside of the plans of INTERFACE, remember that. What it asks for is heard by what goes on in
 forks too."
-  (note-of-plans interface #'command-again operator (mapcar #'fluent-value arguments))
+  (note-of-plans interface #'apply operator (mapcar #'fluent-value arguments))
   (let ((*goes-on-in-forks-p* t))
     (funcall function)))
 
@@ -51,24 +47,20 @@ index; or else FLUENT."
           return (list variable index)
         finally (return fluent)))
 
-(defun fluent-named (name)
-  "Return the fluent that NAME, as NAME-OF-FLUENT has returned it elsewhere, means here."
-  (if (consp name)
-      (destructuring-bind (variable index) name
-        (if index (aref (symbol-value variable) index) (symbol-value variable)))
-      (entity-like name)))
-
 (defun change-again (function name value)
-  "Call FUNCTION with the fluent that NAME means, and VALUE."
-  (funcall function (fluent-named name) value))
+  "Call FUNCTION with the fluent that NAME, as NAME-OF-FLUENT has returned it elsewhere, means here,
+and VALUE."
+  (funcall function
+           (if (consp name)
+               (destructuring-bind (variable index) name
+                 (if index (aref (symbol-value variable) index) (symbol-value variable)))
+               (entity-like name))
+           value))
 
-(defun note-outside-change (function fluent value)
-  "Let the current run remember that FUNCTION was called from outside of plans with FLUENT and
-VALUE."
-  (when (and *simulation* (simulation-past *simulation*))
-    (note-doing *simulation* #'change-again function (name-of-fluent fluent) value)))
-
-(setf *on-outside-change* #'note-outside-change)
+(setf *on-outside-change*
+      (lambda (function fluent value)
+        (when (and *simulation* (simulation-past *simulation*))
+          (note-doing *simulation* #'change-again function (name-of-fluent fluent) value))))
 
 ;;; What the run was that is over is forgotten.
 
@@ -76,14 +68,11 @@ VALUE."
   "Return what the fluents of SIMULATION belong to."
   (cdr (assoc '*realm* (environment-of simulation))))
 
-(defun shared-realm-p (realm simulation)
-  "True if REALM, that of SIMULATION, is also that of the live run around it."
-  (and (eq realm (global-value '*realm*))
-       (not (eq simulation (global-value '*simulation*)))))
-
 (defun leave-fluents (old new)
   "Let no fluent of NEW, which is to go on in the place of OLD, lead back to that."
-  (unless (shared-realm-p (realm-of old) old)
+  ;; The realm may be that of a live run around OLD, too.
+  (when (or (eq old (global-value '*simulation*))
+            (not (eq (realm-of old) (global-value '*realm*))))
     (leave-realm (realm-of old) (realm-of new))))
 
 (pushnew 'leave-fluents *rewind-hooks*)

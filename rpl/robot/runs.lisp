@@ -36,21 +36,18 @@ told since to command it, and plans drive another; or NIL."
          (not (eq robot (interface-robot interface)))
          robot)))
 
-(defun check-no-plans (interface)
-  "Signal MISUSE if plans of INTERFACE are under way, as others are to drive another robot."
-  (when (tasks-of interface)
-    (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends what ~
-                 drives that."
-                (interface-robot interface))))
-
 (defun ensure-interface ()
   "Return the interface in use; make one for ROBOT-TO-DRIVE if there is none, and for the robot that
 the prompt has begun to command since."
   (let* ((interface (usable-interface))
          (robot (and interface (robot-commanded-since interface))))
-    (cond (robot (check-no-plans interface)
-                 (init-robot robot))
-          (t (or interface (init-robot (robot-to-drive)))))))
+    (when (and robot (tasks-of interface))
+      (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends what ~
+                   drives that."
+                  (interface-robot interface)))
+    (cond (robot (init-robot robot))
+          (interface)
+          (t (init-robot (robot-to-drive))))))
 
 (defun begin-in (interface plan arguments note)
   "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
@@ -69,13 +66,13 @@ called with that before anything else can happen."
 
 (defun tell-if-begun-for-later (plan interface)
   "Say once for the robot of INTERFACE if PLAN, begun on it, waits for a run to go on."
-  (let* ((robot (interface-robot interface)) (world (robot-world robot)))
-    (when (and (between-runs-p world) (null *asker*) (not *ticks-follow-p*))
-      (warn-once (list :kept (robot-name robot) :plan) world
-                 (format nil "The plan ~A waits until ticks pass: none of ~A do by themselves now. ~
-                              (run-ticks N) lets some pass, (simulator '~(~A~)) all that come."
-                         (if (symbolp plan) (string-downcase plan) "that was begun")
-                         robot (robot-name robot))))))
+  (let ((robot (interface-robot interface)))
+    (when (and (between-runs-p (robot-world robot)) (null *asker*) (not *ticks-follow-p*))
+      (tell-once interface (list :kept (robot-name robot) :plan)
+                 "The plan ~A waits until ticks pass: none of ~A do by themselves now. (run-ticks ~
+                  N) lets some pass, (simulator '~(~A~)) all that come."
+                 (if (symbolp plan) (string-downcase plan) "that was begun")
+                 robot (robot-name robot)))))
 
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
@@ -91,11 +88,6 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
 (defun ended-by-itself-p (task)
   "True if TASK is over, and nobody has made it evaporate."
   (and (task-over-p task) (not (eq :evaporated (task-state task)))))
-
-(defun checked-plan-limit ()
-  (check-argument run-plan *plan-limit* (within-reason-p *plan-limit*)
-                  "a number of ticks, up to 1e9")
-  *plan-limit*)
 
 (defun pass-until (interface over last)
   "Let the plans of INTERFACE react and ticks pass, headless, until OVER, a function, returns true.
@@ -118,9 +110,11 @@ Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :LIMIT 
 
 (defun run-headless (interface task)
   "Pass ticks until TASK is over. Return its state, or how it came that it is not over."
+  (check-argument run-plan *plan-limit* (within-reason-p *plan-limit*)
+                  "a number of ticks, up to 1e9")
   (pass-until interface
               (lambda () (how-over interface task))
-              (+ (simulation-tick (interface-simulation interface)) (checked-plan-limit))))
+              (+ (simulation-tick (interface-simulation interface)) *plan-limit*)))
 
 (defun await-over (interface task)
   "Wait until TASK is over, live. Return its state, or how it came that it is not over. If nothing
@@ -169,18 +163,14 @@ but somebody outside can let plans go on, say so, once."
              (format nil "~@[ ~A~]" (endless-advice (deepest-parts task))) " It was at:" t
              (cut (with-output-to-string (stream) (print-tasks task stream)) +longest-report+)))
 
-(defun report-not-over (interface task state)
-  "Report why TASK is not over, if STATE says that it never would be."
-  (case state
-    (:deadlock (with-plans (interface) (report-deadlock (interface-runner interface))))
-    (:limit (with-plans (interface) (report-limit interface task)))))
-
 (defun await-plan (interface task)
   "Let TASK go on until it is over, or cannot be. Return its state, or how it came that it is not."
   (let ((state (if (live-p (interface-simulation interface))
                    (await-over interface task)
                    (run-headless interface task))))
-    (report-not-over interface task state)
+    (case state
+      (:deadlock (with-plans (interface) (report-deadlock (interface-runner interface))))
+      (:limit (with-plans (interface) (report-limit interface task))))
     state))
 
 (defun await-no-longer (interface task)
@@ -199,12 +189,12 @@ but somebody outside can let plans go on, say so, once."
                 (typep (task-result task) 'lisp-failure) ; an error is reported anyway
                 (message-queue-listener (simulation-messages simulation))
                 (not (eq :report (message-queue-error-policy (simulation-messages simulation)))))
-      (warn-once (list :failed (task-label task)) (simulation-world simulation)
-                 (format nil "The plan ~A failed: ~A~@[; ~A~]. The second value of RUN-PLAN says ~
-                              so, :FAILED; the first is the failure, which is true."
-                         (task-label task)
-                         (failure-text (task-result task))
-                         (missed-text (task-result task)))))))
+      (tell-once interface (list :failed (task-label task))
+                 "The plan ~A failed: ~A~@[; ~A~]. The second value of RUN-PLAN says so, :FAILED; ~
+                  the first is the failure, which is true."
+                 (task-label task)
+                 (failure-text (task-result task))
+                 (missed-text (task-result task))))))
 
 (addition run-plan)
 (defun run-plan (plan &rest arguments)

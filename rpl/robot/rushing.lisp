@@ -30,18 +30,14 @@ NIL if nothing tells of that."
   (let ((pulse (assoc :pulse (funcall outcome resource :interrupt))))
     (and pulse (format nil "(wait-for ~A)" (fluent-form-text (second pulse))))))
 
-(defun fail-of-rushing (command wait)
-  "Let the task at work fail, which gives COMMAND too often; WAIT says how it waits for its end."
-  (fail :class :too-many-commands :limit *plan-command-limit*
-        :remedy (format nil "A loop gives rpl-~(~A~) without waiting, and no time passes. Put a ~
-                             wait into it, such as ~:[~;~:*~A or ~](wait-time 1); or, if parts of ~
-                             a plan take the robot from one another, let each own it: (with-valve ~
-                             ((rpl-robot-valve)) ...)"
-                        (command-name command) wait)))
-
 (defun count-command (task command outcome resource)
   "Note that TASK gives COMMAND on RESOURCE, whose end OUTCOME makes settings of. Fail if its plan
 has given as many as it may in this tick."
   (let ((count (commands-in-tick (task-runner task) (task-top task))))
     (when (< *plan-command-limit* (incf (cdr count)))
-      (fail-of-rushing command (wait-text outcome resource)))))
+      (fail :class :too-many-commands :limit *plan-command-limit*
+            :remedy (format nil "A loop gives rpl-~(~A~) without waiting, and no time passes. Put ~
+                                 a wait into it, such as ~:[~;~:*~A or ~](wait-time 1); or, if ~
+                                 parts of a plan take the robot from one another, let each own ~
+                                 it: (with-valve ((rpl-robot-valve)) ...)"
+                            (command-name command) (wait-text outcome resource))))))

@@ -68,13 +68,11 @@ as one of them says so itself."
                (interface-valid-p interface)
                (or (not same-p) (participant-around-p interface))
                (eq (interface-simulation interface) (robot-simulation robot)))
-      (warn-once (list :ended-by (robot-name before) (robot-name robot))
-                 (robot-world robot)
-                 (format nil "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A~:[, as plans ~
-                              drive one robot at a time. Let them end first, as (run-plan ...) ~
-                              does, or drive one of the robots by commands and continuations~;. ~
-                              Call it before the plan, not in it~]."
-                         robot (length tasks) (mapcar #'task-label tasks) before same-p)))))
+      (tell-once interface (list :ended-by (robot-name before) (robot-name robot))
+                 "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A~:[, as plans drive one robot ~
+                  at a time. Let them end first, as (run-plan ...) does, or drive one of the ~
+                  robots by commands and continuations~;. Call it before the plan, not in it~]."
+                 robot (length tasks) (mapcar #'task-label tasks) before same-p))))
 
 ;; What is bound to *TRACE-PLANS* around a doing is gone when that is done again.
 (defun do-traced (traced-p function &rest arguments)
@@ -99,7 +97,7 @@ as one of them says so itself."
 (defun init-robot (robot)
   "Do what RPL-INIT-ROBOT does with ROBOT. Return the interface."
   (check-world robot)
-  (drive-in-eras robot (first-eras)))
+  (drive-in-eras robot (list (cons (gensym "ERA") 0))))
 
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)

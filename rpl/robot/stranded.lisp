@@ -18,10 +18,6 @@
       (let ((fluents (fluents-awaited (list task))))
         (and fluents (every #'robots-fluent-p fluents)))))
 
-(defun still-waiting-p (parts awaited)
-  "True if PARTS of a plan wait for what they AWAITED."
-  (every (lambda (part awaiting) (eq awaiting (task-awaiting part))) parts awaited))
-
 (defun stranded-parts (interface task)
   "Return the parts of TASK, a plan of INTERFACE, that wait in vain; NIL if it may go on."
   (let ((parts (waiting-parts task)))
@@ -46,7 +42,8 @@
                          " So it waits until you do, as from a REPL."
                          ""))
                :notable (or (live-p simulation)
-                            (lambda () (still-waiting-p parts awaited))))))
+                            ;; Whether they still wait for that at the end.
+                            (lambda () (equal awaited (mapcar #'task-awaiting parts)))))))
 
 (defun deadlocked-p (interface)
   "True if plans of INTERFACE wait and nothing can ever wake them. For any thread."
@@ -71,11 +68,6 @@ of its plans can go on."
   "Say so if plans of INTERFACE were begun and wait in vain."
   (loop for (task parts) in (stranded-plans interface)
         do (warn-of-stranded interface task parts)))
-
-;; Where somebody listens to messages, as at the prompt, that is told with each plan.
-(defun look-for-stranded-live (interface)
-  "Say so if plans of INTERFACE, which runs live, were begun and wait in vain."
-  (unless (message-queue-listener *message-queue*) (look-for-stranded interface)))
 
 (defmethod participant-after-ticks ((interface interface) simulation)
   (unless (simulation-over simulation) (look-for-stranded interface)))

@@ -16,11 +16,6 @@ wait, and for something else. True if so. Most ticks are like that."
              (thinking-charged-p timeline)
              (not (rest-in-tick (interface-runner interface) (timeline-tick timeline)))))))
 
-(defun apply-posts (interface)
-  "Apply what was posted to INTERFACE, if it has no plans."
-  (with-plans (interface)
-    (unless (tasks-of interface) (react-fully interface))))
-
 (defmethod participant-origin ((interface interface))
   (or (interface-origin interface)
       (setf (interface-origin interface) (list "the plans of " (interface-robot interface)))))
@@ -40,7 +35,10 @@ wait, and for something else. True if so. Most ticks are like that."
              (unless (and (null (interface-holder interface)) (rest-fully interface))
                (with-plans (interface) (react-fully interface)))))
         ((tasks-of interface) (ensure-thread interface))
-        ((interface-answers interface) (apply-posts interface))))
+        ;; Without plans what was posted is only applied.
+        ((interface-answers interface)
+         (with-plans (interface)
+           (unless (tasks-of interface) (react-fully interface))))))
 
 ;; What was left ready by a thread that has ended from outside waits for the next tick.
 (defmethod participant-busy-p ((interface interface) simulation)

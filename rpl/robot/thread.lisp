@@ -48,13 +48,14 @@ NIL if that was aborted."
 (defun run-thread (interface)
   "Let the plans react to what is posted for as long as there are any."
   (loop
-    (let-others-hold interface)
+    (loop while (plusp (interface-wanted interface)) do (yield-thread))
     (let-fork-be-kept (interface-simulation interface))
     (ecase (react-in-thread interface)
       (:over (return))
       ;; A tick may have come meanwhile for which nobody was told to wake.
       (:idle (unless (woken-by-tick-p interface)
-               (look-for-stranded-live interface)
+               ;; Where somebody listens to messages, as at the prompt, that is told anyway.
+               (unless (message-queue-listener *message-queue*) (look-for-stranded interface))
                (rest-plans interface)))
       (:budget (when (or (waits-for-tick-p interface) (wish-to-serve interface))
                  (setf (interface-tick-wanted-p interface) t)

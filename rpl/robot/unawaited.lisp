@@ -6,16 +6,14 @@
 ;;; commands that take no time and do more than look, go on in the background, stop the robot, or
 ;;; were given to clean up.
 
-(defun asks-only-p (deed)
-  "True if DEED is over in no time, and does nothing but return what it senses."
-  (member (command-name (deed-command deed)) '(camera-view robot-place hand-grasp-check)))
-
 (defun unawaited-deeds (interface task)
   "Return what the top-level TASK, of INTERFACE, has asked for and is under way."
   (remove-if-not (lambda (deed)
                    (and (deed-open-p deed)
-                        (or (ends-by-command-p deed) (asks-only-p deed))
-                        (not (eq 'robot-stop (command-name (deed-command deed))))
+                        (or (ends-by-command-p deed)
+                            (member (deed-name deed)
+                                    '(camera-view robot-place hand-grasp-check)))
+                        (not (eq 'robot-stop (deed-name deed)))
                         (not (deed-cleanup-p deed))
                         (deed-task deed)
                         (eq task (task-top (deed-task deed)))))
@@ -34,10 +32,7 @@ NIL."
   "Say once if commands of TASK, a plan of INTERFACE that has succeeded, are under way."
   (let ((deed (first (unawaited-deeds interface task))))
     (when deed
-      (warn-once (list :unawaited (task-label task))
-                 (simulation-world (interface-simulation interface))
-                 (format nil "The plan ~A succeeded while its command rpl-~(~A~) was under way, ~
-                              which goes on.~@[ ~A~]"
-                         (task-label task)
-                         (command-name (deed-command deed))
-                         (unawaited-advice deed))))))
+      (tell-once interface (list :unawaited (task-label task))
+                 "The plan ~A succeeded while its command rpl-~(~A~) was under way, which goes ~
+                  on.~@[ ~A~]"
+                 (task-label task) (deed-name deed) (unawaited-advice deed)))))

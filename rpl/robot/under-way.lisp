@@ -34,7 +34,8 @@
       (unless (deed-told-p deed) (note-pulses interface deed settings))
       (with-answer ((deed-issue deed) (answer-err answer))
         (apply-settings (if (deed-told-p deed)
-                            (state-settings settings)
+                            ;; What the robot is or has.
+                            (remove :set settings :key #'first :test-not #'eq)
                             (plain-settings settings)))))))
 
 (defun post-answer (interface deed err results)

@@ -44,7 +44,7 @@ with the serial number PLAN."
 (defun note-unread (interface deed err)
   "Note that DEED of INTERFACE has ended with ERR, before anybody can have looked at that; it
 supersedes how the same command ended before."
-  (let ((command (command-name (deed-command deed))) (task (deed-task deed))
+  (let ((command (deed-name deed)) (task (deed-task deed))
         (part (number-of-part (deed-resource deed))))
     (when (or err (interface-unread interface))
       (setf (interface-unread interface)
