@@ -246,8 +246,8 @@ goes on."
             (draw-segments canvas draw-gcontext* (list (- x 4) (+ y 3) (+ x 4) (+ y 11)))))))))
 
 (defmethod subject-title ((bar bar))
-  (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (whole-bar-label bar) (bar-start bar)
-          (bar-end bar) (bar-outcome bar)
+  (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (bar-label bar #'whole-form-text)
+          (bar-start bar) (bar-end bar) (bar-outcome bar)
           (and (bar-failure bar) (cut (one-line (own-text (bar-failure bar))) 200))))
 
 (defun spans-of-kind (bar kind)

@@ -7,7 +7,7 @@ canvas.")
         :ars-magna.canvas)
   (:import-from :ars-magna.rpl
                 #:bar #:bar-call-p #:bar-commands #:bar-depth #:bar-end #:bar-failure #:bar-form
-                #:bar-label #:bar-name #:whole-bar-label
+                #:bar-label #:bar-name #:whole-form-text
                 #:bar-outcome #:bar-parts #:bar-serial #:bar-spans #:bar-start #:bars
                 #:span-end #:span-error #:span-kind #:span-start #:span-text
                 #:plan-trace #:plan-runner-tick #:runner-to-see

@@ -9,23 +9,18 @@
   "Bars of one expression that do not overlap, oldest first."
   (bars '() :type list))
 
-(defun row-depth (row) (bar-depth (first (row-bars row))))
-
 (defun row-label (row &optional (indent 2) (most 24))
   "Return which tasks are in ROW, indented by how deep they are: each time by INDENT, by MOST in
 all."
   (let ((more (1- (length (row-bars row)))))
-    (format nil "~V@T~A~@[ (and ~D more)~]" (min most (* indent (row-depth row)))
+    (format nil "~V@T~A~@[ (and ~D more)~]" (min most (* indent (bar-depth (first (row-bars row)))))
             (bar-label (first (row-bars row)))
             (and (plusp more) more))))
-
-(defun alike-p (bar other)
-  (eq (bar-form bar) (bar-form other)))
 
 (defun fits-p (bar row)
   "True if BAR can stand in ROW, after the last one there."
   (let ((last (first (last (row-bars row)))))
-    (and (alike-p bar last) (<= (bar-end last) (bar-start bar)))))
+    (and (eq (bar-form bar) (bar-form last)) (<= (bar-end last) (bar-start bar)))))
 
 (defun lanes (bars)
   "Return rows for BARS, parts of one row, in order of start."

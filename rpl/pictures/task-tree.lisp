@@ -47,10 +47,6 @@
       (:ending (draw-segments canvas draw-gcontext* (list x y right low x low right y)))
       (:stepped (draw-rectangle canvas draw-gcontext* x y (1- size) (1- size))))))
 
-(defun draw-task-mark (canvas look x y)
-  (with-color (second (assoc look *task-looks*))
-    (with-lines (:width 2) (draw-shape canvas look x y))))
-
 (defun draw-fold-mark (canvas image x y)
   "Draw a triangle that points down at the parts of the task of IMAGE, or right if there are none
 to be seen."
@@ -113,16 +109,14 @@ to be seen."
   "Draw IMAGE with its upper edge at Y. Return how high that is."
   (let ((x (+ 6 (* +indent+ (min +deepest+ (task-image-depth image))))))
     (prog1 (with-subject (canvas image)
-             (draw-task-mark canvas (task-image-look image) (+ x 12) (+ y 3))
+             (with-color (second (assoc (task-image-look image) *task-looks*))
+               (with-lines (:width 2)
+                 (draw-shape canvas (task-image-look image) (+ x 12) (+ y 3))))
              (* +line-height+ (draw-task-texts canvas image (+ x 27) (+ y 12) width)))
       (when (plusp (task-image-parts image))
         (draw-fold-mark canvas image x (+ y 4))))))
 
 ;;; The whole.
-
-(defun tree-title (image)
-  (format nil "~D plan~:P, ~D task~:P; as of tick ~D" (tree-image-plans image)
-          (tree-image-tasks image) (tree-image-tick image)))
 
 (defun unseen-text (image)
   "Return how many tasks of IMAGE are not among its rows, in words; NIL if all are."
@@ -134,7 +128,9 @@ to be seen."
   "Draw IMAGE, as IMAGE-OF-TASKS returns it, on CANVAS, WIDTH pixels wide, from TOP down. Return
 where it ends, in pixels."
   (let ((y (+ top 4)))
-    (write-at canvas 6 (+ y 11) (tree-title image))
+    (write-at canvas 6 (+ y 11)
+              (format nil "~D plan~:P, ~D task~:P; as of tick ~D" (tree-image-plans image)
+                      (tree-image-tasks image) (tree-image-tick image)))
     (incf y (+ 4 +line-height+))
     (dolist (row (tree-image-rows image)) (incf y (draw-task canvas row y width)))
     (let ((unseen (unseen-text image)))

@@ -83,14 +83,11 @@ MOST."
                   (loop for row in rows maximize (length (name-to-fit row most)))))
          least most))
 
-(defun row-name (row width)
-  "Return what ROW is called, as far as WIDTH pixels have room for it."
-  (fitted (name-to-fit row width) width))
-
 (defun draw-row (canvas row y scale)
   "Draw ROW with its upper edge at Y, its name left of SCALE."
   (with-subject (canvas (first (row-bars row)))
-    (write-at canvas 10 (+ y 11) (or (row-name row (max 80 (- (scale-left scale) 20))) "")))
+    (let ((width (max 80 (- (scale-left scale) 20))))
+      (write-at canvas 10 (+ y 11) (or (fitted (name-to-fit row width) width) ""))))
   (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
   (draw-lane canvas (mapcan (lambda (bar) (copy-list (bar-commands bar))) (row-bars row))
              (+ y +bar-height+ 1) scale)
@@ -131,31 +128,26 @@ MOST."
 (defconstant +title-size+ 13 "How high the font of the title is, in pixels.")
 (defconstant +title-line+ 17 "How far lines of the title are apart, in pixels.")
 
-(defun chart-width (page)
-  "Return how wide the ticks of PAGE together are, in pixels."
-  (clamp (* +tick-width+ (- (page-end page) (page-start page))) +least-chart+ +chart-width+))
-
 (defun title-lines (canvas page title width)
   "Return TITLE, or if it is NIL from when to when the ticks of PAGE are, as lines of WIDTH pixels."
   (lines-within (or title (format nil "Plans from tick ~D to ~D" (page-start page) (page-end page)))
                 width (character-width canvas +title-size+)))
-
-(defun draw-timeline-title (canvas lines)
-  (loop for line in lines for y from 16 by +title-line+
-        do (draw-words canvas draw-gcontext* 10 y line :size +title-size+ :bold-p t)))
 
 (defun draw-timeline (canvas bars most &optional title)
   "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows, below TITLE or, if it is NIL,
 from when to when they are. Return width and height in pixels."
   (let* ((page (make-page bars most)) (rows (page-rows page))
          (left (labels-width rows 120 +label-width+))
-         (scale (make-scale (page-start page) (page-end page) left (chart-width page)))
+         (scale (make-scale (page-start page) (page-end page) left
+                            (clamp (* +tick-width+ (- (page-end page) (page-start page)))
+                                   +least-chart+ +chart-width+)))
          (width (+ left (scale-width scale) 40))
          (lines (title-lines canvas page title (- width 20)))
          (top (+ 30 (draw-legend canvas (legend-for rows) 10 (+ 10 (* +title-line+ (length lines)))
                                  (- width 10))))
          (bottom (+ top (rows-height rows))))
-    (draw-timeline-title canvas lines)
+    (loop for line in lines for y from 16 by +title-line+
+          do (draw-words canvas draw-gcontext* 10 y line :size +title-size+ :bold-p t))
     (draw-axis canvas scale top bottom)
     (write-at canvas 10 (- top 10) "ticks" #x606060)
     (draw-rows canvas rows scale top)

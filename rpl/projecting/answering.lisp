@@ -4,7 +4,8 @@
 
 (defun charge-for-rollouts (projections question)
   "Let the plans that ask QUESTION, where their steps have a budget, pay for those of PROJECTIONS."
-  (count-steps (steps-of projections)
+  (count-steps (loop for projection in projections
+                     sum (reduce #'+ (projection-rollouts projection) :key #'rollout-steps))
                (interface-runner (wish-interface question))
                (wish-task question)))
 
@@ -36,11 +37,6 @@ they did, and why the first time."
     (tell-of-errors question projections)
     projections))
 
-(defun steps-of (projections)
-  "Return how many steps of plans count that PROJECTIONS took."
-  (loop for projection in projections
-        sum (reduce #'+ (projection-rollouts projection) :key #'rollout-steps)))
-
 ;;; Questions of plans.
 
 (defun answer-by-chance (question)
@@ -50,11 +46,6 @@ they did, and why the first time."
                   (roll-index (length (question-branches question))
                               (runner-dice (interface-runner (wish-interface question))))
                   (nothing-known question))))
-
-(defun tell-choice (question projections best)
-  "Tell who wants to know that of PROJECTIONS the one number BEST was chosen."
-  (when (option question :tell)
-    (call-user-code (option question :tell) "the function :TELL of a TRY-BEST" projections best)))
 
 (defun answer-by-rollouts (question)
   "Answer QUESTION, of a plan, by what rollouts tell. Return :LATER if nobody wants that any more."
@@ -68,7 +59,9 @@ they did, and why the first time."
           (t (charge-for-rollouts projections question)
              (if (question-branches question)
                  (let ((best (best-of projections)))
-                   (tell-choice question projections best)
+                   (when (option question :tell)
+                     (call-user-code (option question :tell) "the function :TELL of a TRY-BEST"
+                                     projections best))
                    (grant-wish question best))
                  (grant-wish question (first projections)))))))
 

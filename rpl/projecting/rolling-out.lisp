@@ -28,20 +28,7 @@ it writes is lost unless PRINT is true."
     (when (interface-p participant) (stop-trace (interface-runner participant))))
   moment)
 
-(defun twin-question (question interface)
-  "Return what QUESTION is for INTERFACE, of a fork."
-  (find-if (lambda (wish)
-             (and (question-p wish) (eq (question-token question) (question-token wish))))
-           (interface-wishes interface)))
-
 ;;; The rollout.
-
-(defun whose-end-counts (question)
-  "Return the task whose end is that of a rollout for QUESTION, a twin; NIL if it is what the asking
-task does next."
-  (cond ((question-subject question))
-        ((and (question-branches question) (not (eq :branch (option question :until))))
-         (task-top (wish-task question)))))
 
 (defun begin-rollout (question branch)
   "Let begin what QUESTION, of a fork, asks about: its BRANCH, if it has such. Return the task whose
@@ -54,9 +41,11 @@ end counts, or NIL: see NOTE-ENDED."
                               (grant-wish question (nothing-known question)))
                              (t (grant-wish question :do-it))))
                      interface)
-    (if (and (null task) (null (question-subject question)))
-        (begin-in interface (question-plan question) (question-arguments question) #'identity)
-        (whose-end-counts question))))
+    (cond ((question-subject question))
+          ((null task)
+           (begin-in interface (question-plan question) (question-arguments question) #'identity))
+          ((and (question-branches question) (not (eq :branch (option question :until))))
+           (task-top task)))))
 
 (defun nothing-known (question)
   "Return the projection without rollouts that PROJECT returns for QUESTION in a rollout."
@@ -72,7 +61,9 @@ SCENE, where that has ended in a fork of the scene's moment."
           (lambda ()
             (let* ((original (scene-question scene))
                    (interface (interface-of (interface-robot (wish-interface original)) fork))
-                   (question (twin-question original interface)))
+                   (question (find (question-token original)
+                                   (remove-if-not #'question-p (interface-wishes interface))
+                                   :key #'question-token)))
               (funcall then (run-rollout scene trial seed question interface
                                          (lambda ()
                                            (begin-rollout question (scene-branch scene))))))))

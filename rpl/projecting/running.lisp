@@ -31,11 +31,6 @@ counts; NIL if it has not."
 (defvar *asked* nil
   "The question of a plan that rollouts are run for, or NIL.")
 
-(defun check-wanted ()
-  "Throw to ABANDONED if the plan whose question is to be answered does not wait for that any more."
-  (when (and *asked* (unwanted-wish-p *asked*))
-    (throw 'abandoned nil)))
-
 (defun broken-off (condition &optional option)
   "Return what a rollout is that CONDITION broke off, an error of the function OPTION or of others:
 how it has ended, with which result, at no cost, and OPTION."
@@ -56,7 +51,9 @@ broke it off, if any."
              (task (funcall begin))
              (how (pass-until interface
                               (lambda ()
-                                (check-wanted)
+                                ;; The plan that asked may not wait for that any more.
+                                (when (and *asked* (unwanted-wish-p *asked*))
+                                  (throw 'abandoned nil))
                                 (or (funcall over) (end-of task question interface)))
                               last)))
         (with-cost question how (if task (task-result task) (question-result question))))

@@ -25,11 +25,6 @@ step."))
 
 (defparameter *longest-stack* 12 "How many expressions of a plan a break shows at most.")
 
-(defun write-break-variables (break stream)
-  (loop for (name value) in (frame-variables (plan-break-frame break))
-        repeat *longest-stack*
-        do (format stream "~%    ~(~A~) = ~A" name (form-text value 70))))
-
 (defun write-break (break stream)
   "Write to STREAM what BREAK is, the expressions under way, and the variables."
   (let ((task (plan-break-task break)))
@@ -38,7 +33,9 @@ step."))
     (loop for form in (plan-backtrace task (plan-break-frame break))
           repeat *longest-stack*
           do (format stream "~%    ~A" (form-text form 70)))
-    (write-break-variables break stream)))
+    (loop for (name value) in (frame-variables (plan-break-frame break))
+          repeat *longest-stack*
+          do (format stream "~%    ~(~A~) = ~A" name (form-text value 70)))))
 
 (defun enter-break (break)
   "Let somebody look at BREAK, if there is somebody; return when the plan is to go on."

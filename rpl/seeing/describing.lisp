@@ -36,13 +36,11 @@
     (format stream "  ")
     (write-valve valve stream)))
 
-(defun client-text (client)
-  (if (task-p client) (form-text client 70) nil))
-
 (defmethod describe-object ((fluent fluent) stream)
   (head fluent stream)
   (let ((sources (remove fluent (base-fluents fluent)))
-        (clients (remove nil (mapcar #'client-text (fluent-watchers fluent)))))
+        (clients (loop for client in (fluent-watchers fluent)
+                       when (task-p client) collect (form-text client 70))))
     (write-lines stream
                  "Name" (form-text (fluent-name fluent))
                  "Value" (handler-case (form-text (fluent-value fluent) 70)

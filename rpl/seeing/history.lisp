@@ -22,6 +22,14 @@
                trace)
       (reject-use "There was no task ~A in this trace." number)))
 
+(defun ancestry (number trace)
+  "Return the entries of TRACE for the starts of the task NUMBER and of those that it is part of,
+innermost first. Signals MISUSE."
+  (loop for each = number then (trace-entry-value start)
+        while each
+        for start = (start-of each trace)
+        collect start))
+
 (defun family (number trace)
   "Return a predicate of numbers: those of the task NUMBER of TRACE and of all its parts."
   (let ((members (make-hash-table)))
@@ -92,7 +100,6 @@ TRACE-OF."
   "Return a list of TASK, a task or its number, and those that it is part of, up to the plan
 itself: for each a list of its number, its name or NIL, and its expression. See TRACE-OF."
   (multiple-value-bind (trace number) (trace-to-read task runner)
-    (loop for each = number then (trace-entry-value start)
-          while each
-          for start = (start-of each trace)
-          collect (list each (trace-entry-subject start) (trace-entry-form start)))))
+    (loop for start in (ancestry number trace)
+          collect (list (trace-entry-task start) (trace-entry-subject start)
+                        (trace-entry-form start)))))

@@ -59,39 +59,27 @@ first; of many the innermost."
 
 ;;; A task.
 
-(defun stepped-p (task)
-  "True if somebody goes through TASK itself expression by expression."
-  (and (find task (courses-of (task-runner task)) :key #'course-task) t))
-
 (defun look-of (task)
   "Return how TASK is, as a keyword."
   (cond ((evaporating-p task) (if (task-cleaning task) :cleaning :ending))
         ((blocked-p task) :blocked)
         ((task-cleaning task) :cleaning)
-        ((stepped-p task) :stepped)
+        ((find task (courses-of (task-runner task)) :key #'course-task) :stepped)
         ((eq :waiting (task-state task)) :waiting)
         (t :running)))
 
-(defun count-parts (task)
-  (loop for part = (task-newest-child task) then (task-older part)
-        while part count t))
-
 (defconstant +most-calls+ 10 "How many calls of plans an image of a task shows at most.")
-
-(defun call-texts (task)
-  "Return the calls of plans that TASK is in the middle of, as texts, outermost first."
-  (let ((calls (calls-in (task-stack task))))
-    (loop for call in (last calls +most-calls+) collect (form-text call 100))))
 
 (defun image-of-task (task depth folded-p)
   (make-task-image :serial (task-serial task) :depth depth
                    :look (look-of task) :state (task-state-text task)
                    :name (and (task-name task) (task-label task))
                    :form (form-text (task-form task) 100)
-                   :calls (call-texts task)
+                   :calls (loop for call in (last (calls-in (task-stack task)) +most-calls+)
+                                collect (form-text call 100))
                    :awaits (task-awaits task) :since (task-since task)
                    :path (task-path task)
-                   :parts (count-parts task) :folded-p folded-p))
+                   :parts (length (task-children task)) :folded-p folded-p))
 
 ;;; The tree.
 

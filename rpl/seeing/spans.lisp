@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.seeing)
 
 (export '(bar bar-call-p bar-commands bar-depth bar-end bar-failure bar-form bar-label
-          whole-bar-label bar-name bar-outcome bar-parts bar-serial bar-spans bar-start bars span
+          bar-name bar-outcome bar-parts bar-serial bar-spans bar-start bars span
           span-error span-end span-kind span-start span-text))
 
 (defstruct (span (:constructor make-span (kind start text &optional end)) (:copier nil))
@@ -56,20 +56,12 @@ of a procedure within the task, as far as commands were issued in it."
   bar-call-p "True if the bar is of a call of a procedure, within a task."
   bar-parts "Return the bars of the tasks that the task consisted of, oldest first.")
 
-(defun label-with (text bar)
-  "Return what says which task BAR is of, or which call within a task; an expression is told as the
-function TEXT has it."
+(defun bar-label (bar &optional (text #'form-text))
+  "Return what says which task BAR is of, or which call within a task: a short text, unless the
+function TEXT makes another of an expression."
   (cond ((bar-call-p bar) (funcall text (bar-form bar)))
         ((bar-name bar) (format nil "~D ~(~A~)" (bar-serial bar) (bar-name bar)))
         (t (format nil "~D ~A" (bar-serial bar) (funcall text (bar-form bar))))))
-
-(defun bar-label (bar)
-  "Return a short text that says which task BAR is of, or which call within a task."
-  (label-with #'form-text bar))
-
-(defun whole-bar-label (bar)
-  "Return a text that says which task BAR is of, or which call within a task, and is not cut."
-  (label-with #'whole-form-text bar))
 
 ;;; From entries to bars.
 

@@ -47,8 +47,3 @@ variable; or NIL."
              (mapcan (lambda (frame) (copy-list (valves-in (frame-data frame))))
                      (frame-chain (task-frame task))))
      :from-end t)))
-
-(defun valves-in-use (which)
-  "Return the valves that the tasks of WHICH have or wait for."
-  (remove-duplicates (loop for task in (all-tasks which) append (valves-of task))
-                     :from-end t))

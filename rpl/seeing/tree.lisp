@@ -2,22 +2,13 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(defun write-variables (variables column stream)
-  (loop for (name value) in variables
-        do (format stream "~V@T~(~A~) = ~A~%" column name (form-text value 70))))
-
 (defun write-stack (task column stream)
   "Write to STREAM the expressions that TASK is at, innermost first, and its variables."
   (loop for (form . variables) in (stack-entries task)
         for head = "at " then "in "
         do (format stream "~V@T~A~A~%" column head (form-text form 70))
-           (write-variables variables (+ column 5) stream)))
-
-(defun write-whole-tree (task depth stream)
-  (write-task-line task depth stream)
-  (write-stack task (+ 4 (* 2 depth)) stream)
-  (dolist (child (task-children task))
-    (write-whole-tree child (1+ depth) stream)))
+           (loop for (name value) in variables
+                 do (format stream "~V@T~(~A~) = ~A~%" (+ column 5) name (form-text value 70)))))
 
 (defun write-valve (valve stream)
   "Write on a line to STREAM who has VALVE and who queues for it."
@@ -36,8 +27,7 @@ values; and the valves that they have or want."
                   "a task, as begin-plan returns, or a plan runner")
   (let ((which (or which (runner-to-see))))
     (dolist (task (if (task-p which) (list which) (plan-runner-tasks which)))
-      (if all
-          (write-whole-tree task 0 stream)
-          (write-task-tree task 0 stream)))
+      (write-task-tree task 0 stream (and all #'write-stack)))
     (when all
-      (dolist (valve (valves-in-use which)) (write-valve valve stream)))))
+      (dolist (valve (remove-duplicates (mapcan #'valves-of (all-tasks which)) :from-end t))
+        (write-valve valve stream)))))

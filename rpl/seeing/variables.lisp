@@ -19,14 +19,10 @@ tasks that it is part of. Each call of a plan has one of its own. () when it is 
 
 ;;; Variables.
 
-(defun outer-environment (environment)
-  (and (plusp (length environment)) (svref environment 0)))
-
 (defun environments (environment)
   "Return ENVIRONMENT and those around it, innermost first."
-  (loop for each = environment then (outer-environment each)
-        while each
-        when (plusp (length each)) collect each))
+  (loop for each = environment then (svref each 0)
+        while (plusp (length each)) collect each))
 
 (defun frame-names (frame)
   "Return the names for the environment of FRAME: a list for each level."
@@ -64,12 +60,6 @@ LET*, the last is in force."
                   collect (list (form-text name) (form-text value 30)))
             (form-text (node-form (frame-node frame)) 40))))
 
-(defun known-environments (task)
-  "Return the environments that TASK has from the task that it is part of."
-  (let* ((parent (task-parent task))
-         (frame (and parent (task-frame parent))))
-    (and frame (environments (frame-environment frame)))))
-
 (defun visible-variables (frames)
   "Return a table: for each environment of FRAMES, the innermost first, the variables in it that are
 in force where the innermost frame is that sees it."
@@ -83,8 +73,11 @@ in force where the innermost frame is that sees it."
   "Return what TASK is at, innermost first: a list of lists (form variable...), each variable, a
 list (name value), with the outermost expression that sees it."
   (let ((visible (visible-variables (frame-chain (task-frame task))))
-        (known (known-environments task))
+        (around (and (task-parent task) (task-frame (task-parent task))))
+        (known '())
         (entries '()))
+    ;; What it has from the task that it is part of.
+    (when around (setf known (environments (frame-environment around))))
     (dolist (frames (reverse (frame-runs (task-frame task))) entries)
       (let ((new (set-difference (environments (frame-environment (first frames))) known)))
         (setf known (append new known))

@@ -19,14 +19,12 @@
 
 (defun blocked-then-p (number index trace)
   "True if the task NUMBER, or one that it is part of, was blocked at entry INDEX of TRACE."
-  (loop for each = number then (trace-entry-value (start-of each trace))
-        while each
-        thereis (let ((last (find-if (lambda (entry)
-                                       (and (= each (trace-entry-task entry))
-                                            (member (trace-entry-event entry)
-                                                    '(:block :unblock))))
-                                     trace :from-end t :end index)))
-                  (and last (eq :block (trace-entry-event last))))))
+  (loop for start in (ancestry number trace)
+        for last = (find-if (lambda (entry)
+                              (and (= (trace-entry-task start) (trace-entry-task entry))
+                                   (member (trace-entry-event entry) '(:block :unblock))))
+                            trace :from-end t :end index)
+        thereis (and last (eq :block (trace-entry-event last)))))
 
 (defun earlier (trace index test)
   "Return the last entry of TRACE before INDEX, in the same tick, of which TEST is true, or NIL."
@@ -35,11 +33,6 @@
         for entry = (aref trace i)
         while (= tick (trace-entry-tick entry))
         when (funcall test entry) return entry))
-
-(defun changed-p (entry fluent)
-  "True if ENTRY is of a change of FLUENT, or of what that is computed from."
-  (and (member (trace-entry-event entry) '(:set :pulse))
-       (depends-p fluent (trace-entry-subject entry))))
 
 (defun part-ended-p (entry number trace)
   "True if ENTRY is the end of a part of the task NUMBER."
@@ -80,7 +73,10 @@
 ;;; Because of what.
 
 (defun fluent-reason (fluent index trace)
-  (let ((change (earlier trace index (lambda (entry) (changed-p entry fluent)))))
+  (let ((change (earlier trace index
+                         (lambda (entry)
+                           (and (member (trace-entry-event entry) '(:set :pulse))
+                                (depends-p fluent (trace-entry-subject entry)))))))
     (if change
         (change-words change trace)
         (format nil "~A came true" (fluent-text fluent)))))
@@ -153,19 +149,14 @@
       (:block (format nil "was blocked by ~A" (agent-words (trace-entry-agent entry) trace)))
       (:unblock "was blocked no longer"))))
 
-(defun deciding-part (number start end trace)
-  "Return the entry of TRACE, between the indices START and END, for the first part of the task
-NUMBER that succeeded or failed, or NIL."
-  (find-if (lambda (entry)
-             (and (member (trace-entry-event entry) '(:succeed :fail))
-                  (part-ended-p entry number trace)))
-           trace :start start :end end))
-
 ;; A construct that is decided while some parts are still to evaporate ends without a wake-up.
 (defun decision-sentence (entry start end trace)
   "Return how it came that the wait for parts of ENTRY, number START of TRACE, was over before
 number END, if by no wake-up; or NIL."
-  (let ((part (deciding-part (trace-entry-task entry) start end trace)))
+  (let ((part (find-if (lambda (end)
+                         (and (member (trace-entry-event end) '(:succeed :fail))
+                              (part-ended-p end (trace-entry-task entry) trace)))
+                       trace :start start :end end)))
     (and part
          (format nil "At tick ~D it was done with ~A, because ~A." (trace-entry-tick part)
                  (quoted (trace-entry-form entry)) (part-words part trace)))))
@@ -186,9 +177,9 @@ number END, if by no wake-up; or NIL."
                        since index)))
     (remove nil sentences)))
 
-(defun start-sentence (number trace)
-  (let* ((start (start-of number trace))
-         (parent (trace-entry-value start)))
+(defun start-sentence (start trace)
+  "Return how the task was started that START, an entry of TRACE, is of."
+  (let ((number (trace-entry-task start)) (parent (trace-entry-value start)))
     (if parent
         (format nil "Task ~D, ~A, was started at tick ~D as a part of task ~D, ~A."
                 number (task-words number trace) (trace-entry-tick start) parent
@@ -196,12 +187,6 @@ number END, if by no wake-up; or NIL."
         (format nil "Task ~D is the plan ~A, started at tick ~D by ~A."
                 number (task-words number trace) (trace-entry-tick start)
                 (agent-words (trace-entry-agent start) trace)))))
-
-(defun start-sentences (number trace)
-  "Return how the task NUMBER, the one that it is part of and so on were started."
-  (loop for each = number then (trace-entry-value (start-of each trace))
-        while each
-        collect (start-sentence each trace)))
 
 (defun shortened (sentences)
   (let ((more (- (length sentences) *longest-chain*)))
@@ -225,7 +210,7 @@ not NIL, has the tasks that are meant.")
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (start-of number trace)             ; or there is none
     (append (shortened (own-sentences number trace))
-            (start-sentences number trace))))
+            (loop for start in (ancestry number trace) collect (start-sentence start trace)))))
 
 (defmethod reasons ((task task) runner)
   (task-reasons task runner))

@@ -23,11 +23,13 @@
           (and (task-name task) (task-label task)) (form-text (task-form task)) (task-awaits task)
           (and (task-awaits task) (task-since task))))
 
-(defun write-task-tree (task depth stream)
-  "Write TASK and its parts to STREAM, on a line each."
+(defun write-task-tree (task depth stream &optional write-more)
+  "Write TASK and its parts to STREAM, on a line each. WRITE-MORE, if given, is called with each of
+them, a column and STREAM."
   (write-task-line task depth stream)
+  (when write-more (funcall write-more task (+ 4 (* 2 depth)) stream))
   (dolist (child (task-children task))
-    (write-task-tree child (1+ depth) stream)))
+    (write-task-tree child (1+ depth) stream write-more)))
 
 ;;; Failures.
 
