@@ -16,7 +16,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:import-from :ars-magna.rpl
                 #:task-p #:task-name #:task-parent #:task-serial #:task-state #:task-result
                 #:task-over-p #:plan-failure #:failure-class #:failure-data
-                #:report-failure #:*plan-end-hooks* #:plan-deadlocked-p #:post-call
+                #:report-failure #:*plan-end-hooks* #:plan-deadlocked-p
                 #:stop-plan
                 #:find-procedure #:all-procedures #:called-procedures #:procedure-name
                 #:procedure-lambda-list #:print-tasks #:task-numbered

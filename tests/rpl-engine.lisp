@@ -24,7 +24,7 @@
       (is (eq :waiting (rpl:task-state task)))
       (is (rpl:idle-p runner))
       (is (equal (list task) (rpl:plan-runner-tasks runner)))
-      (rpl:post-batch runner `((:set ,f :go)))
+      (rpl:post runner `((:set ,f :go)))
       (is (not (rpl:idle-p runner)))
       (is (rpl:apply-next-batch runner))
       (is (not (rpl:apply-next-batch runner)))
@@ -37,7 +37,7 @@
   "Posts are applied between reactions, when the task has reached its wait."
   (with-runner (runner)
     (let* ((moved (fluent)) (heard 0)
-           (command (lambda () (rpl:post-batch runner `((:pulse ,moved))))))
+           (command (lambda () (rpl:post runner `((:pulse ,moved))))))
       (rpl:start-plan runner (rpl:interp-lambda ()
                                (rpl:n-times 300
                                  (funcall command)
@@ -70,12 +70,6 @@
                                   (rpl:plan-time))
                                 :runner (rpl:make-plan-runner :ticks-per-second 10)))))
 
-(test on-tick.is-called-when-time-has-passed
-  (let ((ticks '()))
-    (rpl:run-plan-alone (rpl:interp-lambda () (rpl:wait-time 2) (rpl:wait-time 3))
-                        :runner (rpl:make-plan-runner :on-tick (lambda (tick) (push tick ticks))))
-    (is (equal '(5 2) ticks))))
-
 (test timers.cancelled-ones-leave-at-once
   (with-runner (runner)
     (let ((f (fluent)))
@@ -107,7 +101,7 @@
 
 ;;; Posting from threads.
 
-(test post-batch.from-many-threads-loses-nothing
+(test post.from-many-threads-loses-nothing
   (with-runner (runner)
     (let* ((posts 500)
            (fluents (loop repeat 4 collect (fluent)))
@@ -118,7 +112,7 @@
                                     (base:start-thread
                                      (lambda ()
                                        (dotimes (i posts)
-                                         (rpl:post-batch runner `((:set ,f ,(1+ i))))
+                                         (rpl:post runner `((:set ,f ,(1+ i))))
                                          (base:signal-semaphore posted)))
                                      "poster")))))
       (rpl:start-plan runner (rpl:interp-lambda ()
@@ -137,17 +131,17 @@
       (is (equal (list posts posts posts posts) heard))
       (is (null (rpl:plan-runner-tasks runner))))))
 
-(test post-batch.keeps-the-order-of-posting
+(test post.keeps-the-order-of-posting
   (with-runner (runner)
     (let ((f (fluent)) (seen '()))
-      (dotimes (i 10) (rpl:post-batch runner `((:set ,f ,i))))
+      (dotimes (i 10) (rpl:post runner `((:set ,f ,i))))
       (loop while (rpl:apply-next-batch runner) do (push (rpl:fluent-value f) seen))
       (is (equal '(0 1 2 3 4 5 6 7 8 9) (reverse seen))))))
 
-(test post-batch.trouble-in-it-becomes-a-message
+(test post.trouble-in-it-becomes-a-message
   (with-runner (runner)
-    (rpl:post-batch runner '((:set 3 4)))
-    (rpl:post-call runner (lambda () (error "oops")))
+    (rpl:post runner '((:set 3 4)))
+    (rpl:post runner (lambda () (error "oops")))
     (is (rpl:apply-next-batch runner))
     (is (rpl:apply-next-batch runner))
     (is (= 2 (length (base:take-messages))))))

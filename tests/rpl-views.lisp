@@ -128,8 +128,8 @@ HOW says: of a fluent that is pulsed twice before, then set and pulsed four time
                                  (loop (rpl:wait-for view)
                                        (push (rpl:plan-time) heard)))))
       (rpl:react runner)
-      (rpl:post-batch runner `((:set ,f 1) (:pulse ,f)))
-      (rpl:post-batch runner `((:pulse ,f)))
+      (rpl:post runner `((:set ,f 1) (:pulse ,f)))
+      (rpl:post runner `((:pulse ,f)))
       (loop while (rpl:apply-next-batch runner) do (rpl:react runner))
       (is (= 2 (length heard)) "What happens at one instant is one thing."))))
 

@@ -172,7 +172,7 @@ answer to the last such question."
       (tell-stuck errand)
       (when (session-patient-p (plan-errand-session errand))
         (stop-plan runner (plan-errand-task errand))))
-    (post-call runner (lambda () (note-if-stuck errand runner)))
+    (ars-magna.rpl:post runner (lambda () (note-if-stuck errand runner)))
     stuck))
 
 (defun watch-plan (errand runner)

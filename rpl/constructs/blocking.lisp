@@ -2,12 +2,15 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-(defun checked-target (target task)
-  "Return TARGET, which TASK wants to block. Signals WRONG-ARGUMENT and MISUSE."
-  (check-argument with-task-blocked target (task-p target) "a task, such as the name of a :tag")
+(defun checked-target (target task operator what)
+  "Return TARGET, another task for which TASK does OPERATOR: WHAT says it in words. Signals
+WRONG-ARGUMENT and MISUSE."
+  (unless (task-p target)
+    (reject-argument operator 'target target "a task, such as the name of a :tag"))
   (check-together task target)
   (when (part-of-p task target)
-    (reject-use "~A would block itself: it is part of ~A." (task-label task) (task-label target)))
+    (reject-use "~A would ~A itself: it is part of ~A." (task-label task) what
+                (task-label target)))
   target)
 
 (define-construct with-task-blocked (task &body body)
@@ -20,7 +23,8 @@ status is :blocked meanwhile (CRAM's, of 2009)."
   (:steps
    (begin
     (next inside)
-    (setf memory (checked-target (funcall target environment) task))
+    (setf memory (checked-target (funcall target environment) task
+                                 'with-task-blocked "block"))
     (block-task memory (eq status :suspended))
     (enter body environment frame))
    (inside

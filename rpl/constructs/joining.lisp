@@ -6,15 +6,6 @@
   "True if STATUS, of a task, is one that lasts."
   (and (member status '(:succeeded :failed :evaporated)) t))
 
-(defun checked-other (target task)
-  "Return TARGET, which TASK wants to wait for. Signals WRONG-ARGUMENT and MISUSE."
-  (check-argument join-task target (task-p target) "a task, such as the name of a :tag")
-  (check-together task target)
-  (when (part-of-p task target)
-    (reject-use "~A would wait for itself: it is part of ~A." (task-label task)
-                (task-label target)))
-  target)
-
 (defun pass-on-outcome (target task frame)
   "Let TASK at FRAME go on as TARGET ended. Return what a step returns."
   (let ((result (task-result target)))
@@ -57,7 +48,7 @@ Of a task that evaporated or was left, return NIL (CRAM's; the last is ours)."
   (:parts (target function (value-lambda task scope)))
   (:steps
    (begin
-    (let ((target (checked-other (funcall target environment) task)))
+    (let ((target (checked-target (funcall target environment) task 'join-task "wait for")))
       (cond ((task-over-p target) (pass-on-outcome target task frame))
             (t (next over)
                (setf memory target)

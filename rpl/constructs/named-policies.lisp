@@ -72,9 +72,6 @@ does not take these."
                        (format nil "~A, not ~A" (shape-text parameters) trouble)))
     (make-policy-use policy arguments)))
 
-(defun clause-arguments (use)
-  (cons use (use-arguments use)))
-
 (defun remembered (use name) (getf (use-memory use) name))
 
 (defun remember (use name value)
@@ -188,7 +185,7 @@ the variables around it. (CRAM's, where it takes a name.)"
   (with-gensyms (use over met value refused)
     (flet ((clause (reader)
              `(if (,reader (use-policy ,use))
-                  (apply-plan (,reader (use-policy ,use)) (clause-arguments ,use)))))
+                  (apply-plan (,reader (use-policy ,use)) (cons ,use (use-arguments ,use))))))
       `(let ((,use (begin-use ,policy (list ,@arguments)))
              (,met nil) (,value nil) (,refused nil))
          (evap-protect
@@ -249,4 +246,4 @@ force: the first comes into force first and takes precedence over those after it
 
 (define-construct with-named-policies (policies &body body)
   "Do as WITH-POLICIES. (CRAM's.)"
-  (:code (plan-code (note-expansion (policies-text policies body form) form) scope)))
+  (:like with-policies))

@@ -25,10 +25,6 @@ meanwhile."
   (park task (start-timer task ticks))
   +parked+)
 
-(defun stop-thinking (task alone)
-  "Let others go on: TASK, which kept them from that if ALONE is true, thinks no more."
-  (when alone (stand-no-longer (task-runner task))))
-
 (defun takes-time-p (task ticks)
   "True if TASK has to think for TICKS."
   (and (runner-charged-p (task-runner task)) (plusp ticks)))
@@ -52,7 +48,8 @@ hear later of what happens. Return NIL. Signals WRONG-ARGUMENT (ours; manual 1.2
           (values (frame-up frame) nil))))
    (thinking (values (frame-up frame) nil)))
   (:unwind
-   (when (in-state-p thinking) (stop-thinking task memory))
+   ;; Others may go on.
+   (when (and memory (in-state-p thinking)) (stand-no-longer (task-runner task)))
    nil))
 
 ;;; What has a price. Its steps are not charged for, and its end, well or not, comes when it is due.
@@ -117,7 +114,7 @@ once. Signals WRONG-ARGUMENT (ours; manual 1.2)."
    (thinking (end-thought memory task frame)))
   (:unwind
    (cond ((in-state-p thinking)
-          (stop-thinking task (thought-alone memory))
+          (when (thought-alone memory) (stand-no-longer (task-runner task)))
           nil)
          ((and (in-state-p inside) (not (eq signal :evaporate)) (plusp (ticks-left memory task)))
           (next thinking)

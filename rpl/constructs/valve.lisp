@@ -82,16 +82,12 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
   (let ((claims (valve-claims (here valve))))
     (and claims (claim-task (first claims)))))
 
-(defun claims-in-line (line)
-  (loop for turn = (line-first-turn line) then (turn-next turn)
-        while turn collect (turn-claim turn)))
-
 (defun valve-requests (valve)
   "Return the tasks that wait for VALVE, the next to have it first."
   (let ((tasks '()))
     (some-line (lambda (line)
-                 (dolist (claim (claims-in-line line)) (push (claim-task claim) tasks))
-                 nil)
+                 (loop for turn = (line-first-turn line) then (turn-next turn)
+                       while turn do (push (claim-task (turn-claim turn)) tasks)))
                (valve-lines (here valve)))
     (nreverse tasks)))
 
@@ -105,22 +101,15 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 (defun holders (valve)
   "Return the claims that hold VALVE: that of its owner, and those of tasks that this is part of,
 innermost first."
-  (loop for claim = (first (valve-claims valve)) then (outer-claim valve claim)
+  (loop for claim = (first (valve-claims valve)) then (cdr (assoc valve (claim-outer claim)))
         while claim
         when (member valve (claim-taken claim) :test #'eq) collect claim))
 
-(defun outer-claim (valve claim)
-  "Return the claim that held VALVE around CLAIM when that was granted, or NIL."
-  (cdr (assoc valve (claim-outer claim) :test #'eq)))
-
-(defun lost-claims (valve)
-  "Return the claims that have lost VALVE, that which is to have it next first."
-  (let ((holders (holders valve)))
-    (remove-if (lambda (claim) (member claim holders)) (valve-claims valve))))
-
 (defun valve-losers (valve)
   "Return the tasks from which VALVE was taken and which are to have it back, the next first."
-  (mapcar #'claim-task (lost-claims (here valve))))
+  (let* ((valve (here valve)) (holders (holders valve)))
+    (mapcar #'claim-task
+            (remove-if (lambda (claim) (member claim holders)) (valve-claims valve)))))
 
 (defun valve-text (valve)
   "Return the name of VALVE as text."

@@ -27,9 +27,6 @@ parts begun; its memory is the environment to be."
          (enter (the node (svref parts i)) (if sequential inner environment) frame)
          (enter-last body inner frame)))))
 
-(defun binding-variable (binding) (if (consp binding) (first binding) binding))
-(defun binding-value (binding) (if (consp binding) (second binding) nil))
-
 (defun binds-special-p (variables body scope)
   "True if a form that binds VARIABLES around BODY binds one of them as a special variable."
   (or (declared-special variables body)
@@ -64,8 +61,9 @@ parts begun; its memory is the environment to be."
 (defun binding-code (form bindings body scope sequential)
   "Return code for FORM, a LET or, if SEQUENTIAL, a LET*."
   (let* ((bindings (untyped-bindings bindings (operator-text form)))
-         (variables (mapcar #'binding-variable bindings))
-         (values (mapcar #'binding-value bindings))
+         (variables (loop for binding in bindings
+                          collect (if (consp binding) (first binding) binding)))
+         (values (loop for binding in bindings collect (second (ensure-list binding))))
          (single (single-scope scope))
          (scopes (loop for i from 0 below (length bindings)
                        collect (if sequential

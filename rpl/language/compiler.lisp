@@ -97,12 +97,10 @@ do not wait."))
 (defun plan-code (form scope)
   "Return code that builds the node for FORM."
   (let ((*form-at-hand* (if (in-source-p form) form *form-at-hand*)))
-    (keep-place (node-code form scope) form)))
-
-(defun node-code (form scope)
-  (if (not (or (suspends-p form scope) (binds-fluents-p form scope)))
-      (leaf-code form scope)
-      (naming-code (waiting-code form scope) scope)))
+    (keep-place (if (or (suspends-p form scope) (binds-fluents-p form scope))
+                    (naming-code (waiting-code form scope) scope)
+                    (leaf-code form scope))
+                form)))
 
 (defun naming-code (code scope)
   "Return CODE, which builds a node that runs in the environment of SCOPE, so that the node knows

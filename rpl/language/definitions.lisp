@@ -38,13 +38,8 @@
                (declaim (ftype function ,name)))
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope)
-                                ,(stub-lambda name)
+                                (lambda (&rest arguments) (reject-lisp-call ',name arguments))
                                 ',(source-here) '(def-interp-proc ,@form))))))))
-
-(defun stub-lambda (name)
-  "Return the lambda expression for what Lisp code gets that calls the plan procedure NAME."
-  `(lambda (&rest arguments)
-     (reject-lisp-call ',name arguments)))
 
 (defun check-plan-name (definition name)
   "Signal MALFORMED-DEFINITION unless NAME, of DEFINITION, is a symbol that users can define."

@@ -23,15 +23,11 @@
   (or (position name names)
       (reject-name "state" name names)))
 
-(defun part-reader (name part)
-  "Return the name of the function that reads PART, (part type ...), of a node called NAME."
-  (symbolicate name '- (first part)))
-
 (defun with-node-form (name clauses forms)
   "Return a form that runs FORMS with what CLAUSES say of the node called NAME at hand."
   (let ((states (mapcar #'first (clause :steps clauses))))
     `(symbol-macrolet (,@(loop for part in (clause :parts clauses)
-                               collect `(,(first part) (,(part-reader name part) node)))
+                               collect `(,(first part) (,(symbolicate name '- (first part)) node)))
                        (environment (frame-environment frame))
                        (memory (frame-data frame)))
        (macrolet ((next (state)

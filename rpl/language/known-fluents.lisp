@@ -16,13 +16,6 @@
   "Return the name of the kind of part if FORM is a variable of a vector of fluents, or NIL."
   (and (symbolp form) (known-vector-variable-p form)))
 
-(defun element-of-vector-p (form)
-  "True if FORM is one of the fluents in a variable such as CAMERA-MOVED*."
-  (and (consp form)
-       (symbolp (first form))
-       (member (first form) '("VREF" "AREF" "SVREF" "ELT") :test #'string=)
-       (vector-variable (second form))))
-
 (defun known-fluent-p (form environment)
   "True if FORM, in ENVIRONMENT, is known to be a fluent."
   (cond ((null form) nil)
@@ -30,7 +23,9 @@
          (or (known-fluent-variable-p form)
              (and (member form *fluents-here*) (not (bound-in-walk-p form environment)))))
         ((atom form) nil)
-        ((element-of-vector-p form))
+        ((and (symbolp (first form))
+              (member (first form) '("VREF" "AREF" "SVREF" "ELT") :test #'string=)
+              (vector-variable (second form))))
         ((operator-in-p form *makers-of-fluents*))
         ((and (own-text-p form) (operator-in-p form *lifted-operators*))
          (some (lambda (argument) (known-fluent-p argument environment)) (rest form)))))
@@ -112,7 +107,7 @@ one."
 
 (defun argument-types (name count)
   "Return the types of the first arguments, COUNT at most, that the function NAME takes in order."
-  (let ((mode nil) (types '()))
+  (let ((types '()))
     (loop for (part . more) on (function-arguments name)
           while (< (length types) count)
           do (case part
@@ -120,7 +115,7 @@ one."
                (&rest (return (append (nreverse types) (list (first more)))))
                ((&key &allow-other-keys) (return (nreverse types)))
                (t (push part types)))
-          finally (return (values (nreverse types) mode)))))
+          finally (return (nreverse types)))))
 
 (defun misplaced-fluent (form environment)
   "Return the argument of FORM, a call, that is a fluent where the function can take none, or NIL."
@@ -201,13 +196,11 @@ one."
 
 (defun assigned-p (variable forms)
   "True if VARIABLE may get another value in FORMS."
-  (loop for tail = forms then (rest tail)
-        while (consp tail)
-        thereis (let ((form (first tail)))
-                  (and (consp form)
-                       (or (and (operator-in-p form *assigning-operators*)
-                                (mentions-p variable (rest form)))
-                           (assigned-p variable form))))))
+  (map-calls (lambda (call)
+               (when (and (operator-in-p call *assigning-operators*)
+                          (mentions-p variable (rest call)))
+                 (return-from assigned-p t)))
+             forms))
 
 (defun bound-to-fluents (bindings body scope sequential)
   "Return the variables that BINDINGS, of a LET or if SEQUENTIAL a LET* around BODY, bind to known

@@ -75,11 +75,11 @@
       form))
 
 (defun loop-meaning (forms environment)
-  (cond ((keyword-test forms "UNTIL")
-         `(loop (when ,(condition-form (second forms) environment) (return)) ,@(cddr forms)))
-        ((keyword-test forms "WHILE")
-         `(loop (unless ,(condition-form (second forms) environment) (return)) ,@(cddr forms)))
-        (t `(loop ,@forms))))
+  (let ((end (cond ((keyword-test forms "UNTIL") 'when)
+                   ((keyword-test forms "WHILE") 'unless))))
+    (if end
+        `(loop (,end ,(condition-form (second forms) environment) (return)) ,@(cddr forms))
+        `(loop ,@forms))))
 
 (defparameter *tests-in-loops*
   '("WHILE" "UNTIL" "WHEN" "IF" "UNLESS" "ALWAYS" "NEVER" "THEREIS")

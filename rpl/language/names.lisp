@@ -28,21 +28,23 @@ variables in ENVIRONMENT."
 
 (defun parameters-trouble (parameters environment)
   "Return in words why PARAMETERS, without types, are no ordinary lambda list, or NIL."
-  (handler-case (parse-ordinary-lambda-list parameters :normalize nil)
-    (error () (return-from parameters-trouble
-                (or (loop for parameter in parameters
-                          for trouble = (and (not (member parameter lambda-list-keywords))
-                                             (atom parameter)
-                                             (variable-trouble parameter environment))
-                          when trouble return (format nil "~(~S~) ~A" parameter trouble))
-                    "this is none"))))
-  (let* ((variables (lambda-list-variables parameters))
-         (twice (find-if (lambda (variable) (< 1 (count variable variables))) variables)))
-    (cond (twice (format nil "~(~S~) is there twice" twice))
-          ((equal '(&rest) (last parameters)) "a variable comes after &rest")
-          (t (loop for variable in variables
-                   for trouble = (variable-trouble variable environment)
-                   when trouble return (format nil "~(~S~) ~A" variable trouble))))))
+  (flet ((first-trouble (names)
+           (loop for name in names
+                 for trouble = (variable-trouble name environment)
+                 when trouble return (format nil "~(~S~) ~A" name trouble))))
+    (handler-case (parse-ordinary-lambda-list parameters :normalize nil)
+      (error ()
+        (return-from parameters-trouble
+          (or (first-trouble (remove-if (lambda (parameter)
+                                      (or (consp parameter)
+                                          (member parameter lambda-list-keywords)))
+                                    parameters))
+              "this is none"))))
+    (let* ((variables (lambda-list-variables parameters))
+           (twice (find-if (lambda (variable) (< 1 (count variable variables))) variables)))
+      (cond (twice (format nil "~(~S~) is there twice" twice))
+            ((equal '(&rest) (last parameters)) "a variable comes after &rest")
+            (t (first-trouble variables))))))
 
 (defun forgotten-parameters-text (parameters environment)
   "Return in a sentence that PARAMETERS are a form of the body, if they are like one; or NIL."

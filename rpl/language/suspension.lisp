@@ -99,14 +99,12 @@ LAMBDA."
 
 ;;; The macro of the library iterate expands all that is in its forms, as Lisp.
 
-(defun waiting-call-in (forms environment)
-  "Return a call in FORMS, or in what is in them, that makes a task wait; or NIL."
-  (loop for tail = forms then (rest tail)
-        while (consp tail)
-        thereis (let ((form (first tail)))
-                  (cond ((or (atom form) (eq 'quote (first form))) nil)
-                        ((and (symbolp (first form)) (waits-p form environment)) form)
-                        (t (waiting-call-in form environment))))))
+(defun waiting-call-in (form environment)
+  "Return a call in FORM, or in what is in it, that makes a task wait; or NIL."
+  (map-calls (lambda (call)
+               (when (and (symbolp (first call)) (waits-p call environment))
+                 (return-from waiting-call-in call)))
+             form))
 
 (defun waits-p (form environment)
   "True if FORM is a call of a construct that makes a task wait, or of a plan procedure."
@@ -137,7 +135,9 @@ LAMBDA."
                      (t (check-own-form form environment)
                         (visit-call form environment (find-plan-form form environment)))))
              (visit-call (form environment plan-form)
-               (let* ((inner (and (of-iterate-p form) (waiting-call-in (rest form) environment)))
+               (let* ((inner (and (of-iterate-p form)
+                                  (some (lambda (part) (waiting-call-in part environment))
+                                        (rest form))))
                       (kind (cond (inner :must)
                                   ((and plan-form (plan-form-suspends plan-form)))
                                   (t (call-suspends form scope environment)))))

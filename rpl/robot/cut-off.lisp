@@ -6,11 +6,6 @@
 ;;; so, and RUN-UNTIL, PRINT-PLANS and the like do, see NOTE-LOOKED-AFTER. What is left are plans
 ;;; that would have ended, had more ticks passed.
 
-(defun watches-anywhere-p (task)
-  "True if TASK or a part of it is in a loop, or waits for whatever may come."
-  (or (watches-p task)
-      (some #'watches-anywhere-p (task-children task))))
-
 (defun cut-off-p (interface task)
   "True if TASK, of the plans of INTERFACE, is under way and would have ended by itself."
   (not (or (task-parent task)
@@ -18,7 +13,7 @@
            (member task (interface-unwanted interface))
            (said-p (list :stranded (task-label task))
                    (simulation-world (interface-simulation interface)))
-           (watches-anywhere-p task))))
+           (some #'watches-p (all-tasks task)))))
 
 (defmethod note-seen ((interface interface))
   (note-looked-after (simulation-world (interface-simulation interface))))

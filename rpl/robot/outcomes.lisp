@@ -180,45 +180,26 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
 
 ;;; A command of users' has a function in plans only when it is known what becomes of its end.
 
-(defun command-called (name)
-  "Return the command that NAME, a symbol that begins with RPL-, is for; or NIL."
-  (let ((text (symbol-name name)))
-    (and (starts-with-subseq "RPL-" text)
-         (find-command (subseq text (length "RPL-")) nil))))
-
-(defun command-without-outcome (name)
-  "Return the name of the command that plans could call by NAME, a symbol, if there were a
-DEFINE-OUTCOME for it; or NIL."
-  (let ((command (command-called name)))
-    (and command
-         (not (has-twin-p (command-name command)))
-         (same-name-p name (plan-function-name (command-name command)))
-         (command-name command))))
-
-(defun advice-on-prompt-name (name)
-  "Return in a sentence what plans call the command that the prompt calls like NAME, but without
-RPL-; or NIL."
-  (let* ((command (command-called name))
-         (own (and command (plan-function-name (command-name command)))))
-    (and own
-         (not (same-name-p own name))
-         (has-twin-p (command-name command))
-         (format nil "plans call it ~(~A~)." own))))
-
 (defun advice-on-command (name)
-  "Return in sentences what lets plans call NAME, if a command is called so; or NIL."
-  (let ((command (command-without-outcome name)))
-    (and command
-         (let ((*print-case* :downcase) (found (find-command command)))
-           (format nil "plans do not know yet what tells them of the end of the command ~A. Say so ~
-                        once: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
-                        (define-outcome (~2:*~A~*) ~:A (:pulse my-fluent*)), names of the package ~
-                        ars-magna.rpl-robot, with a name of yours for my-fluent*."
-                   (string-downcase command)
-                   (spec-type (command-resource found))
-                   (mapcar #'spec-name (command-results found)))))))
+  "Return in sentences what plans call the command that NAME, a symbol that begins with RPL-, is
+for, or what lets them call it; or NIL."
+  (let* ((text (symbol-name name))
+         (command (and (starts-with-subseq "RPL-" text)
+                       (find-command (subseq text (length "RPL-")) nil)))
+         (own (and command (plan-function-name (command-name command))))
+         (same-p (and own (same-name-p name own))))
+    (cond ((null command) nil)
+          ((and (has-twin-p (command-name command)) (not same-p))
+           (format nil "plans call it ~(~A~)." own))
+          ((and same-p (not (has-twin-p (command-name command))))
+           (let ((*print-case* :downcase))
+             (format nil "plans do not know yet what tells them of the end of the command ~A. Say ~
+                          so once: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
+                          (define-outcome (~2:*~A~*) ~:A (:pulse my-fluent*)), names of the ~
+                          package ars-magna.rpl-robot, with a name of yours for my-fluent*."
+                     (string-downcase (command-name command))
+                     (spec-type (command-resource command))
+                     (mapcar #'spec-name (command-results command))))))))
 
 (setf *advice-on-call* (lambda (name)
-                         (or (advice-on-prompt-name name)
-                             (advice-on-command name)
-                             (advice-on-goal name))))
+                         (or (advice-on-command name) (advice-on-goal name))))

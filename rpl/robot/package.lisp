@@ -39,7 +39,7 @@
                 #:fluent-value #:fluent-name
                 #:set-value #:pulse
                 #:apply-settings #:looked-at-p #:forget-looks
-                #:*home-in-use* #:*runner* #:post-call #:react-to-all
+                #:*home-in-use* #:*runner* #:post #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:heard-from-outside-p #:idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
@@ -64,7 +64,7 @@
                 #:hear-of-trouble #:note-seen #:*realm*
                 #:give-back-all #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
-                #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
+                #:all-tasks #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
                 #:entity-realm #:entity-like

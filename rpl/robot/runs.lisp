@@ -151,16 +151,13 @@ but somebody outside can let plans go on, say so, once."
 
 ;;; What did not end.
 
-(defun deepest-parts (task)
-  "Return the parts of TASK that have no parts."
-  (if (task-children task) (mapcan #'deepest-parts (task-children task)) (list task)))
-
 (defun report-limit (interface task)
   "Queue an error message that says that TASK was given up, and what it and its parts wait for."
   (error-set "The plan " (task-label task) " was given up at tick "
              (simulation-tick (interface-simulation interface)) ", after " *plan-limit*
              " ticks; see *PLAN-LIMIT*."
-             (format nil "~@[ ~A~]" (endless-advice (deepest-parts task))) " It was at:" t
+             (format nil "~@[ ~A~]" (endless-advice (remove-if #'task-children (all-tasks task))))
+             " It was at:" t
              (cut (with-output-to-string (stream) (print-tasks task stream)) +longest-report+)))
 
 (defun await-plan (interface task)

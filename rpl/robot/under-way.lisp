@@ -45,7 +45,7 @@
       (setf settings (apply (deed-outcome deed) (deed-resource deed) err results))
       (let ((answer (make-answer deed err settings (ends-p (deed-command deed) err))))
         (add-answer answer interface)
-        (post-call (interface-runner interface) (lambda () (hear answer interface)))
+        (post (interface-runner interface) (lambda () (hear answer interface)))
         (when (answer-last-p answer) (setf (deed-over-p deed) t))))))
 
 (defun answering (interface deed)

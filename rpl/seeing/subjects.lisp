@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(*runner-in-use* *still* runner-to-see all-tasks task-numbered task-with))
+(export '(*runner-in-use* *still* runner-to-see task-with))
 
 (defvar *runner-in-use* (constantly nil)
   "A function that returns the plan runner whose tasks are shown where nobody says which, or NIL.")
@@ -19,16 +19,6 @@ use. Signals MISUSE if there is none."
             (t (funcall *runner-in-use*)))
       (reject-use "No plans have run here. Start one first: (begin-plan ...), or the line PLAN at ~
                    the prompt.")))
-
-(defun all-tasks (which)
-  "Return the tasks of WHICH, a task or a runner, each before its parts."
-  (if (task-p which)
-      (cons which (mapcan #'all-tasks (task-children which)))
-      (mapcan #'all-tasks (plan-runner-tasks which))))
-
-(defun task-numbered (number which)
-  "Return the task with NUMBER of those of WHICH that are not over, or NIL."
-  (find number (all-tasks which) :key #'task-serial))
 
 (defun task-with (value runner)
   "Return the task of RUNNER that has VALUE in a variable, or in what is there, and the name of that

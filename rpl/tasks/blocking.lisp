@@ -71,7 +71,7 @@ that reacts again. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)
-             (post-call runner function))))
+             (post runner function))))
   task)
 
 (addition suspend)

@@ -3,8 +3,8 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(advance-timers note-tick apply-next-batch close-runner digest-runner idle-p
-          make-plan-runner next-wake-time heard-from-outside-p plan-deadlocked-p post-batch
-          rest-in-tick post-call react react-to-all reseed-runner start-plan stop-plan))
+          make-plan-runner next-wake-time heard-from-outside-p plan-deadlocked-p
+          rest-in-tick react react-to-all reseed-runner start-plan stop-plan))
 
 ;;; A reaction runs ready tasks until none is ready. Only then is the next posted batch applied, and
 ;;; time passes only when there is none. So a task that gives a command and waits for its pulse has
@@ -15,7 +15,7 @@
 
 (defun make-plan-runner (&key trace budget charged clock (slow 0.1d0) dice (ticks-per-second 20)
                            (tick 0) client (busy-p (constantly nil)) (on-post #'list)
-                           (attended-p (constantly nil)) on-tick
+                           (attended-p (constantly nil))
                            (on-end #'report-end))
   "Return what runs plans, at TICK. TRACE says whether to keep a trace. BUDGET is how many steps a
 reaction may take before time passes (NIL: as many as it needs). If CHARGED is true, thoughts that
@@ -25,8 +25,8 @@ seconds. DICE choose for
 TRY-ONE.
 BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
 after each post, in the posting thread; ATTENDED-P says whether a thread will hear that anyway.
-ON-TICK, if given, is called with the tick when time has passed, ON-END with each top-level task
-that ends; by default it reports failures. CLIENT, any object, is on whose behalf it does all this."
+ON-END is called with each top-level task that ends; by default it reports failures. CLIENT, any
+object, is on whose behalf it does all this."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
   (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget
@@ -34,7 +34,7 @@ that ends; by default it reports failures. CLIENT, any object, is on whose behal
                                    :slow slow :dice dice :ticks-per-second ticks-per-second
                                    :tick tick :client client :busy-p busy-p :on-post on-post
                                    :attended-p attended-p :repairer #'put-in-order
-                                   :on-tick (ensure-list on-tick) :on-end on-end)))
+                                   :on-end on-end)))
     (when trace (trace-changes runner))
     runner))
 
@@ -166,17 +166,8 @@ warning."
 as REACT does; after :budget what is left waits for the next reaction."
   (react-hearing runner #'apply-next-batch))
 
-;;; Posting.
-
-(defun post-batch (runner settings)
-  "Let SETTINGS be applied between two reactions of RUNNER, at one instant: (:set fluent value) and
-(:pulse fluent [value]), the values before the pulses. Batches are applied in the order in which
-they are posted, from any thread. See APPLY-SETTINGS."
-  (post runner settings))
-
-(defun post-call (runner function)
-  "Let FUNCTION be called, with no arguments, between two reactions of RUNNER. For any thread."
-  (post runner function))
+;;; Posting: any thread may POST a function of no arguments, or a batch of settings that are applied
+;;; at one instant, see APPLY-SETTINGS. Each is done between two reactions, in the order of posting.
 
 (defun apply-next-batch (runner)
   "Apply the batch or call posted to RUNNER first. True unless there was none. Errors in it become
@@ -218,10 +209,7 @@ and nothing heard."
 (defun advance-timers (runner tick)
   "Let it be TICK for RUNNER and wake those who waited for it."
   (setf (runner-tick runner) tick)
-  (at-home (runner)
-    (run-timers (runner-timers runner) tick)
-    (dolist (function (runner-on-tick runner))
-      (call-user-code function "a plan runner's tick function" tick))))
+  (at-home (runner) (run-timers (runner-timers runner) tick)))
 
 (defun next-wake-time (runner)
   "Return the tick at which the next task of RUNNER that waits for time wakes, or NIL."
@@ -243,7 +231,6 @@ so."
     (unless (or (and wake (<= wake tick))
                 (not (idle-p runner))
                 (runner-courtesies runner)
-                (runner-on-tick runner)
                 (runner-charged-p runner)
                 (runner-budget runner)
                 (in-use-p runner))
@@ -264,15 +251,11 @@ so."
   (setf (runner-dice runner) (make-dice seed :plans)
         (runner-lisps-dice runner) nil))
 
-(defun digest-task (task digest)
-  "Add to DIGEST what TASK and its children are about."
-  (digest-add digest (list (task-serial task) (task-state task) (task-level task)
-                           (form-text (task-form task))))
-  (dolist (child (task-children task)) (digest-task child digest)))
-
 (defun digest-runner (runner digest)
   "Add to DIGEST what the tasks of RUNNER are about, when they wake, and what chance will bring."
   (digest-add digest (list (runner-tick runner) (next-wake-time runner)
                            (and (runner-dice runner) (dice-state (runner-dice runner)))
                            (runner-debt runner) (runner-still-until runner)))
-  (dolist (task (runner-roots runner)) (digest-task task digest)))
+  (dolist (task (mapcan #'all-tasks (runner-roots runner)))
+    (digest-add digest (list (task-serial task) (task-state task) (task-level task)
+                             (form-text (task-form task))))))

@@ -50,7 +50,7 @@ is none. WITHIN is a plan runner, or a task, whose parts PLACE then starts with.
   (check-argument find-task within (or (task-p within) (plan-runner-p within))
                   "a plan runner, such as (rpl-runner), or a task")
   (if (integerp place)
-      (find-numbered place within)
+      (find place (mapcan #'all-tasks (parts-of within)) :key #'task-serial)
       (loop with tasks = (parts-of within)
             for (step . more) on place
             for task = (find-if (lambda (task) (at-place-p task step)) tasks)
@@ -59,12 +59,6 @@ is none. WITHIN is a plan runner, or a task, whose parts PLACE then starts with.
 
 (defun parts-of (within)
   (if (task-p within) (task-children within) (plan-runner-tasks within)))
-
-(defun find-numbered (number within)
-  "Return the task of WITHIN that has NUMBER, or NIL."
-  (dolist (part (parts-of within))
-    (let ((found (if (= number (task-serial part)) part (find-numbered number part))))
-      (when found (return found)))))
 
 (addition task-source)
 (defun task-source (task)

@@ -6,7 +6,7 @@
           plan-runner-tasks plan-runner-tick runner-blocks runner-dice runner-lisps-dice
           runner-tick runner-ticks-per-second runner-timers runner-stepper runner-note
           runner-serial runner-alive client-forked-p hear-of-trouble note-seen runner-trace
-          runner-client runner-charged-p))
+          runner-client runner-charged-p all-tasks task-numbered))
 
 ;;; Ready tasks queue first-in first-out by level; the highest level runs first. MASK has bit n set
 ;;; while somebody of level n may be queued, and the bit +INTERRUPT+, above all of these, when the
@@ -84,7 +84,6 @@ as it needs. CLIENT is on whose behalf all this is."
   ;; What constructs keep for all tasks, a plist.
   (notes '() :type list)
   (busy-p (constantly nil) :type function)
-  (on-tick '() :type list)
   (on-end #'identity :type function))
 
 (define-shared-slots plan-runner warned)
@@ -143,6 +142,16 @@ care of; or, if FAILURE is NIL, TASK is a part of a plan that somebody has just 
 (defun plan-runner-tasks (&optional (runner *runner*))
   "Return the top-level tasks of RUNNER that are not over, in order of their start."
   (reverse (runner-roots runner)))
+
+(defun all-tasks (which)
+  "Return the tasks of WHICH, a task or a runner, each before its parts."
+  (if (task-p which)
+      (cons which (mapcan #'all-tasks (task-children which)))
+      (mapcan #'all-tasks (plan-runner-tasks which))))
+
+(defun task-numbered (number which)
+  "Return the task with NUMBER of those of WHICH that are not over, or NIL."
+  (find number (all-tasks which) :key #'task-serial))
 
 (defun plan-runner-steps (&optional (runner *runner*))
   "Return how many steps RUNNER has taken: expressions begun or ended."

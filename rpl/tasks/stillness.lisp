@@ -11,8 +11,8 @@
 
 (defun waiting-parts (task)
   "Return TASK, or else those of its parts, that wait for something but the end of parts."
-  (append (and (eq :waiting (task-state task)) (task-awaiting task) (list task))
-          (mapcan #'waiting-parts (task-children task))))
+  (remove-if-not (lambda (part) (and (eq :waiting (task-state part)) (task-awaiting part)))
+                 (all-tasks task)))
 
 (defun fluents-awaited (tasks)
   "Return the base fluents that TASKS wait for, each once."
@@ -176,14 +176,9 @@ and which nobody means to wait for."
               (text-of-blocks tasks)
               "what cannot come")))
 
-(defun blocked-parts (task)
-  "Return those of TASK and its parts that are blocked, outermost first."
-  (append (and (plusp (task-blocked task)) (list task))
-          (mapcan #'blocked-parts (task-children task))))
-
 (defun text-of-blocks (tasks)
   "Return in words who has to let parts of TASKS go on that are blocked; NIL if none is."
-  (let ((blocked (mapcan #'blocked-parts tasks)))
+  (let ((blocked (remove-if-not #'plusp (mapcan #'all-tasks tasks) :key #'task-blocked)))
     (and blocked
          (format nil "somebody to let ~{~A~^ and ~} go on, as by WAKE-UP"
                  (mapcar #'task-label blocked)))))

@@ -53,12 +53,12 @@ TRACE-ENTRY, are evaluated only then."
           (trace-doing runner (if (eq kind :set) #.(event-code :set) #.(event-code :pulse))
                        fluent value))))
 
-(defun trace-start (task)
-  "Note the start of TASK, and of the tasks that it consists of."
-  (note-event task :start
-              (task-name task)
-              (and (task-parent task) (task-serial (task-parent task))))
-  (mapc #'trace-start (task-children task)))
+(defun trace-start (plan)
+  "Note the start of PLAN, a top-level task, and of the tasks that it consists of."
+  (dolist (task (all-tasks plan))
+    (note-event task :start
+                (task-name task)
+                (and (task-parent task) (task-serial (task-parent task))))))
 
 (defun start-trace (runner)
   "Let RUNNER keep a trace from now on, in which tasks under way seem to start now. Nothing happens
