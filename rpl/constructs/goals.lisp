@@ -9,9 +9,6 @@
 ;;; first. So it does not matter in which order files are loaded, as it does for CRAM, which
 ;;; takes the first that matches.
 
-(defparameter *goal-operators* '(achieve perceive belief)
-  "What can be done about a goal.")
-
 (defstruct (goal (:constructor make-goal (operator pattern shape variables procedure documentation))
                  (:copier nil))
   "How to do OPERATOR, such as ACHIEVE, for what PATTERN matches: by PROCEDURE of VARIABLES."
@@ -94,7 +91,7 @@ if there is none."
               (make-goal operator pattern shape variables procedure text))))
 
 (defun parsed-operator (definition operator)
-  (or (and (symbolp operator) (find operator *goal-operators* :test #'same-name-p))
+  (or (and (symbolp operator) (find operator '(achieve perceive belief) :test #'same-name-p))
       (reject-clause definition operator "achieve, perceive or belief")))
 
 (defun goal-form (definition operator pattern body environment)

@@ -102,16 +102,12 @@ or else NIL. An interrupt may come at any point."
   (funcall (home-on-post home))
   (values))
 
-(defun take-inbox (home)
-  "Return what is in the inbox of HOME, the oldest first, and leave none there."
-  (loop for entries = (home-inbox home)
-        until (swap-if (home-inbox home) entries '())
-        finally (return (reverse entries))))
-
 (defun next-entry (home)
   "Return the oldest entry posted to HOME, removed, and true; or NIL and false."
   (unless (home-outbox home)
-    (setf (home-outbox home) (take-inbox home)))
+    (loop for entries = (home-inbox home)
+          until (swap-if (home-inbox home) entries '())
+          finally (setf (home-outbox home) (reverse entries))))
   (if (home-outbox home)
       (values (pop (home-outbox home)) t)
       (values nil nil)))

@@ -14,10 +14,9 @@
   "For each construct, the last one first, its name and its clauses.")
 
 (defun note-construct (name clauses)
-  (let ((known (assoc name *constructs*)))
-    (if known
-        (setf (rest known) clauses)
-        (push (cons name clauses) *constructs*))))
+  (setf (rest (or (assoc name *constructs*)
+                  (first (push (list name) *constructs*))))
+        clauses))
 
 (defun all-constructs ()
   "Return the names of the constructs that DEFINE-CONSTRUCT has made, in order of definition."

@@ -68,16 +68,6 @@ supersedes how the same command ended before."
     (prog1 (remove-if-not #'of-task-p (interface-unread interface))
       (setf (interface-unread interface) (remove-if #'of-task-p (interface-unread interface))))))
 
-(defun text-of-unread (task unread)
-  "Return in sentences that TASK has succeeded, and did not look at how the command of UNREAD has
-ended."
-  (let ((fluent (fluent-form-text (first (last (unread-fluents unread))))))
-    (format nil "The plan ~A succeeded, though its command rpl-~(~A~) ended with ~S, and did not ~
-                 look at ~A. After the wait write (if (fluent-value ~A) (fail ...)), or what is to ~
-                 be done then."
-            (task-label task) (unread-command unread) (unread-err unread)
-            fluent fluent)))
-
 (defun tell-of-unread (interface task)
   "Say once if a command of TASK, a plan of INTERFACE that has succeeded, came to nothing, and
 nobody has looked."
@@ -85,5 +75,9 @@ nobody has looked."
         (simulation (interface-simulation interface)))
     (when (and unread (not (message-queue-listener *message-queue*)))
       (warn-once (list :unread (task-label task)) (simulation-world simulation)
-                 (text-of-unread task unread)
+                 (format nil "The plan ~A succeeded, though its command rpl-~(~A~) ended with ~S, ~
+                              and did not look at ~A. After the wait write (if (fluent-value ~
+                              ~:*~A) (fail ...)), or what is to be done then."
+                         (task-label task) (unread-command unread) (unread-err unread)
+                         (fluent-form-text (first (last (unread-fluents unread)))))
                  :notable (or (live-p simulation) (lambda () (still-unread-p unread)))))))

@@ -90,15 +90,12 @@
             (:fail (format nil "failed (~A)" (cut (trace-entry-detail end) 100)))
             (:evaporate "evaporated"))))
 
-(defun part-reason (number index trace)
-  (let ((end (earlier trace index (lambda (entry) (part-ended-p entry number trace)))))
-    (if end
-        (part-words end trace)
-        "its turn had come")))
-
 (defun wake-reason (entry index trace)
   (let ((subject (trace-entry-subject entry)))
-    (cond ((null subject) (part-reason (trace-entry-task entry) index trace))
+    (cond ((null subject)
+           (let* ((number (trace-entry-task entry))
+                  (end (earlier trace index (lambda (end) (part-ended-p end number trace)))))
+             (if end (part-words end trace) "its turn had come")))
           ((realp subject) (format nil "tick ~D had come" subject))
           ((fluent-p subject) (fluent-reason subject index trace))
           ((equal "" subject) "what it had to come after was over")

@@ -103,14 +103,10 @@ type if that signals an error."
     (cond ((null arguments) (make-condition 'plan-failure))
           ((typep head 'plan-failure) head)
           ((typep head 'condition) (make-condition 'lisp-failure :condition head))
-          ((and (eq head :class) (consp more)) (make-failure-of-class (first more) (rest more)))
-          ((failure-type-p head) (apply #'make-condition head more))
-          (t (make-condition 'plan-failure :class head :data more)))))
-
-(defun make-failure-of-class (class data)
-  (if (failure-type-p class)
-      (apply #'make-condition class data)
-      (make-condition 'plan-failure :class class :data data)))
+          (t (when (and (eq head :class) (consp more)) (setf head (pop more)))
+             (if (failure-type-p head)
+                 (apply #'make-condition head more)
+                 (make-condition 'plan-failure :class head :data more))))))
 
 (public fail)
 (defun fail (&rest arguments)
