@@ -46,7 +46,6 @@
   (list (pursuit-operator pursuit) (pursuit-goal pursuit)))
 
 (defun fail-goal (class task frame &rest arguments)
-  "Let TASK fail at FRAME with a failure of CLASS about its pursuit. Return what a step returns."
   (let ((pursuit (frame-data frame)))
     (unwind task frame
             (failure-of (apply #'make-condition class
@@ -55,11 +54,9 @@
                         task frame))))
 
 (defun enter-goal (goal values frame)
-  "Begin the plan of GOAL with VALUES for FRAME. Return what a step returns."
   (enter-application (goal-procedure goal) values frame))
 
 (defun pursue-goal (task frame)
-  "Begin the plan for the pursuit of FRAME. Return what a step returns."
   (let ((pursuit (frame-data frame)))
     (multiple-value-bind (goal values)
         (choose-goal (pursuit-operator pursuit) (pursuit-goal pursuit))

@@ -29,7 +29,6 @@ a fluent: the stays under way."
     stay))
 
 (defun end-stay (whereabouts stay)
-  "Note that STAY, if there is one, is over."
   (when stay
     (set-value (whereabouts-stays whereabouts)
                (remove stay (fluent-value (whereabouts-stays whereabouts))))))

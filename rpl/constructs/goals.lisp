@@ -85,7 +85,6 @@ if there is none."
         (make-symbol (string-upcase (goal-text operator pattern))))))
 
 (defun install-goal (operator pattern procedure text)
-  "Let PROCEDURE be what OPERATOR does for what PATTERN matches, from now on."
   (multiple-value-bind (shape variables) (parse-pattern pattern)
     (register *goals* (goal-name operator pattern shape (length variables))
               (make-goal operator pattern shape variables procedure text))))
@@ -95,7 +94,6 @@ if there is none."
       (reject-clause definition operator "achieve, perceive or belief")))
 
 (defun goal-form (definition operator pattern body environment)
-  "Return the form that defines the goal for OPERATOR and PATTERN."
   (unless (consp pattern)
     (reject-clause definition pattern "a goal's pattern, such as (on ?a ?b)"))
   (multiple-value-bind (body text) (split-documentation body)

@@ -6,11 +6,9 @@
 ;;; leave for the body.
 
 (defun handler-index (failure types)
-  "Return which of TYPES is the first that FAILURE matches, or NIL."
   (position-if (lambda (type) (failure-matches-p failure type)) types))
 
 (defun enter-handler (handler type failure frame)
-  "Return the frame that runs HANDLER, of a clause for TYPE, for FAILURE."
   (make-frame handler
               (vector (frame-environment frame) (failure-subject failure type))
               frame))
@@ -30,7 +28,6 @@
       (and type (symbolp type))))
 
 (defun check-clause (clause form scope)
-  "Signal MALFORMED-DEFINITION unless CLAUSE, of FORM, can handle a failure."
   (unless (and (typep clause '(cons t (cons list t))) (proper-list-p clause)
                (typep (second clause) '(or null (cons t null))))
     (reject-clause (author) (if (consp clause) clause form)

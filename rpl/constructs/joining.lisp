@@ -3,7 +3,6 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defun over-p (status)
-  "True if STATUS, of a task, is one that lasts."
   (and (member status '(:succeeded :failed :evaporated)) t))
 
 (defun pass-on-outcome (target task frame)
@@ -29,13 +28,11 @@
     (and (under-way-p target) (list target))))
 
 (defun hear-end (watcher value trouble)
-  "Let the task that WATCHER is for go on: what it joins is over."
   (declare (ignore value trouble))
   (unwatch watcher)
   (wake (watcher-client watcher) nil))
 
 (defun await-end (target task)
-  "Let TASK wait until TARGET is over."
   (let ((watcher (make-watcher (fl-funcall 'over-p (task-status target)) #'hear-end task)))
     (watch watcher)
     (park task (make-joining target watcher))

@@ -138,7 +138,6 @@ an :INIT, which sees whether the arguments are right."
                             definition name kept))))))
 
 (defun policy-code (definition name parameters clauses environment)
-  "Return code that makes the policy NAME."
   (check-policy-clauses definition clauses)
   (doubt-memory definition clauses)
   (let ((parameters (plain-parameters parameters parameters environment definition)))

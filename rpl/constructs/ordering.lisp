@@ -24,7 +24,6 @@ of that."
          tasks)))
 
 (defun lift-order (order)
-  "Let ORDER hold no more."
   (when (order-watcher order)
     (unwatch (shiftf (order-watcher order) nil))
     (release-hold (order-later order) order)))
@@ -133,7 +132,6 @@ MISUSE."
     (reject-clause (author) form "constraints without a circle: some steps could never start")))
 
 (defun orders-lambda (steps constraints form scope)
-  "Return the lambda expression that returns the pairs that CONSTRAINTS of FORM put in order."
   (let ((orders (read-orders steps constraints form scope)))
     (check-orders orders steps form)
     (value-lambda `(list ,@(loop for (earlier later) in orders

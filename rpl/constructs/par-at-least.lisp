@@ -11,14 +11,12 @@ and FAILURES so far, last first."
   (failures '() :type list))
 
 (defun checked-number (count branches)
-  "Return COUNT, of BRANCHES. Signals WRONG-ARGUMENT."
   (let ((count (fluent-value count)))
     (check-argument par-at-least count (whole-p count 0 branches)
                     "an integer from 0 to the number of branches")
     count))
 
 (defun count-end (tally how result)
-  "Note in TALLY that a branch has ended as HOW with RESULT."
   (decf (tally-left tally))
   (case how
     (:succeeded (decf (tally-missing tally))

@@ -9,7 +9,6 @@
 ;;; A branch that others than the construct have evaporated counts as ended, neither well nor badly.
 
 (defun branches-code (branches scope)
-  "Return code for a vector of the nodes of BRANCHES."
   `(vector ,@(loop with single = (single-scope scope)
                    for branch in branches
                    collect (plan-code branch single))))

@@ -6,7 +6,6 @@
 ;;; if none. A task that is cleaning up does not evaporate: see EVAPORATE.
 
 (defun start-cleanup (cleanup task frame signal)
-  "Return the frame that runs CLEANUP for FRAME before SIGNAL goes on."
   (setf (frame-data frame) signal)
   (push frame (task-cleaning task))
   (note-event task :clean)
@@ -25,7 +24,6 @@
       (values nil first))))
 
 (defun note-suppressed (first failure task)
-  "Record that FAILURE happened while TASK was cleaning up because of FIRST."
   (if (typep first 'plan-failure)
       (push failure (failure-suppressed first))
       (warn-notably "A cleanup failed in " (task-label task) ": " (failure-text failure))))

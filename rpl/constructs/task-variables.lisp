@@ -3,7 +3,6 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defun check-task-variable (name)
-  "Signal MALFORMED-DEFINITION if NAME cannot name a task variable."
   (unless (or (task-variable-p name)
               (and (symbolp name) (variable-name-p name)
                    (not (eq :special (variable-kind name)))))
@@ -28,7 +27,6 @@ it when a task sets it is ours)."
      (install-task-variable ',name ,value ,documentation)))
 
 (defun checked-bindings (bindings form scope)
-  "Return BINDINGS, each (name value). Signals MALFORMED-DEFINITION."
   (dolist (binding bindings bindings)
     (unless (and (typep binding '(cons symbol (cons t null)))
                  (task-variable-p (first binding) (scope-environment scope)))

@@ -26,7 +26,6 @@ meanwhile."
   +parked+)
 
 (defun takes-time-p (task ticks)
-  "True if TASK has to think for TICKS."
   (and (runner-charged-p (task-runner task)) (plusp ticks)))
 
 (define-construct think (span &key unit alone)
@@ -64,11 +63,9 @@ and what its body has come to: a RESULT, or a SIGNAL."
   (signal nil))
 
 (defun begin-thought (task ticks alone)
-  "Return what a frame of TASK is to remember of a thought of TICKS."
   (make-thought (if (takes-time-p task ticks) ticks 0) alone (runner-tick (task-runner task))))
 
 (defun ticks-left (thought task)
-  "Return for how many ticks TASK is yet to think."
   (let ((now (runner-tick (task-runner task))))
     (if (runner-charged-p (task-runner task))
         (max 0 (- (+ (thought-start thought) (thought-ticks thought)) now))
@@ -82,7 +79,6 @@ returns."
   (await-parts task))
 
 (defun end-thought (thought task frame)
-  "Let TASK go on after FRAME with what THOUGHT has come to. Return what a step returns."
   (let ((signal (thought-signal thought)))
     (if signal
         (unwind task (frame-up frame) signal)

@@ -10,7 +10,6 @@
     (wake task nil timer)))
 
 (defun start-timer (task ticks)
-  "Let TASK be woken after TICKS."
   (let ((runner (task-runner task)))
     (setf (task-timer task)
           (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) #'time-out task))))
@@ -26,13 +25,11 @@
       (t (reject-argument operator 'unit unit ":ticks or :seconds")))))
 
 (defun check-unit (unit form)
-  "Signal MALFORMED-DEFINITION if UNIT, a form in FORM, is seen to be no unit of time."
   (when (and (atom unit) (or (keywordp unit) (not (symbolp unit)))
              (not (member unit '(:ticks :seconds))))
     (reject-clause (author) form (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
 
 (defun check-span (span form)
-  "Warn if SPAN, a form in FORM, is less than no time."
   (when (and (realp span) (minusp span))
     (doubt-form form "~(~A~) does not wait for ~A, which is less than 0." (first form) span)))
 

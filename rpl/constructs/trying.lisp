@@ -24,11 +24,9 @@
   (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
 (defun give-up (record task frame)
-  "Let FRAME of TASK fail of all that has been tried. Return what a step returns."
   (unwind task (frame-up frame) (all-failed (attempt-record-failures record) task frame)))
 
 (defun attempts-code (attempts scope)
-  "Return code for a vector of the nodes of ATTEMPTS."
   `(vector ,@(loop for attempt in attempts collect (plan-code attempt scope))))
 
 (define-construct try-in-order (&body attempts)

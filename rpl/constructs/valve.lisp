@@ -112,7 +112,6 @@ innermost first."
             (remove-if (lambda (claim) (member claim holders)) (valve-claims valve)))))
 
 (defun valve-text (valve)
-  "Return the name of VALVE as text."
   (one-line (safe-text (valve-name valve) :escape nil)))
 
 (defmethod print-object ((valve valve) stream)
@@ -166,14 +165,12 @@ VALVE and the rival."
 
 ;; What a rival does about it may give valves back: those that CLAIM has already by then.
 (defun grant (claim)
-  "Let CLAIM have its valves."
   (loop for (valve rival) in (mapcan (lambda (valve) (take valve claim)) (claim-valves claim))
         do (lose valve rival)))
 
 ;;; Queueing.
 
 (defun before-p (line other)
-  "True if who is in LINE goes before who is in OTHER."
   (or (> (line-priority line) (line-priority other))
       (and (= (line-priority line) (line-priority other))
            (> (line-level line) (line-level other)))))
@@ -207,7 +204,6 @@ VALVE and the rival."
            behind)))
 
 (defun without-line (tree line)
-  "Return TREE without LINE, which is in it."
   (cond ((eq tree line) (joined-lines (line-ahead line) (line-behind line)))
         ((before-p line tree)
          (setf (line-ahead tree) (without-line (line-ahead tree) line))
@@ -216,21 +212,18 @@ VALVE and the rival."
            tree)))
 
 (defun line-like (line tree)
-  "Return the line of TREE for claims such as those in LINE, or NIL."
   (loop while tree
         do (cond ((before-p line tree) (setf tree (line-ahead tree)))
                  ((before-p tree line) (setf tree (line-behind tree)))
                  (t (return tree)))))
 
 (defun insert-line (line valve)
-  "Put LINE among those of VALVE. Return it."
   (setf (line-weight line) (next-weight valve))
   (multiple-value-bind (ahead behind) (split-lines (valve-lines valve) line)
     (setf (valve-lines valve) (joined-lines (joined-lines ahead line) behind)))
   line)
 
 (defun line-for (claim valve)
-  "Return the line of VALVE that CLAIM is to wait in, a new one if there is none for its like."
   (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
     (or (line-like line (valve-lines valve))
         (insert-line line valve))))
@@ -253,13 +246,11 @@ VALVE and the rival."
   (leave-queues claim))
 
 (defun next-in-line (line)
-  "Return the first claim in LINE that can be granted, or NIL."
   (loop for turn = (line-first-turn line) then (turn-next turn)
         while turn
         when (grantable-p (turn-claim turn)) return (turn-claim turn)))
 
 (defun admit (claim)
-  "Grant CLAIM, for which its task waits."
   (leave-queues claim)
   (grant claim)
   (when (eq claim (task-awaiting (claim-task claim))) (wake (claim-task claim) nil)))
@@ -291,7 +282,6 @@ those who lost it last."
   (if (eq claim (first claims)) (rest claims) (remove claim claims)))
 
 (defun give-back (claim)
-  "Let CLAIM have nothing any more."
   (leave-queues claim)
   (let ((valves (shiftf (claim-taken claim) '())))
     (dolist (valve valves)

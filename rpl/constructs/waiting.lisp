@@ -10,7 +10,6 @@
       (wake-from-wait task value trouble))))
 
 (defun wake-from-wait (task value trouble)
-  "Let TASK, which waits for a fluent, go on with VALUE, or fail of TROUBLE."
   (when (task-timer task)
     (cancel-timer (task-timer task) (runner-timers (task-runner task)))
     (setf (task-timer task) nil))
@@ -19,7 +18,6 @@
   (wake task value))
 
 (defun wait-for-no-fluent (task)
-  "Let TASK wait for what it was given instead of a fluent, and say so."
   (park task +no-fluent+)
   (warn-of-no-fluent task))
 
@@ -35,7 +33,6 @@
       (wait-for-no-fluent task)))
 
 (defun checked-timeout (timeout)
-  "Return TIMEOUT, a number of ticks or NIL, or its value. Signals WRONG-ARGUMENT."
   (let ((timeout (fluent-value timeout)))
     (check-argument wait-for timeout (or (null timeout) (quantity-p timeout))
                     "a number of ticks, from -1e15 to 1e15, or NIL")

@@ -3,7 +3,6 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defun valve-advice (value)
-  "Return in words what to give for VALUE, which is no valve."
   (format nil "a valve, made by make-valve~@[: ~(~A~) without a quote, if that is a variable for ~
                one~]"
           (and value (symbolp value) (not (keywordp value)) (not (eq t value)) value)))
@@ -16,7 +15,6 @@
     (here valve)))
 
 (defun checked-claim (priority valves task)
-  "Return the claim of TASK to VALVES, or their fluents' values. Signals WRONG-ARGUMENT."
   (let ((priority (or (fluent-value priority) 0))
         (valves (remove-duplicates (mapcar #'valve-meant valves))))
     (check-argument with-valve priority (quantity-p priority) "a number from -1e15 to 1e15")

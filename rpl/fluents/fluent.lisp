@@ -138,7 +138,6 @@ for (manual D.2)."
   (create-fluent name nil))
 
 (defun numeral (number)
-  "Return the digits of NUMBER, 0 or more."
   (if (< number 10) (string (digit-char number)) (princ-to-string number)))
 
 (addition create-fluent-vector)

@@ -54,7 +54,6 @@ NIL.")
   (swap-if (home-holder home) nil (current-thread)))
 
 (defun leave-home (home)
-  "Let this thread no longer have HOME, if it does."
   (swap-if (home-holder home) (current-thread) nil))
 
 (defun call-having (home take function)

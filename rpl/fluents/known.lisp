@@ -57,7 +57,6 @@ for each part, or T if a fluent.")
   object)
 
 (defun find-known (name)
-  "Return the known variable called NAME, or NIL."
   (loop for variable being the hash-keys of *known-variables*
         when (string-equal name variable) return variable))
 

@@ -164,7 +164,6 @@ or a vector of fluents."
 ;;; Building.
 
 (defun height-over (sources)
-  "Return the height of a network of SOURCES."
   (1+ (loop for source in sources
             when (fluent-p source) maximize (fluent-height source))))
 

@@ -74,7 +74,6 @@ the place of that."
         (t entity)))
 
 (defun known-twin (entity realm)
-  "Return the twin of ENTITY in REALM if it is there, or NIL."
   (and (plusp (entity-token entity))
        (with-lock ((realm-lock realm))
          (gethash (entity-token entity) (realm-twins realm)))))
@@ -148,7 +147,6 @@ of. Can be set.")
           (t (copy-entity entity fork)))))
 
 (defun copy-entity (entity copier)
-  "Return the twin of ENTITY in the fork that COPIER makes."
   (let ((realm (forked (entity-realm entity) copier))
         (copy (copy-slots entity copier)))
     (setf (entity-token copy) (ensure-token entity)

@@ -32,7 +32,6 @@
     (nreverse seen)))
 
 (defun forget-all (fluent)
-  "Let FLUENT know nobody who uses it."
   (setf (fluent-first-watcher fluent) nil
         (fluent-last-watcher fluent) nil
         (fluent-first-link fluent) nil
@@ -44,7 +43,6 @@
           (derived-successor fluent) nil)))
 
 (defun forget-backlog (home)
-  "Let nothing be in the backlog of HOME."
   (let ((backlog (home-backlog home)))
     (fill (backlog-heads backlog) nil)
     (fill (backlog-tails backlog) nil)

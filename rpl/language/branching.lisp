@@ -45,7 +45,6 @@
               (plan-code (note-own-text `(or ,test ,more)) scope))))))
 
 (defun case-code (form operator key clauses scope)
-  "Return code for FORM, by OPERATOR, such as CASE, of the value of KEY."
   (hoisting (key) form scope
     `(make-branch :form ',(form-as-written form)
                   :chooser ,(value-lambda `(,operator (operand-value ,key)

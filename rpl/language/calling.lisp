@@ -98,7 +98,6 @@ so (ours).")
       (reject-call name)))
 
 (defun reject-call (name)
-  "Signal that there is neither a plan nor a function to call by NAME."
   (let ((namesake (find-procedure name nil)))
     (when namesake
       (reject-use "There is no plan procedure or function ~S. Calls go by the very symbol: if the ~

@@ -48,7 +48,6 @@ letter is like no other."
     (and nearest (plain-name nearest))))
 
 (defun check-fit (form lambda-list)
-  "Warn if the call FORM does not fit LAMBDA-LIST, or that of the type of a function."
   (let ((trouble (misfit (shape-of lambda-list) (rest form))))
     (when trouble
       (warn-of-form form "~(~A~) takes ~A, not ~A."

@@ -116,7 +116,6 @@ the names of the variables there."
   node)
 
 (defun waiting-code (form scope)
-  "Return code that builds the node for FORM, which makes its task wait."
   (let* ((environment (scope-environment scope))
          (plan-form (find-plan-form form environment)))
     (cond ((symbolp form) (expansion-code form scope))
@@ -138,7 +137,6 @@ the names of the variables there."
           (t (function-form-code form scope)))))
 
 (defun expansion-code (form scope)
-  "Return code for FORM, a macro call or a symbol macro."
   (let ((expansion (macroexpand-1 form (scope-environment scope))))
     (if (and (consp form) (lisps-own-p (first form)))
         (note-written-as expansion form)

@@ -91,7 +91,6 @@ the first one, as arguments come before bodies."
          (list 'in-plans-only form))))
 
 (defun construct-code-form (node clauses)
-  "Return the form that makes the code for a construct that is a NODE, by CLAUSES."
   (let ((code (first (clause :code clauses))))
     `(flet ((build (&optional (scope scope))
               (declare (ignorable scope))
@@ -103,7 +102,6 @@ the first one, as arguments come before bodies."
        ,(or code '(build)))))
 
 (defun plan-form-form (name node lambda-list clauses)
-  "Return the form that lets plans understand the construct NAME."
   (multiple-value-bind (waits given) (clause :waits clauses)
     `(define-plan-form ,name ,(if given (first waits) :must) ,lambda-list (form scope)
        (hoisting ,(clause :arguments clauses) form scope

@@ -19,7 +19,6 @@
       (values body nil)))
 
 (defun procedure-form (name parameters body environment)
-  "Return the form that defines the plan procedure NAME in ENVIRONMENT."
   (let* ((definition (title "def-interp-proc" name))
          (parameters (plain-parameters parameters (list* name parameters body) environment
                                        definition))
@@ -42,7 +41,6 @@
                                 ',(source-here) '(def-interp-proc ,@form))))))))
 
 (defun check-plan-name (definition name)
-  "Signal MALFORMED-DEFINITION unless NAME, of DEFINITION, is a symbol that users can define."
   (unless (symbolp name) (reject-clause definition name "a symbol as the name"))
   (check-function-name definition name))
 
@@ -112,7 +110,6 @@ of the variable and the word for each word that must be there literally."
 than the compiler's stack can bear.")
 
 (defun larger-than-p (form limit)
-  "True if there are more than LIMIT conses in FORM."
   (let ((open (list form)))
     (loop while open
           do (let ((part (pop open)))

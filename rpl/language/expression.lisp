@@ -52,7 +52,6 @@
                     collect `(,number (,function)))))))))
 
 (defun node-function (function name clauses variables forms)
-  "Return the definition of FUNCTION, of a node called NAME, its task and frame and VARIABLES."
   `(defun ,function (node task frame ,@variables)
      (declare ,@(when (nth-value 1 (clause :hot clauses)) (list *hot*))
               (type ,name node) (type task task) (type frame frame)

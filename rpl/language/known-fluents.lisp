@@ -17,7 +17,6 @@
   (and (symbolp form) (known-vector-variable-p form)))
 
 (defun known-fluent-p (form environment)
-  "True if FORM, in ENVIRONMENT, is known to be a fluent."
   (cond ((null form) nil)
         ((symbolp form)
          (or (known-fluent-variable-p form)
@@ -101,7 +100,6 @@ one."
 ;;; Arguments.
 
 (defun takes-fluents-p (type)
-  "True if an argument of TYPE may be a fluent."
   (multiple-value-bind (may known) (ignore-errors (subtypep 'fluent type))
     (or may (not known))))
 
@@ -164,7 +162,6 @@ one."
     nil))
 
 (defun warn-of-counting (form)
-  "Warn that FORM, an INCF or DECF, has a fluent as its place."
   (destructuring-bind (name fluent &optional (by 1)) form
     (warn-of-form form "~(~A~) cannot change ~S, which is a fluent. Write ~S."
                   name fluent
@@ -178,7 +175,6 @@ one."
        (known-value-p value environment)))
 
 (defun warn-of-assignment (form fluent value)
-  "Warn that FORM puts what VALUE gives in the place of FLUENT."
   (warn-of-form form "~(~A~) puts ~S in the place of the fluent ~S, which is lost. Write ~S."
                 (first form) value fluent `(set-value ,fluent ,value)))
 
@@ -195,7 +191,6 @@ one."
   "Operators that give variables another value. INCF and DECF do so to numbers only.")
 
 (defun assigned-p (variable forms)
-  "True if VARIABLE may get another value in FORMS."
   (map-calls (lambda (call)
                (when (and (operator-in-p call *assigning-operators*)
                           (mentions-p variable (rest call)))

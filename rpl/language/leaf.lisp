@@ -8,7 +8,6 @@
 ;;; What is written for a truth value must not be a vector of fluents.
 
 (defun own-operation-p (form environment names)
-  "True if FORM is the plan's own call of one of the operators NAMES."
   (and (consp form)
        (own-text-p form)
        (operator-in-p form names)
@@ -98,7 +97,6 @@
                   do (setf last part))))))
 
 (defun leaf-meaning (form environment)
-  "Return FORM, met in a leaf, with its plan meaning."
   (cond ((global-symbol-macro-p form environment)
          (note-own-text (macroexpand-1 form environment)))
         ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
@@ -116,14 +114,12 @@
                  meaning)))))
 
 (defun as-lisp (form scope)
-  "Return FORM, a leaf's, as Lisp is to compile it."
   (cond ((and (atom form) (not (symbol-macro-p form (scope-environment scope)))) form)
         (t (doubt-leaf form)
            (let ((*fluents-here* (scope-fluents scope)))
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
 (defun test-lambda (form scope)
-  "Return the lambda expression, of the environment, for FORM as a condition."
   (leaf-lambda (as-lisp (condition-form form (scope-environment scope)) scope) scope))
 
 (defun condition-lambda (form scope)
@@ -142,11 +138,9 @@ fluent to wait for."
   (leaf-lambda (as-lisp form scope) scope))
 
 (defun bundle-up (&optional value &rest more)
-  "Return the values it is called with as one object."
   (if more (make-bundle (cons value more)) value))
 
 (defun leaf-code (form scope)
-  "Return code that builds the leaf for FORM."
   (let ((meaning (as-lisp form scope)))
     `(make-leaf :form ',(form-as-written form)
                 :function ,(leaf-lambda (if (and (scope-several scope) (consp form))

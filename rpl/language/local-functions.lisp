@@ -28,7 +28,6 @@ them if OUTER, and returns the environment for a procedure's body."
       (reject-suspension reason (list 'lambda parameters)))))
 
 (defun mentions-function-p (name forms)
-  "True if #'NAME occurs in FORMS."
   (cond ((atom forms) nil)
         ((equal forms `(function ,name)) t)
         (t (loop for tail on forms
@@ -53,7 +52,6 @@ them if OUTER, and returns the environment for a procedure's body."
         finally (return found)))
 
 (defun procedure-scope (scope definitions)
-  "Return SCOPE with DEFINITIONS, of local procedures, visible."
   (if definitions
       (inner-scope scope
                    :procedures (append (loop for (name parameters) in definitions
@@ -66,7 +64,6 @@ them if OUTER, and returns the environment for a procedure's body."
       scope))
 
 (defun procedure-body-code (name form body scope)
-  "Return code for BODY, of the procedure called NAME, whose source is FORM."
   (with-tags-code form (tags-in body) (several-scope scope)
                   (lambda (scope)
                     (block-code name form scope
@@ -107,7 +104,6 @@ them if OUTER, and returns the environment for a procedure's body."
             body-code))))
 
 (defun functions-lambda (operator definitions scope)
-  "Return the lambda expression that makes an environment of the Lisp functions DEFINITIONS."
   (let ((definitions (loop for (name parameters . body) in definitions
                            collect (list* name (untyped-lambda-list parameters) body))))
     (leaf-lambda (as-lisp `(,operator ,definitions

@@ -13,7 +13,6 @@
   +parked+)
 
 (defun turn-count (count)
-  "Return COUNT, of turns, a number or a fluent that holds one. Signals WRONG-ARGUMENT."
   (let ((count (fluent-value count)))
     (check-argument n-times count (quantity-p count)
                     "a number of turns, from -1e15 to 1e15, first of all: (n-times count form...)")

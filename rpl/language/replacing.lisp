@@ -31,13 +31,11 @@
 ;;; Finding.
 
 (defun local-body (procedure)
-  "Return the body of PROCEDURE if that is local to a plan, or NIL."
   (and (procedure-body procedure)
        (not (eq procedure (find-procedure (procedure-name procedure) nil)))
        (procedure-body procedure)))
 
 (defun inner-nodes (node)
-  "Return the nodes that NODE consists of, in order."
   (loop for part in (node-parts node)
         append (typecase part
                  (node (list part))
@@ -77,7 +75,6 @@
 ;;; Replacing.
 
 (defun written-code (node)
-  "Return what stands in NODE, a tagged one, as one form."
   (let ((forms (cddr (node-form node))))
     (if (rest forms) `(seq ,@forms) (first forms))))
 

@@ -136,7 +136,6 @@ ADDITIONS."
       (:wrapping (first parts)))))
 
 (defun wrap-for-leaf (form scope)
-  "Return FORM with everything that is visible in SCOPE around it."
   (dolist (layer (scope-layers scope) form)
     (unless (equal (cddr layer) '(()))  ; no variables
       (setf form `(,@(layer-wrapping layer scope) ,form)))))

@@ -83,7 +83,6 @@ user's that is called as iterate's are is none."
       "Bind the value that it needs with let before, so that the plan waits there."))
 
 (defun reject-suspension (form container)
-  "Signal MISPLACED-SUSPENSION: FORM would make the task wait inside CONTAINER."
   (let ((advice (advice-for container)))
     (call-at-place form
                    (lambda ()
@@ -223,7 +222,6 @@ has the same names every time, so that traces can be compared."
      ,@body))
 
 (defun mentions-p (symbol code)
-  "True if SYMBOL occurs in CODE."
   (loop for tail = code then (cdr tail)
         while (consp tail)
         thereis (mentions-p symbol (car tail))

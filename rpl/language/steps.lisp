@@ -6,7 +6,6 @@
 
 (declaim (inline enter-last))
 (defun enter-last (node environment frame)
-  "Begin NODE as the last thing that FRAME does."
   (let ((up (frame-up frame)))
     (if (leaf-p node)
         (values up (call-leaf node environment))
@@ -34,7 +33,6 @@
         (node-form node))))
 
 (defun steps-code (forms scope)
-  "Return code for FORMS, two or more, which run in order."
   (let ((single (single-scope scope)))
     (naming-code `(make-steps :form '(seq ,@forms)
                               :parts (vector ,@(loop for (form . more) on forms
@@ -59,7 +57,6 @@
   (and (consp form) (eq (first form) 'declare)))
 
 (defun declared-special (variables forms)
-  "Return those of VARIABLES that the declarations in FORMS call special."
   (loop for form in forms
         when (declaration-p form)
           append (loop for (kind . names) in (rest form)

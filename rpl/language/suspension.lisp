@@ -21,7 +21,6 @@ form and its scope and returns code that builds a node."
   "Functions after which somebody else may be ready.")
 
 (defun find-plan-form (form environment)
-  "Return the plan form that FORM is one of, or NIL."
   (and (consp form)
        (symbolp (first form))
        (not (local-function-p (first form) environment))

@@ -45,7 +45,6 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
       (spawn task branch environment index level)))
 
 (defun tag-name-p (name)
-  "True if NAME, in (:tag name form...), can be bound to a task."
   (and (symbolp name) (not (constantp name))))
 
 (define-plan-form ":TAG" :must (name &rest body) (form scope)

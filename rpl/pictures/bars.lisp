@@ -87,7 +87,6 @@ grey: tests/palette.lisp measures it.")
     (draw black* 0)))
 
 (defun textured-box (canvas texture x y width height)
-  "Draw a box with a black outline, full of TEXTURE."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* x y width height t))
   (with-color black*
@@ -103,7 +102,6 @@ grey: tests/palette.lisp measures it.")
     (t (textured-box canvas texture x y width height))))
 
 (defun look-box (canvas kind x y width height)
-  "Draw a box with the look of KIND."
   (destructuring-bind (color texture text) (rest (assoc kind *looks*))
     (declare (ignore text))
     (if in-color*
@@ -122,7 +120,6 @@ grey: tests/palette.lisp measures it.")
 ;;; A bar.
 
 (defun last-tick (bar)
-  "Return the last tick that BAR, its parts or commands reach."
   (reduce #'max (append (mapcar #'span-end (bar-commands bar)) (mapcar #'last-tick (bar-parts bar)))
           :initial-value (bar-end bar)))
 
@@ -170,7 +167,6 @@ cut to two decimals; of a long one its beginning."
     (cut (format nil "~{~A~^ ~}" (mapcar #'plain-number (uiop:split-string own))) 56)))
 
 (defun ink-in-lane (span)
-  "Return the colour of text on SPAN, a command."
   (if (and (trouble-p (span-error span)) (not in-color*)) black* white*))
 
 (defun place-for-name (length x width from to)
@@ -220,7 +216,6 @@ is free from FROM on. Return from where on it is free then."
       (write-command canvas span x y width from to))))
 
 (defun draw-lane (canvas spans y scale)
-  "Draw the commands SPANS of a row in their lane."
   (loop with free = (scale-left scale)
         for (span next) on (stable-sort (copy-list spans) #'< :key #'span-start)
         do (setf free (draw-command canvas span next free y scale))))

@@ -18,8 +18,6 @@
         *package*)))
 
 (defun timeline-svg (bars most in-color title scale)
-  "Return the timeline of BARS, in at most MOST rows, below TITLE, as an SVG document, magnified by
-SCALE."
   (let ((*package* (plan-package bars)))
     (with-output-to-string (stream)
       (with-svg (canvas stream :color-p in-color :zoom scale)
@@ -48,7 +46,6 @@ the file's truename. Signals WRONG-ARGUMENT and MISUSE."
     (save-svg (timeline-svg bars most in-color title scale) file kind)))
 
 (defun tree-svg (image)
-  "Return the tree of tasks of IMAGE as an SVG document."
   (with-output-to-string (stream)
     (with-svg (canvas stream)
       (with-canvas (canvas) (values 640 (draw-task-tree canvas image))))))

@@ -62,7 +62,6 @@ to be seen."
 ;;; Rows.
 
 (defun task-head (image)
-  "Return which task IMAGE is of, and what it is at."
   (format nil "~D ~@[~A ~]~A~@[  (~D part~:P folded)~]" (task-image-serial image)
           (task-image-name image) (task-image-form image)
           (and (task-image-folded-p image) (task-image-parts image))))

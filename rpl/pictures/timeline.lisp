@@ -31,14 +31,12 @@
   "Lists (what text painter): what colours and marks mean.")
 
 (defun looks-of (bar)
-  "Return what is drawn of BAR, as *LEGEND* has it."
   (append (list (if (bar-call-p bar) :call :parts) (bar-outcome bar))
           (mapcar #'span-kind (bar-spans bar))
           (loop for span in (bar-commands bar)
                 collect (if (trouble-p (span-error span)) :trouble :command))))
 
 (defun legend-for (rows)
-  "Return those entries of *LEGEND* that ROWS need."
   (let ((drawn (loop for row in rows append (mapcan #'looks-of (row-bars row)))))
     (remove-if-not (lambda (entry) (member (first entry) drawn)) *legend*)))
 
@@ -84,7 +82,6 @@ MOST."
          least most))
 
 (defun draw-row (canvas row y scale)
-  "Draw ROW with its upper edge at Y, its name left of SCALE."
   (with-subject (canvas (first (row-bars row)))
     (let ((width (max 80 (- (scale-left scale) 20))))
       (write-at canvas 10 (+ y 11) (or (fitted (name-to-fit row width) width) ""))))

@@ -61,8 +61,6 @@ MISUSE if there is none."
                              #'identity)))))
 
 (defun no-rollout (scene trial seed condition)
-  "Return the rollout number TRIAL, with SEED, of SCENE, which has not even begun because of
-CONDITION."
   (multiple-value-bind (how result cost broken) (broken-off condition :world)
     (make-rollout scene trial seed how result 0 cost 0 '() broken)))
 

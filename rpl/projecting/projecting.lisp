@@ -49,7 +49,6 @@ believed in, which does not know it."
 ;;; In plans.
 
 (defun asking-interface (task)
-  "Return the interface of the plan of TASK. Signals MISUSE if no robot is driven by it."
   (let ((interface (runner-client (task-runner task))))
     (if (interface-p interface)
         interface

@@ -66,12 +66,10 @@ if none did."
                    (remove-if-not #'rollout-succeeded-p (projection-rollouts projection)))))
 
 (defun first-error-text (projection)
-  "Return in a line the first Lisp error in rollouts of PROJECTION, or NIL if there was none."
   (let ((condition (some #'error-of (projection-rollouts projection))))
     (and condition (cut (brief-text condition) 120))))
 
 (defun reasons-text (projection)
-  "Return in a line why rollouts of PROJECTION did not succeed, or NIL if all did."
   (let ((failures (projection-failures projection)))
     (and failures
          (cut (format nil "~{~A~^, ~}"

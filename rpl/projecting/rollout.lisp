@@ -56,7 +56,6 @@ over."
        (rollout-result rollout)))
 
 (defun error-of (rollout)
-  "Return the Lisp error that is the failure of ROLLOUT, or NIL."
   (let ((failure (rollout-failure rollout)))
     (and (typep failure 'lisp-failure) (lisp-failure-condition failure))))
 
@@ -68,7 +67,6 @@ over."
           (t (type-of failure)))))
 
 (defun outcome-word (state)
-  "Return what a picture of ways calls STATE, of a rollout."
   (case state
     (:succeeded "success")
     (:limit "limit")

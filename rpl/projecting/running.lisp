@@ -37,7 +37,6 @@ how it has ended, with which result, at no cost, and OPTION."
   (values :failed (make-condition 'lisp-failure :condition condition) nil option))
 
 (defun with-cost (question how result)
-  "Return HOW a rollout for QUESTION has ended, with which RESULT, and at what cost."
   (handler-case (values how result (cost-of question))
     (error (condition) (broken-off condition :cost))))
 

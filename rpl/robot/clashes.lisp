@@ -7,7 +7,6 @@
 ;;; plans that were begun one after the other know nothing of each other.
 
 (defun all-to-succeed-p (task)
-  "True if TASK is at a construct all whose branches are to succeed."
   (let ((frame (task-frame task)))
     (and frame
          (operator-called-p (node-form (frame-node frame)) "PAR" "PAR-LOOP" "PARTIAL-ORDER"))))
@@ -39,7 +38,6 @@ happens."
               (not (reacting-to-events-p newer common))))))
 
 (defun deed-text (deed)
-  "Return in words what DEED is, and whose."
   (let ((task (deed-task deed)))
     (format nil "rpl-~(~A~) of ~@[~A in ~]the plan ~A"
             (deed-name deed)

@@ -68,12 +68,10 @@
 ;;; Hands. One inside a box inside a bin is, when it comes out of the box, inside the bin.
 
 (defun depth-inside (hand)
-  "Return inside of how many things, one in the other, HAND is."
   (loop for outer = (part-location hand) then (outer-location outer)
         while outer count t))
 
 (defun went-into (hand destination)
-  "Note that HAND went into DESTINATION; return that."
   (setf (hand-way-in hand)
         (cons destination (last (hand-way-in hand) (1- (depth-inside hand)))))
   destination)

@@ -26,7 +26,6 @@ OUTCOME makes settings of an answer."
   (over-p nil))
 
 (defun deed-name (deed)
-  "Return the name of the command of DEED."
   (command-name (deed-command deed)))
 
 (defstruct (answer (:constructor make-answer (deed err settings last-p)) (:copier nil))
@@ -52,7 +51,6 @@ OUTCOME makes settings of an answer."
 ;;; Settings. (:error fluent code) sets a fluent as :SET does.
 
 (defun plain-settings (settings)
-  "Return SETTINGS as APPLY-SETTINGS takes them."
   (loop for (kind . more) in settings
         collect (cons (if (eq kind :error) :set kind) more)))
 

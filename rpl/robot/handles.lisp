@@ -11,7 +11,6 @@
 ;;; after a rewind begins an era; so does RPL-INIT-ROBOT, after which numbers begin anew.
 
 (defun era-of (number interface)
-  "Return the era of the task with NUMBER of the plans of INTERFACE."
   (car (find number (interface-eras interface) :key #'cdr :test #'>)))
 
 (defun interface-of (robot simulation)

@@ -137,7 +137,6 @@ for that, or some plan is ready. For any thread."
     (and calls (user-calls-origin calls) (user-calls-waiting-p calls))))
 
 (defun hog-of (interface)
-  "Return the task that keeps the thread of the plans of INTERFACE, or NIL."
   ;; Whoever watches sees only at his next look that it has gone on.
   (let ((task (interface-hog interface)))
     (and task (eq :running (task-state task)) (not (asks-p interface)) task)))
@@ -209,7 +208,6 @@ known to be at Lisp code that does not return. One that waits in a debugger can 
     (interface-thread interface)))
 
 (defun call-to-plans (interface)
-  "Let the plans of INTERFACE hear soon that there is something for them."
   (let ((simulation (interface-simulation interface)))
     (if (thread-of interface)
         (wake interface)
@@ -245,7 +243,6 @@ known to be at Lisp code that does not return. One that waits in a debugger can 
   (or *reacting* *interface*))
 
 (defun usable-interface ()
-  "Return the interface that can be used here, or NIL."
   (let ((interface (interface-here)))
     (and (usable-p interface) interface)))
 

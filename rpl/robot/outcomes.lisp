@@ -29,7 +29,6 @@ TYPE (reading 181)."
       (values (convert-argument (first arguments) type operator) (rest arguments))))
 
 (defun note-last-command (interface operator resource)
-  "Let INTERFACE know that the plan at work here has called OPERATOR for RESOURCE."
   (let ((task (task-at-work interface)))
     (when task
       (setf (interface-last-command interface)
@@ -41,8 +40,6 @@ TYPE (reading 181)."
     (if (eql serial (task-serial (task-top task))) (values operator part) nil)))
 
 (defun issue-in-plan (interface operator command outcome arguments)
-  "Let INTERFACE issue COMMAND with ARGUMENTS, those of the plan function OPERATOR; see
-COMMAND-IN-PLAN."
   (let ((issue (note-command operator arguments)))
     (multiple-value-bind (resource arguments)
         (convert-resource arguments (spec-type (command-resource command)) operator)
@@ -84,8 +81,6 @@ and the results, makes settings of its end. Return nothing."
         (argument-type-text type argument))))
 
 (defun check-in-plan (interface operator command arguments)
-  "Signal WRONG-ARGUMENT in the name of OPERATOR if COMMAND, for a plan of INTERFACE, does not take
-ARGUMENTS."
   (loop for spec in (command-parameters command)
         for argument in arguments
         unless (argument-of-type-p argument (spec-type spec))
@@ -93,7 +88,6 @@ ARGUMENTS."
                                     :expected (expected-text interface (spec-type spec) argument))))
 
 (defun plan-function-name (command-name)
-  "Return the symbol of the plan function for COMMAND-NAME, in the package at hand."
   (symbolicate 'rpl- command-name))
 
 (defun check-fluent (name clause)
@@ -101,7 +95,6 @@ ARGUMENTS."
     (reject-clause "define-outcome" clause "a fluent variable, as DEFINE-FLUENTS defines")))
 
 (defun clause-form (clause)
-  "Return a form that makes a list of settings from CLAUSE of DEFINE-OUTCOME."
   (case (and (consp clause) (first clause))
     (:set (destructuring-bind (fluent value) (rest clause)
             (check-fluent fluent clause)

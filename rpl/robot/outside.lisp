@@ -27,7 +27,6 @@ commands of the robot such as COMMAND; or NIL."
                  (twin-text command)))))
 
 (defun look-for-outside (interface)
-  "Say so if a command that no plan of INTERFACE has given has ended, and a plan waits for that."
   (let* ((robot (interface-robot interface))
          (event (resource-event robot))
          (command (and (operation-p event)

@@ -6,13 +6,11 @@
 ;;; too, unless the thinking mode of the run gives them a thread of their own.
 
 (defun thread-wanted-p (interface)
-  "True if plans of INTERFACE are to react in a thread of their own."
   (let ((simulation (interface-simulation interface)))
     (and (timeline-real-p (simulation-timeline simulation))
          (live-p simulation))))
 
 (defun charge-as-told (interface)
-  "Let thinking cost the plans of INTERFACE what it costs in its run now."
   (let ((timeline (simulation-timeline (interface-simulation interface))))
     (set-charges (interface-runner interface)
                  (thinking-charged-p timeline)
@@ -59,7 +57,6 @@ nothing happens."
   (plan-runner-tasks (interface-runner interface)))
 
 (defun woken-by-tick-p (interface)
-  "True if a plan of INTERFACE waits for this tick, or an earlier one."
   (let ((tick (wake-tick interface)))
     (and tick (>= (simulation-tick (interface-simulation interface)) tick))))
 
@@ -110,7 +107,6 @@ that this failure happened, if that was just now."
                   (swap-if (interface-unwanted interface) tasks (remove task tasks)))))
 
 (defun note-end (interface task)
-  "Do what is due when TASK, a top-level task of INTERFACE, has ended."
   (no-longer-unwanted interface task)
   (cond ((eq :succeeded (task-state task))
          (tell-of-unawaited interface task)

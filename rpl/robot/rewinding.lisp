@@ -7,7 +7,6 @@
 ;;; no journal; the run remembers it, if it is one that can be rewound.
 
 (defun react-again ()
-  "Let plans react between two ticks, as they did then."
   (let ((interface (usable-interface)))
     (when interface
       (with-plans (interface) (react-fully interface)))))
@@ -65,7 +64,6 @@ and VALUE."
 ;;; What the run was that is over is forgotten.
 
 (defun realm-of (simulation)
-  "Return what the fluents of SIMULATION belong to."
   (cdr (assoc '*realm* (environment-of simulation))))
 
 (defun leave-fluents (old new)

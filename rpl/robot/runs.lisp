@@ -86,7 +86,6 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
   "How many characters a report of plans has at most.")
 
 (defun ended-by-itself-p (task)
-  "True if TASK is over, and nobody has made it evaporate."
   (and (task-over-p task) (not (eq :evaporated (task-state task)))))
 
 (defun pass-until (interface over last)
@@ -152,7 +151,6 @@ but somebody outside can let plans go on, say so, once."
 ;;; What did not end.
 
 (defun report-limit (interface task)
-  "Queue an error message that says that TASK was given up, and what it and its parts wait for."
   (error-set "The plan " (task-label task) " was given up at tick "
              (simulation-tick (interface-simulation interface)) ", after " *plan-limit*
              " ticks; see *PLAN-LIMIT*."
@@ -161,7 +159,6 @@ but somebody outside can let plans go on, say so, once."
              (cut (with-output-to-string (stream) (print-tasks task stream)) +longest-report+)))
 
 (defun await-plan (interface task)
-  "Let TASK go on until it is over, or cannot be. Return its state, or how it came that it is not."
   (let ((state (if (live-p (interface-simulation interface))
                    (await-over interface task)
                    (run-headless interface task))))

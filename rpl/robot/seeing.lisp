@@ -10,14 +10,12 @@
                         (and interface (interface-runner interface)))))
 
 (defun trace-if-wanted (task)
-  "Let the runner of TASK, a plan that starts, keep a trace if *TRACE-PLANS* says so."
   (when *trace-plans* (start-trace (task-runner task))))
 
 (pushnew 'trace-if-wanted *plan-start-hooks*)
 
 ;; What was kept of the run, to go back to, may be older than that a trace is wanted.
 (defun trace-rewound (old new)
-  "Let the plans of NEW, which goes on in the place of OLD, keep a trace if *TRACE-PLANS* says so."
   (declare (ignore old))
   (when *trace-plans*
     (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))

@@ -44,7 +44,6 @@ if there is none.")
   (and *simulation* (funcall *robot-to-drive*)))
 
 (defun check-world (robot)
-  "Signal MISUSE if ROBOT is in another world than the one that we are in, if any."
   (let ((world (robot-world robot)))
     (unless (or (null *world*) (eq world *world*))
       (reject-use "rpl-init-robot: ~A is not in the world that we are in, ~

@@ -27,7 +27,6 @@
          parts)))
 
 (defun text-of-stranded (task parts)
-  "Return in a sentence that PARTS of TASK wait in vain, and what could be done."
   (format nil "~A, which nothing in the run will change.~A"
           (text-of-plans (list task)) (advice-on-stillness parts)))
 

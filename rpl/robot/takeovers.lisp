@@ -14,7 +14,6 @@
 message, and the queue of these forgets the oldest.")
 
 (defun takeover-count (interface resource)
-  "Return a cons of RESOURCE and how often it has been taken over in this tick."
   (let ((tick (simulation-tick (interface-simulation interface))))
     (unless (eql tick (interface-takeover-tick interface))
       (setf (interface-takeover-tick interface) tick
@@ -23,7 +22,6 @@ message, and the queue of these forgets the oldest.")
         (first (push (cons resource 0) (interface-takeovers interface))))))
 
 (defun taker-text (task)
-  "Return in words which TASK it is."
   (if task
       (format nil "~{~A~^ > ~} (task ~D)" (task-path task) (task-serial task))
       "somebody outside of plans"))

@@ -27,7 +27,6 @@ table of what has been looked through."
   "What is known of the kickers in the run of an interface: lists of conses (kicker . tells-p).")
 
 (defun telling-kicker-p (kicker interface)
-  "True if KICKER, of a thing in the run of INTERFACE, may change a fluent."
   (let ((known (assoc kicker (gethash interface *tellers*) :test #'eq)))
     (if known
         (cdr known)
@@ -39,6 +38,5 @@ table of what has been looked through."
           answer))))
 
 (defun kickers-may-tell-p (interface)
-  "True if a kicker in the run of INTERFACE may change a fluent."
   (some-kicker (lambda (kicker) (telling-kicker-p kicker interface))
                (simulation-world (interface-simulation interface))))

@@ -39,7 +39,6 @@ NIL if that was aborted."
       (wake-owner (simulation-timeline simulation)))))
 
 (defun rest-plans (interface &optional seconds)
-  "Wait until something may have changed for the plans of INTERFACE, at most for SECONDS."
   (atomic-incf (interface-rests interface))
   (call-for-ticks interface)
   (wait-on-semaphore (interface-wake-up interface) seconds)
@@ -101,7 +100,6 @@ not if another is."
 
 ;; A time limit may come at any moment: it must not leave plans that wait for a thread to start.
 (defun ensure-thread (interface)
-  "Have a thread for the plans of a live simulation."
   (when (and (thread-wanted-p interface) (null (thread-of interface)))
     (deferring-interrupts
       (when (swap-if (interface-thread interface) nil :starting)

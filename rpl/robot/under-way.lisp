@@ -49,7 +49,6 @@
         (when (answer-last-p answer) (setf (deed-over-p deed) t))))))
 
 (defun answering (interface deed)
-  "Return the continuation for the command of DEED."
   (setf (deed-continuation deed)
         (lambda (err resource &rest results)
           (declare (ignore resource))
@@ -68,18 +67,15 @@
                                               :interrupt)))))))
 
 (defun hear-answers-on (resource interface except)
-  "Let plans hear what has been answered on RESOURCE, but for answers to EXCEPT."
   (dolist (answer (interface-answers interface))
     (let ((deed (answer-deed answer)))
       (when (and (eq resource (deed-resource deed)) (not (eq deed except)))
         (tell-at-rest (deed-task deed) (lambda () (hear answer interface)))))))
 
 (defun reacting-p (interface)
-  "True where plans of INTERFACE react."
   (eq *runner* (interface-runner interface)))
 
 (defun task-at-work (interface)
-  "Return the task of INTERFACE that is at work here, or NIL."
   (let ((task (and (reacting-p interface) (current-task))))
     (and task (eq :running (task-state task)) task)))
 

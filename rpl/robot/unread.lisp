@@ -63,7 +63,6 @@ supersedes how the same command ended before."
         (when (still-unread-p unread) (push unread (interface-unread interface)))))))
 
 (defun take-unread (interface task)
-  "Forget which commands of TASK, a plan of INTERFACE, nobody has looked at, and return them."
   (flet ((of-task-p (unread) (eql (task-serial task) (unread-plan unread))))
     (prog1 (remove-if-not #'of-task-p (interface-unread interface))
       (setf (interface-unread interface) (remove-if #'of-task-p (interface-unread interface))))))

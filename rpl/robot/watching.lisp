@@ -41,7 +41,6 @@ TASK, or NIL if it was at none."
       (member (task-top task) (interface-unwanted interface))))
 
 (defun warn-of-plan (task)
-  "Queue a warning that TASK is at Lisp code that does not return."
   (warn-at-once (format nil "The plan ~A has kept the plans' thread for ~,1F s and goes on, at ~A ~
                              in ~{~A~^ > ~}; (end-plan :all) or (stop-simulator) ends it"
                         (task-label (task-top task)) (hog-seconds)

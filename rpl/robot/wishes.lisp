@@ -47,7 +47,6 @@ it."))
     (complete (wish-task wish) value)))
 
 (defun refuse-wish (wish condition)
-  "Let the task of WISH fail because of CONDITION."
   (let ((task (wish-task wish)))
     (forget-wish wish)
     (at-home ((interface-runner (wish-interface wish)))

@@ -26,7 +26,6 @@ step."))
 (defparameter *longest-stack* 12 "How many expressions of a plan a break shows at most.")
 
 (defun write-break (break stream)
-  "Write to STREAM what BREAK is, the expressions under way, and the variables."
   (let ((task (plan-break-task break)))
     (format stream "~A~%  in task ~{~A~^ > ~}, at tick ~D"
             (plan-break-text break) (task-path task) (runner-tick (task-runner task)))
@@ -59,7 +58,6 @@ there to answer, it is a message.")
                (if (and (consp types) (not (eq 'or (first types)))) types (list types))))))
 
 (defun consider-break (failure task frame)
-  "Enter the debugger if that is wanted for FAILURE, which has just happened to TASK at FRAME."
   (when (break-wanted-p failure)
     (with-simple-restart (continue "Let the failure happen.")
       (enter-break (make-condition 'plan-break :text (own-text failure) :task task :frame frame)))))

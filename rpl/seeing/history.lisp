@@ -41,7 +41,6 @@ innermost first. Signals MISUSE."
     (lambda (number) (gethash number members))))
 
 (defun call-of-p (form operator)
-  "True if FORM calls what is called OPERATOR."
   (and (consp form) (symbolp (first form)) (same-name-p operator (first form))))
 
 (addition trace-of)
@@ -72,7 +71,6 @@ handled, in order. See TRACE-OF."
   (mapcar #'trace-entry-subject (trace-of which :event :failure :runner runner)))
 
 (defun answer-to (issue trace)
-  "Return the last entry of TRACE that answers ISSUE, or NIL."
   (find-if (lambda (entry)
              (and (eq :answer (trace-entry-event entry)) (eq issue (trace-entry-subject entry))))
            trace :from-end t))

@@ -60,7 +60,6 @@ first; of many the innermost."
 ;;; A task.
 
 (defun look-of (task)
-  "Return how TASK is, as a keyword."
   (cond ((evaporating-p task) (if (task-cleaning task) :cleaning :ending))
         ((blocked-p task) :blocked)
         ((task-cleaning task) :cleaning)

@@ -43,7 +43,6 @@ that is a leaf; NIL if it begins none, or one that has a step of its own.")
       (setf (course-until course) :next))))
 
 (defun stops-p (course task)
-  "True if COURSE stops before an expression of TASK."
   (ecase (course-mode course)
     (:run nil)
     (:step t)
@@ -101,7 +100,6 @@ this task."
        (remove-if #'task-over-p (funcall (runner-stepper runner) nil nil) :key #'course-task)))
 
 (defun install-stepper (runner courses)
-  "Let tasks of RUNNER be gone through as COURSES say."
   (setf (runner-stepper runner)
         (and courses
              (lambda (task frame)
@@ -121,7 +119,6 @@ to go on. Where nobody is there to answer, it is a message, and the task goes on
     (values)))
 
 (defun step-if-wanted (task)
-  "Let TASK, a plan that starts, be gone through if *STEP-PLANS* says so."
   (when *step-plans* (step-task task)))
 
 (pushnew 'step-if-wanted *plan-start-hooks*)

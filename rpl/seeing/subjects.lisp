@@ -29,7 +29,6 @@ variable; or NIL."
           do (when name (return-from task-with (values task name))))))
 
 (defun valves-of (task)
-  "Return the valves that TASK has or waits for."
   (flet ((valves-in (object)
            (if (claim-p object) (claim-valves object) '())))
     (remove-duplicates

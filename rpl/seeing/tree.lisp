@@ -11,7 +11,6 @@
                  do (format stream "~V@T~(~A~) = ~A~%" (+ column 5) name (form-text value 70)))))
 
 (defun write-valve (valve stream)
-  "Write on a line to STREAM who has VALVE and who queues for it."
   (format stream "valve ~(~A~): ~:[free~;~:*of task ~D~]~@[, wanted by ~{~D~^, ~}~]~%"
           (form-text (valve-name valve) 40)
           (and (valve-owner valve) (task-serial (valve-owner valve)))

@@ -6,7 +6,6 @@
 ;;; with their values. Variables without a home package are the compiler's own, and are not shown.
 
 (defun note-task-seen (task)
-  "Note that somebody looks at TASK."
   (when (task-runner task) (note-seen (runner-client (task-runner task)))))
 
 (addition task-stack)

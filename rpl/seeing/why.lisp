@@ -35,7 +35,6 @@
         when (funcall test entry) return entry))
 
 (defun part-ended-p (entry number trace)
-  "True if ENTRY is the end of a part of the task NUMBER."
   (and (member (trace-entry-event entry) '(:succeed :fail :evaporate))
        (eql number (trace-entry-value (start-of (trace-entry-task entry) trace)))))
 
@@ -48,7 +47,6 @@
             (issue-task issue) (and entry (trace-entry-tick entry)))))
 
 (defun agent-words (agent trace)
-  "Return who AGENT, of an entry of TRACE, is."
   (cond ((integerp agent)
          (format nil "task ~D, ~A" agent (task-words agent trace)))
         ((answer-p agent)
@@ -57,7 +55,6 @@
         (t (agent-text agent))))
 
 (defun task-words (number trace)
-  "Return what the task NUMBER is called: its name, or its expression."
   (let ((start (start-of number trace)))
     (if (trace-entry-subject start)
         (format nil "~(~A~)" (trace-entry-subject start))
@@ -82,7 +79,6 @@
         (format nil "~A came true" (fluent-text fluent)))))
 
 (defun part-words (end trace)
-  "Return in words what END, an entry of TRACE, says of a part that has ended."
   (format nil "its part ~D, ~A, ~A" (trace-entry-task end)
           (task-words (trace-entry-task end) trace)
           (ecase (trace-entry-event end)
@@ -175,7 +171,6 @@ number END, if by no wake-up; or NIL."
     (remove nil sentences)))
 
 (defun start-sentence (start trace)
-  "Return how the task was started that START, an entry of TRACE, is of."
   (let ((number (trace-entry-task start)) (parent (trace-entry-value start)))
     (if parent
         (format nil "Task ~D, ~A, was started at tick ~D as a part of task ~D, ~A."

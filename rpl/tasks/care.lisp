@@ -12,7 +12,6 @@
 ;;; What happens to the task.
 
 (defun current-failure (runner condition)
-  "Return the failure of the running task of RUNNER that CONDITION, which it met, means."
   (let ((task (runner-current runner)))
     (failure-of condition task (task-frame task))))
 

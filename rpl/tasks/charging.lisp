@@ -32,7 +32,6 @@ tick, or as many as it needs if that is NIL."
 ;;; Giving steps.
 
 (defun allow (runner steps)
-  "Let the tasks of RUNNER take STEPS from now on."
   (setf (runner-exhausted runner) nil
         (runner-uncounted runner) 0
         (runner-limit runner) (+ (runner-steps runner) steps)))

@@ -64,7 +64,6 @@ unknown."
            (task-awaits task))))
 
 (defun stuck-text (task)
-  "Return in words what TASK, which is stuck, waits for."
   (let ((awaiting (task-awaiting task)))
     (if (and awaiting (hinderers awaiting))
         (format nil "~A waits for ~A" (task-label task) (hindrance-text awaiting))
@@ -87,7 +86,6 @@ unknown."
 ;;; that part ends.
 
 (defun first-working-part (task)
-  "Return the first of the WORKING-PARTS of TASK."
   (let ((child (loop for child = (task-newest-child task) then (task-older child)
                      while child
                      when (<= (task-level child) (task-level task)) return child)))

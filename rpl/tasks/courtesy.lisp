@@ -19,7 +19,6 @@ HEARER has come to rest."
   (format nil "task ~D to hear something" (task-serial (courtesy-hearer courtesy))))
 
 (defun at-rest-p (task runner)
-  "True if TASK of RUNNER does not go on for now."
   (case (task-state task)
     (:running nil)
     (:ready (or (spent-p task runner) (blocked-p task)))
@@ -53,14 +52,12 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
             (task-value task) value))))
 
 (defun settle (courtesy)
-  "Do what COURTESY is for."
   (let ((teller (courtesy-teller courtesy)))
     (call-user-code (courtesy-function courtesy) "what a plan is told")
     (when (eq courtesy (task-awaiting teller))
       (wake teller (task-value teller)))))
 
 (defun settle-all (courtesies runner)
-  "Do what COURTESIES of RUNNER are for. True if there are any."
   (when courtesies
     (setf (runner-courtesies runner)
           (remove-if (lambda (courtesy) (member courtesy courtesies)) (runner-courtesies runner)))

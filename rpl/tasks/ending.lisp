@@ -17,7 +17,6 @@
         (t :running)))
 
 (defun note-status (task state)
-  "Let the status fluent of TASK, which is in STATE, say so."
   (when (task-status-fluent task)
     (set-value (task-status-fluent task) (status-word task state))))
 
@@ -146,7 +145,6 @@ none does and TASK has ended, +PARKED+."
         do (unless (beyond-evaporating-p child) (evaporate-here child))))
 
 (defun beyond-evaporating-p (task)
-  "True if TASK has not started, is over or evaporates already."
   (or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
 
 (addition evaporate)

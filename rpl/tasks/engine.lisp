@@ -110,12 +110,10 @@ returns true if it brought something new. Return :idle or :budget."
             (t (return :idle))))))
 
 (defun use-in (name form)
-  "Return the first use of the operator called NAME in FORM, or NIL."
   (cond ((operator-called-p form name) form)
         ((consp form) (or (use-in name (car form)) (use-in name (cdr form))))))
 
 (defun runaway-remedy (task)
-  "Return in sentences how TASK, which runs away, can be made to wait."
   (let* ((form (find-if (lambda (form)
                           (operator-called-p form "LOOP" "HANDLE-FAILURE" "WITH-FAILURE-HANDLING"))
                         (plan-backtrace task (task-frame task))))
@@ -131,7 +129,6 @@ often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
                           (return) leaves the loop~]. Ctrl-C interrupts RUN-PLAN." loop-p)))))
 
 (defun warn-of-runaway (runner)
-  "Queue a warning that names a task of RUNNER that has used all its steps, once for each form."
   (let* ((task (find :ready (append (runner-spent runner)
                                     (remove nil (coerce (ring-items (svref (runner-rings runner) 0))
                                                         'list)))
@@ -143,7 +140,6 @@ often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
                     (runaway-remedy task)))))
 
 (defun react-hearing (runner hear)
-  "Let RUNNER react, as RUN-ROUNDS does."
   (at-home (runner)
     (give-budget runner)
     (let ((outcome (let ((*leaves-offer-restarts* *break-on-user-error*))

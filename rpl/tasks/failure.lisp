@@ -83,7 +83,6 @@ CONDITION."
         +longest-failure+))
 
 (defun report-of (failure)
-  "Return what WRITE-FAILURE writes of FAILURE."
   (reporting (failure)
     (with-output-to-string (stream) (write-failure failure stream))))
 

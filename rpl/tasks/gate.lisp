@@ -51,7 +51,6 @@
          (zerop (frame-counter frame)))))
 
 (defun put-gate (task)
-  "Let TASK, which has not taken its first step, be at its gate."
   (let ((frame (task-frame task)))
     (setf (task-frame task) (make-frame +gate+ (frame-environment frame) frame))))
 

@@ -7,14 +7,12 @@
 ;;; of the branch, from 0. It stays true when the task is over.
 
 (defun top-place (task)
-  "Return the place of TASK, a top-level task."
   (cond ((null (task-name task)) (task-serial task))
         ((find (task-name task) (remove task (runner-roots (task-runner task))) :key #'task-name)
          (list (task-name task) (task-serial task)))
         (t (task-name task))))
 
 (defun part-place (task)
-  "Return which part of its parent TASK is."
   (let ((name (task-name task)))
     (cond ((null name) (task-index task))
           ((find name (remove task (task-children (task-parent task))) :key #'task-name)
@@ -33,7 +31,6 @@ nowhere: NIL (CRAM's paths go from the inside out, and have the operators' names
       (cons (top-place top) (mapcar #'part-place parts)))))
 
 (defun at-place-p (task step)
-  "True if TASK is what STEP, one of a place, names."
   (typecase step
     (integer (= step (if (task-parent task) (task-index task) (task-serial task))))
     ((cons (eql :tag) (cons t list))

@@ -105,7 +105,6 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
                   (if (has-twin-p name) (twin-text name) (format nil "(~(~A~) ...)" name)))))))
 
 (defun reject-procedure (name)
-  "Signal UNKNOWN-NAME: NAME is not that of a plan."
   (let ((remedy (plan-remedy name)))
     (if remedy
         (error 'unknown-name :kind "plan procedure" :name name :remedy remedy)
@@ -161,7 +160,6 @@ LAMBDA-LIST."
                 name name more name arguments)))
 
 (defun set-lambda-list (procedure lambda-list)
-  "Let PROCEDURE take what LAMBDA-LIST says."
   (let ((shape (shape-of lambda-list)))
     (setf (procedure-lambda-list procedure) lambda-list
           (procedure-least procedure) (shape-least shape)
@@ -221,7 +219,6 @@ plans, mean this one."
   (:documentation "A plan was called with arguments that it does not take."))
 
 (defun reject-arguments (procedure arguments trouble)
-  "Signal WRONG-ARGUMENTS: PROCEDURE does not take the list ARGUMENTS, for TROUBLE."
   (error 'wrong-arguments
          :operator (or (procedure-name procedure) "interp-lambda") :name "argument list"
          :value arguments

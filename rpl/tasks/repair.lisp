@@ -24,7 +24,6 @@ know each other."
     (cons task (mapcan #'live-parts children))))
 
 (defun live-tasks (runner)
-  "Return all tasks of RUNNER that are not over."
   (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
   (mapcan #'live-parts (reverse (runner-roots runner))))
 
@@ -60,7 +59,6 @@ know each other."
           (sift-up timer (1- (fill-pointer heap)) heap))))))
 
 (defun own-watchers (task)
-  "Return the watchers by which TASK hears of fluents."
   (remove-if-not #'watcher-p
                  (cons (task-awaiting task)
                        (mapcar #'frame-data (frame-chain (task-frame task))))))

@@ -34,7 +34,6 @@ them, a column and STREAM."
 ;;; Failures.
 
 (defun brief-failure-text (failure)
-  "Return what FAILURE reports, of bounded length."
   (cut (failure-text failure) 500))
 
 (defun write-some (control items stream &optional (most 30))
@@ -47,7 +46,6 @@ them, a column and STREAM."
     (format stream "    ... and ~D more~%" (- (length items) most))))
 
 (defun passed-on-text (failure)
-  "Return in words that FAILURE was handled and went on, or NIL."
   (and (failure-passed-on-by failure)
        (format nil "the handler for ~A ended without (return ...) or (retry), so the failure went ~
                     on"

@@ -22,14 +22,12 @@
 
 (declaim (inline ring-push ring-push-front ring-pop))
 (defun ring-push (item ring)
-  "Put ITEM behind all others in RING."
   (when (= (ring-count ring) (length (ring-items ring))) (grow-ring ring))
   (let ((items (ring-items ring)))
     (setf (svref items (logand (+ (ring-start ring) (ring-count ring)) (1- (length items)))) item)
     (incf (ring-count ring))))
 
 (defun ring-push-front (item ring)
-  "Put ITEM before all others in RING."
   (when (= (ring-count ring) (length (ring-items ring))) (grow-ring ring))
   (let* ((items (ring-items ring))
          (start (logand (1- (ring-start ring)) (1- (length items)))))

@@ -215,7 +215,6 @@ long. Where steps are counted it is one."
     (mark-level runner level)))
 
 (defun make-ready-first (task)
-  "Let TASK run before the others of its level."
   (let ((runner (task-runner task))
         (level (task-level task)))
     (setf (task-state task) :ready)
@@ -230,7 +229,6 @@ does to clean up only by what blocks that."
         thereis (plusp (task-blocked each))))
 
 (defun spent-p (task runner)
-  "True if TASK has used its slice in this round of RUNNER."
   (and (= (task-round task) (runner-round runner))
        (<= (task-slice task) 0)))
 
@@ -259,7 +257,6 @@ have used their slice."
     (when (eq (task-state task) :ready) (make-ready task))))
 
 (defun any-ready-p (runner)
-  "True if a task of RUNNER could go on now."
   (or (and (plusp (logandc2 (runner-mask runner) +interrupt+))
            (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner)))
       (some (lambda (task) (eq (task-state task) :ready)) (runner-spent runner))))

@@ -19,7 +19,6 @@
     (and clock (funcall clock))))
 
 (defun timed-step (start node task frame value)
-  "Do the step of NODE, at START by the clock; warn if it took long."
   (let ((runner (task-runner task)))
     (setf (runner-looked-at runner) nil)
     (multiple-value-prog1 (funcall (node-step node) node task frame value)
@@ -142,7 +141,6 @@ VALUE are what the last step returned; return what it should have."
       (when (task-uncounted-p task) (give-back runner taken)))))
 
 (defun check-room (runner)
-  "Fail if as many tasks of RUNNER as may be are under way."
   (unless (< (runner-alive runner) *plan-task-limit*)
     (if (running-task runner)
         (fail :class :too-many-tasks :limit *plan-task-limit*)

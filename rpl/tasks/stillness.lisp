@@ -47,7 +47,6 @@
          text)))
 
 (defun advice-alone (plan)
-  "Return in sentences why PLAN, the name of one that runs without a robot, waits for one in vain."
   (format nil "RUN-PLAN-ALONE runs ~A without a robot: no ticks of a run pass, in which commands ~
                could end. Run it on the robot: (with-simulation (ROBOT) (run-plan '~:*~A)), or ~
                live (simulator 'ROBOT) and (run-plan '~:*~A)." plan))
@@ -162,7 +161,6 @@ and which nobody means to wait for."
                                  (form-text (task-form task)) kind (form-text value 40) remedy)))))
 
 (defun tree-text (runner)
-  "Return all tasks of RUNNER as a text of bounded length."
   (cut (with-output-to-string (stream)
          (dolist (task (plan-runner-tasks runner))
            (write-task-tree task 0 stream)))

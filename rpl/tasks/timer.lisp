@@ -80,7 +80,6 @@
     (and (plusp (fill-pointer heap)) (aref heap 0))))
 
 (defun run-timers (timers tick)
-  "Call those of TIMERS that are due at TICK or before, in order."
   (loop for timer = (next-timer timers)
         while (and timer (<= (timer-due timer) tick))
         do (cancel-timer timer timers)

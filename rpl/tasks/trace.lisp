@@ -80,7 +80,6 @@ part of; the number of the task that a task is part of when it starts."
       (cut (one-line (note-text (if agent (asker-note agent) "a program or the REPL"))) 100)))
 
 (defun subject-text (subject)
-  "Return in words what a task waits for whose trace entry has SUBJECT."
   (cond ((null subject) nil)
         ((realp subject) (format nil "tick ~D" subject))
         (t (awaited-text subject))))
@@ -170,7 +169,6 @@ each in a list with its own FILL."
     (setf (chronicle-fill trace) fill)))
 
 (defun chunk-entries (chunk fill)
-  "Return a list of the entries in CHUNK up to FILL."
   (loop with place = 0
         while (< place fill)
         collect (flet ((next () (prog1 (svref chunk place) (incf place))))

@@ -23,7 +23,6 @@ TRACE-ENTRY, are evaluated only then."
 ;; Most frames that are noted have not begun: then one need not ask the node.
 (declaim (inline form-now))
 (defun form-now (task)
-  "Return the expression that TASK is at."
   (let ((frame (task-frame task)))
     (if (and frame (zerop (frame-counter frame)))
         (node-form (frame-node frame))
@@ -46,7 +45,6 @@ TRACE-ENTRY, are evaluated only then."
                      subject value)))
 
 (defun trace-changes (runner)
-  "Let the trace of RUNNER be told of every change of a fluent, and by whom."
   (setf (runner-wrapper runner) #'on-behalf
         (runner-on-change runner)
         (lambda (kind fluent value)

@@ -35,7 +35,6 @@
                      (assoc name (task-bindings-cells (frame-data frame)) :test #'eq))))
 
 (defun own-cell (name task)
-  "Return the cell of the variable NAME that is TASK's own, or NIL."
   (or (cell-in-frames name task)
       (assoc name (task-variables task) :test #'eq)))
 
