@@ -103,21 +103,8 @@ value a fluent was given and by whom, which command was issued or answered, and 
     (format stream "tick ~D, task ~D: ~(~A~)~@[ ~A~]" (trace-entry-tick entry)
             (trace-entry-task entry) (trace-entry-event entry) (trace-entry-detail entry))))
 
-;;; While plans run, an entry is four to six elements of a vector, which costs less than an object
-;;; would: tick; a number that tells event, task and what follows; form; subject; the value if
-;;; there is one; the agent if it is not the task itself. All vectors but the first are so long
-;;; that the collector leaves them where they are.
-
-(eval-when (:compile-toplevel :load-toplevel :execute)
-  (defparameter *trace-events*
-    #(:start :wait :wake :succeed :fail :evaporate :failure :clean :block :unblock
-      :set :pulse :command :answer :cleaned)
-    "All events of traces.")
-
-  (defun event-code (event)
-    "Return the number that stands for EVENT."
-    (or (position event *trace-events*)
-        (reject-name "event of traces" event (coerce *trace-events* 'list)))))
+;;; While plans run, an entry is seven elements of a vector, which costs less than an object would.
+;;; All vectors but the first are so long that the collector leaves them where they are.
 
 (defun make-chunk (count)
   (make-array count :initial-element 0))
@@ -143,53 +130,34 @@ each in a list with its own FILL."
   (setf (chronicle-chunk trace) (make-chunk 65536)
         (chronicle-fill trace) 0))
 
-(defun add-trace-entry (trace tick code task form subject value)
-  "Add an entry to TRACE, a chronicle, for the event of CODE: *ASKER* is its agent."
-  (declare #.*hot* (type chronicle trace) (type fixnum task) (type (unsigned-byte 4) code))
-  (when (> (+ 6 (chronicle-fill trace)) (length (chronicle-chunk trace))) (begin-chunk trace))
-  (let* ((chunk (chronicle-chunk trace))
-         (fill (chronicle-fill trace))
-         (asker *asker*)
-         (agent (if (task-p asker) (task-serial asker) asker))
-         (foreign (not (eql agent task))))
+(defun add-trace-entry (trace tick event task form subject value)
+  "Add to TRACE, a chronicle, that EVENT happened to TASK, a number: *ASKER* is the agent."
+  (declare #.*hot* (type chronicle trace))
+  (when (> (+ 7 (chronicle-fill trace)) (length (chronicle-chunk trace))) (begin-chunk trace))
+  (let ((chunk (chronicle-chunk trace)) (fill (chronicle-fill trace)) (asker *asker*))
     (setf (svref chunk fill) tick
-          (svref chunk (+ fill 1)) (logior (the fixnum (ash (ldb (byte 54 0) task) 6))
-                                           (the fixnum (ash code 2))
-                                           (if value 2 0)
-                                           (if foreign 1 0))
-          (svref chunk (+ fill 2)) form
-          (svref chunk (+ fill 3)) subject)
-    (incf fill 4)
-    (when value
-      (setf (svref chunk fill) value)
-      (incf fill))
-    (when foreign
-      (setf (svref chunk fill) agent)
-      (incf fill))
-    (setf (chronicle-fill trace) fill)))
+          (svref chunk (+ fill 1)) event
+          (svref chunk (+ fill 2)) task
+          (svref chunk (+ fill 3)) form
+          (svref chunk (+ fill 4)) subject
+          (svref chunk (+ fill 5)) value
+          (svref chunk (+ fill 6)) (if (task-p asker) (task-serial asker) asker)
+          (chronicle-fill trace) (+ fill 7))))
 
 (defun chunk-entries (chunk fill)
-  (loop with place = 0
-        while (< place fill)
-        collect (flet ((next () (prog1 (svref chunk place) (incf place))))
-                  (let* ((tick (next)) (code (next)) (form (next)) (subject (next))
-                         (task (ash code -6)))
-                    (make-trace-entry tick (svref *trace-events* (ldb (byte 4 2) code)) task
-                                      form subject
-                                      (if (logbitp 1 code) (next) nil)
-                                      (if (logbitp 0 code) (next) task))))))
+  (loop for place from 0 below fill by 7
+        collect (apply #'make-trace-entry (coerce (subseq chunk place (+ place 7)) 'list))))
 
 (defun trace-so-far (trace)
   "Return a function of no arguments that returns the entries that TRACE, a chronicle, has now, as a
-vector; for any thread and time: what has been noted stays. Return as well, roughly, how many these
-are."
+vector; for any thread and time: what has been noted stays. Return as well how many these are."
   (let ((chunk (chronicle-chunk trace)) (fill (chronicle-fill trace)) (full (chronicle-full trace)))
     (values (lambda ()
               (coerce (append (loop for (chunk fill) in (reverse full)
                                     append (chunk-entries chunk fill))
                               (chunk-entries chunk fill))
                       'simple-vector))
-            (floor (reduce #'+ full :key #'second :initial-value fill) 5))))
+            (floor (reduce #'+ full :key #'second :initial-value fill) 7))))
 
 (defun write-trace-entry (entry stream)
   (format stream "~6@A ~(~9A~) ~5D ~A~@[  ; ~A~]~%"

@@ -7,18 +7,12 @@
 ;;; By whose doing something happens is known by *ASKER*: the task at work, or whoever posted what
 ;;; is being applied.
 
-;; Here to be known when calls are compiled.
-(eval-when (:compile-toplevel :load-toplevel :execute)
-  (defun event-form (event)
-    "Return a form for the code of what EVENT, a form, says."
-    (if (keywordp event) (event-code event) `(event-code ,event))))
-
 (defmacro note-event (task event &optional subject value)
   "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see
 TRACE-ENTRY, are evaluated only then."
   (once-only (task)
     `(when (runner-trace (the plan-runner (task-runner ,task)))
-       (trace-task ,task ,(event-form event) ,subject ,value))))
+       (trace-task ,task ,event ,subject ,value))))
 
 ;; Most frames that are noted have not begun: then one need not ask the node.
 (declaim (inline form-now))
@@ -28,18 +22,18 @@ TRACE-ENTRY, are evaluated only then."
         (node-form (frame-node frame))
         (task-form task))))
 
-(defun trace-task (task code subject value)
+(defun trace-task (task event subject value)
   (declare #.*hot* (type task task))    ; 40 ns
   (let ((runner (task-runner task)))
     (declare (type plan-runner runner))
-    (add-trace-entry (runner-trace runner) (runner-tick runner) code (task-serial task)
+    (add-trace-entry (runner-trace runner) (runner-tick runner) event (task-serial task)
                      (form-now task) subject value)))
 
-(defun trace-doing (runner code subject value)
-  "Add to the trace of RUNNER that the task at work, if any, did something: the event of CODE."
+(defun trace-doing (runner event subject value)
+  "Add to the trace of RUNNER that the task at work, if any, did something: EVENT."
   (let* ((asker *asker*)
          (task (and (task-p asker) (eq runner (task-runner asker)) asker)))
-    (add-trace-entry (runner-trace runner) (runner-tick runner) code
+    (add-trace-entry (runner-trace runner) (runner-tick runner) event
                      (if task (task-serial task) 0)
                      (and task (task-form task))
                      subject value)))
@@ -47,9 +41,7 @@ TRACE-ENTRY, are evaluated only then."
 (defun trace-changes (runner)
   (setf (runner-wrapper runner) #'on-behalf
         (runner-on-change runner)
-        (lambda (kind fluent value)
-          (trace-doing runner (if (eq kind :set) #.(event-code :set) #.(event-code :pulse))
-                       fluent value))))
+        (lambda (kind fluent value) (trace-doing runner kind fluent value))))
 
 (defun trace-start (plan)
   "Note the start of PLAN, a top-level task, and of the tasks that it consists of."
@@ -100,7 +92,7 @@ record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
 error code ERROR; note that in the trace."
   (let ((*asker* (if issue (make-answer issue error) *asker*)))
     (when (and issue *runner* (runner-trace *runner*))
-      (trace-doing *runner* #.(event-code :answer) issue error))
+      (trace-doing *runner* :answer issue error))
     (funcall function)))
 
 (defmacro with-answer ((issue error) &body body)
