@@ -3,20 +3,21 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defstruct (attempt-record (:constructor make-attempt-record (order)) (:copier nil))
-  "The ORDER, a list, of what is still to be tried, and the FAILURES so far, last first."
+  "What is still to be tried, in ORDER: conses of a node and its environment; and the FAILURES so
+far, last first."
   (order '() :type list)
   (failures '() :type list))
 
-(defun order-as-written (attempts dice)
+(defun order-as-written (attempts environment dice)
   (declare (ignore dice))
-  (coerce attempts 'list))
+  (loop for attempt across attempts collect (cons attempt environment)))
 
-(defun order-by-chance (attempts dice)
-  "Return a list of ATTEMPTS, a vector, in an order that DICE choose; as written if there are none."
-  (loop with left = (coerce attempts 'list)
+(defun order-by-chance (attempts environment dice)
+  "Do as ORDER-AS-WRITTEN, in an order that DICE choose; as written if there are none."
+  (loop with left = (order-as-written attempts environment dice)
         while left
         collect (let ((chosen (if dice (roll-element left dice) (first left))))
-                  (setf left (remove chosen left :test #'eq :count 1))
+                  (setf left (remove chosen left :test #'eq))
                   chosen)))
 
 (defun all-failed (failures task frame)
@@ -36,14 +37,16 @@ fail with a composite failure."
           (order function '(function order-as-written)))
   (:steps
    (begin
-    (setf memory (make-attempt-record (funcall order attempts (runner-dice (task-runner task)))))
+    (setf memory (make-attempt-record
+                  (funcall order attempts environment (runner-dice (task-runner task)))))
     (at-once between-attempts))
    (trying (values (frame-up frame) value))
    (between-attempts
-    (cond ((attempt-record-order memory)
-           (next trying)
-           (enter (pop (attempt-record-order memory)) environment frame))
-          (t (give-up memory task frame)))))
+    (destructuring-bind (&optional attempt . inner) (pop (attempt-record-order memory))
+      (cond (attempt
+             (next trying)
+             (enter (the node attempt) inner frame))
+            (t (give-up memory task frame))))))
   (:unwind
    (when (and (in-state-p trying) (typep signal 'plan-failure))
      (push signal (attempt-record-failures memory))
@@ -62,24 +65,13 @@ otherwise as written."
 (define-construct try-each-in-order ((variable sequence) &body body)
   "Run BODY in a plan with VARIABLE bound to each element of SEQUENCE in turn until it succeeds;
 return its value. If it never does, fail with a composite failure."
+  (:like try-in-order)
   (:arguments sequence)
-  (:parts (items function (value-lambda sequence scope))
-          (body node (each-body-code variable body scope)))
-  (:code (block-code nil form scope #'build))
-  (:steps
-   (begin
-    (setf memory (make-attempt-record
-                  (item-list 'try-each-in-order (funcall items environment))))
-    (at-once between-attempts))
-   (trying (values (frame-up frame) value))
-   (between-attempts
-    (cond ((attempt-record-order memory)
-           (let ((inner (vector environment (pop (attempt-record-order memory)))))
-             (next trying)
-             (enter body inner frame)))
-          (t (give-up memory task frame)))))
-  (:unwind
-   (when (and (in-state-p trying) (typep signal 'plan-failure))
-     (push signal (attempt-record-failures memory))
-     (next between-attempts)
-     (values t frame nil))))
+  (:parts (attempts simple-vector `(vector ,(each-body-code variable body scope)))
+          (order function
+                 `(let ((items ,(value-lambda sequence scope)))
+                    (lambda (attempts environment dice)
+                      (declare (ignore dice))
+                      (loop for item in (item-list 'try-each-in-order (funcall items environment))
+                            collect (cons (svref attempts 0) (vector environment item)))))))
+  (:code (block-code nil form scope #'build)))

@@ -2,37 +2,32 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(declare-fluent-variable declare-pulse known-pulse-p known-fluent-variable-p
+(export '(declare-fluent-variable known-pulse-p known-fluent-variable-p
           known-vector-variable-p robots-fluent-p))
 
 ;;; Of a part of which the robot has several, such as a camera, a variable holds a vector of
 ;;; fluents. That vector is true, always, and so never what a condition means.
 
 (defvar *known-variables* (make-hash-table :test 'eq :synchronized t)
-  "What the variables hold that are known to: the name of a kind of part if a vector of fluents, one
-for each part, or T if a fluent.")
+  "What the variables hold that are known to, a list: the name of a kind of part if a vector of
+fluents, one for each part, or T if a fluent; and whether that is pulsed, and never set.")
 
-(defun declare-fluent-variable (name &optional (kind t))
-  "Note that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string."
-  (setf (gethash name *known-variables*) kind))
-
-(defvar *known-pulses* '() "The known variables whose fluents are pulsed, and never set.")
-
-(defun declare-pulse (name)
-  "Note that what the variable NAME holds is pulsed, and never set."
-  (pushnew name *known-pulses*))
+(defun declare-fluent-variable (name &key (kind t) pulsed-p)
+  "Note that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string;
+and, if PULSED-P is true, that these are never set."
+  (setf (gethash name *known-variables*) (list kind pulsed-p)))
 
 (defun known-pulse-p (name)
   "True if what the variable NAME holds is pulsed, and never set."
-  (and (symbolp name) (member name *known-pulses*) t))
+  (and (symbolp name) (second (gethash name *known-variables*))))
 
 (defun known-fluent-variable-p (name)
   "True if the variable NAME is known to hold a fluent."
-  (eq t (gethash name *known-variables*)))
+  (eq t (first (gethash name *known-variables*))))
 
 (defun known-vector-variable-p (name)
   "Return the name of the kind of part for which the variable NAME holds fluents, or NIL."
-  (let ((kind (gethash name *known-variables*)))
+  (let ((kind (first (gethash name *known-variables*))))
     (and (stringp kind) kind)))
 
 (defmethod value-behind ((fluent fluent))

@@ -25,7 +25,8 @@ was compiled."
                                 (lisp-function (procedure-name procedure))))))))
    (inside (values (frame-up frame) value))))
 
-(defmethod call-code (form scope)
+(defun call-code (form scope)
+  "Return code for FORM, a call of a procedure or an unknown function; its arguments do not wait."
   (let* ((local (cdr (assoc (first form) (scope-procedures scope))))
          (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
          (outer (and local (list (environment-form scope (second local))))))

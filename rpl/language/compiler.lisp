@@ -82,11 +82,6 @@ it, and those to the left of them too, to keep the order."
                 form)
                scope)))
 
-;; The method stands in calling.lisp, beside the node for calls.
-(defgeneric call-code (form scope)
-  (:documentation "Return code for FORM, a call of a procedure or an unknown function; its arguments
-do not wait."))
-
 (defun function-form-code (form scope)
   "Return code for FORM, a call whose operator has no meaning of its own in plans."
   (cond ((some (lambda (argument) (suspends-p argument scope)) (rest form))

@@ -17,18 +17,12 @@
            (write-at canvas left (- top 10) text #x606060)
            (write-at canvas left (+ bottom 15) text #x606060)))
 
-;;; The legend. Entries are lists of a text and a function of a canvas and a place that draws it.
+;;; The legend.
 
 (defparameter *legend*
-  (append (loop for (kind nil nil text) in *looks*
-                collect (let ((kind kind))
-                          (list kind text (lambda (canvas x y)
-                                            (look-box canvas kind x y 18 +bar-height+)))))
-          (loop for (outcome nil text) in *end-looks*
-                collect (let ((outcome outcome))
-                          (list outcome text (lambda (canvas x y)
-                                               (draw-mark canvas outcome (+ x 12) y))))))
-  "Lists (what text painter): what colours and marks mean.")
+  (append (loop for (kind nil nil text) in *looks* collect (list kind text))
+          (loop for (outcome nil text) in *end-looks* collect (list outcome text)))
+  "Lists (what text): what colours and marks mean.")
 
 (defun looks-of (bar)
   (append (list (if (bar-call-p bar) :call :parts) (bar-outcome bar))
@@ -41,23 +35,25 @@
     (remove-if-not (lambda (entry) (member (first entry) drawn)) *legend*)))
 
 (defun legend-places (legend width)
-  "Return lists (text painter x y) of where the entries of LEGEND stand, in as many lines as it
-takes for them to be WIDTH pixels wide; and how high these are together."
+  "Return lists (what text x y) of where the entries of LEGEND stand, in as many lines as it takes
+for them to be WIDTH pixels wide; and how high these are together."
   (let ((x 0) (y 0))
-    (values (loop for (nil text painter) in legend
+    (values (loop for (what text) in legend
                   for wide = (+ 46 (* +character-width+ (length text)))
                   do (when (and (plusp x) (> (+ x wide) width))
                        (setf x 0)
                        (incf y +legend-line+))
-                  collect (list text painter x y)
+                  collect (list what text x y)
                   do (incf x wide))
             (+ y +legend-line+))))
 
 (defun draw-legend (canvas legend x y width)
   "Draw LEGEND from X, Y on, WIDTH pixels wide. Return where it ends, how far down."
   (multiple-value-bind (places height) (legend-places legend width)
-    (loop for (text painter right down) in places
-          do (funcall painter canvas (+ x right) (+ y down))
+    (loop for (what text right down) in places
+          do (if (assoc what *looks*)
+                 (look-box canvas what (+ x right) (+ y down) 18 +bar-height+)
+                 (draw-mark canvas what (+ x right 12) (+ y down)))
              (write-at canvas (+ x right 24) (+ y down 11) text))
     (+ y height)))
 

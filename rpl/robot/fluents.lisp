@@ -34,10 +34,9 @@ The documentation of those that are pulsed, and never set, begins so. Return the
                                                  (unless (same-name-p kind 'robot)
                                                    (format nil " A vector, by ~(~A~)." kind))))
              collect `(note-fluent-variable ',name ',kind)
-             when (starts-with-subseq "Pulsed " text) collect `(declare-pulse ',name)
-             collect `(declare-fluent-variable ',name ,(if (same-name-p kind 'robot)
-                                                           t
-                                                           (string-downcase kind)))
+             collect `(declare-fluent-variable
+                       ',name :kind ,(if (same-name-p kind 'robot) t (string-downcase kind))
+                              :pulsed-p ,(starts-with-subseq "Pulsed " text))
              collect `(pushnew ',name *simulation-variables*))
      ',(mapcar #'first definitions)))
 

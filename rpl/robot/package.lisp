@@ -35,7 +35,7 @@
                 #:counterpart-here #:latest #:let-fork-be-kept #:note-doing
                 #:simulation-past #:simulation-journal #:remark #:unremark)
   (:import-from :ars-magna.rpl
-                #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:declare-pulse
+                #:create-fluent #:create-fluent-vector #:declare-fluent-variable
                 #:fluent-value #:fluent-name
                 #:set-value #:pulse
                 #:apply-settings #:looked-at-p #:forget-looks
