@@ -71,16 +71,17 @@ for them to be WIDTH pixels wide; and how high these are together."
   (if (< width 250) (row-label row 1 7) (row-label row)))
 
 (defun labels-width (rows least most)
-  "Return how wide the column with the names of ROWS is, in pixels: as they need, from LEAST to
-MOST."
   (clamp (+ 24 (* +character-width+
                   (loop for row in rows maximize (length (name-to-fit row most)))))
          least most))
 
+(defun row-name (row width)
+  "Return what ROW is called, as far as WIDTH pixels have room for it."
+  (fitted (name-to-fit row width) width))
+
 (defun draw-row (canvas row y scale)
   (with-subject (canvas (first (row-bars row)))
-    (let ((width (max 80 (- (scale-left scale) 20))))
-      (write-at canvas 10 (+ y 11) (or (fitted (name-to-fit row width) width) ""))))
+    (write-at canvas 10 (+ y 11) (or (row-name row (max 80 (- (scale-left scale) 20))) "")))
   (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
   (draw-lane canvas (mapcan (lambda (bar) (copy-list (bar-commands bar))) (row-bars row))
              (+ y +bar-height+ 1) scale)
