@@ -39,7 +39,6 @@
 ;;; Choosing.
 
 (defun goals-of (operator)
-  "Return the goals that there are for OPERATOR, in order of definition."
   (remove operator (all-goals) :key #'goal-operator :test-not #'eq))
 
 (defun goal-covers-p (goal other)
@@ -75,7 +74,6 @@ if there is none."
 ;;; Defining. A pattern that matches the same as one defined before means that one.
 
 (defun goal-name (operator pattern shape count)
-  "Return the symbol that a goal for OPERATOR and PATTERN is called in the registry."
   (let ((old (find-if (lambda (goal)
                         (and (covers-p shape count (goal-shape goal))
                              (covers-p (goal-shape goal) (length (goal-variables goal)) shape)))

@@ -128,7 +128,6 @@ an :INIT, which sees whether the arguments are right."
                   while (consp rest) append (names-in-calls operator (car rest))))))
 
 (defun doubt-memory (definition clauses)
-  "Warn if CLAUSES ask for what none of them keeps."
   (let ((kept (names-in-calls 'policy-setf clauses)))
     (when (every #'constantp kept)
       (dolist (name (set-difference (names-in-calls 'policy-get clauses) kept :test #'equal))
@@ -215,7 +214,6 @@ the variables around it. (CRAM's, where it takes a name.)"
         finally (return text)))
 
 (defun call-like-p (form scope)
-  "True if FORM is a call, and no list of forms."
   (and (typep form '(cons symbol))
        (not (constantp (first form)))
        (not (known-variable-p (first form) (scope-environment scope)))

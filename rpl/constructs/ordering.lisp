@@ -83,7 +83,6 @@ MISUSE."
                    (format nil "in :order tags that are in scope, not ~(~S~)" (abridged name)))))
 
 (defun read-orders (steps constraints form scope)
-  "Return a list of (earlier later), forms, for each of CONSTRAINTS of FORM."
   (loop for constraint in (constraint-list constraints)
         do (unless (typep constraint '(cons (eql :order) (cons t (cons t t))))
              (reject-clause (author) constraint "(:order earlier later)"))
@@ -126,7 +125,6 @@ MISUSE."
            (setf precedences open)))
 
 (defun check-orders (orders steps form)
-  "Signal MALFORMED-DEFINITION if ORDERS of STEPS, where they are of names, can never be kept."
   (when (circular-p (precedences (remove-if-not (lambda (order) (every #'symbolp order)) orders)
                                  (nested-tags steps)))
     (reject-clause (author) form "constraints without a circle: some steps could never start")))

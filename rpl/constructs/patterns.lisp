@@ -46,7 +46,6 @@ what is in the holes."
          (values t (coerce values 'list)))))
 
 (defun covers-p (shape count other)
-  "True if SHAPE, with COUNT holes, matches whatever OTHER, a shape too, does."
   (values (match-shape shape count other)))
 
 (defun pattern-text (pattern)

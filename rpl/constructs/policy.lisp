@@ -13,13 +13,11 @@
        (not (suspends-p (subst-if nil #'fail-p policy) scope))))
 
 (defun awaiting-text (policy)
-  "Return what watches for the test of POLICY, which tests it once, if there is a single one."
   (and (operator-in-p policy '("IF" "WHEN"))
        (or (operator-in-p policy '("WHEN")) (null (cdddr policy)))
        `(seq (wait-until ,(second policy)) ,@(cddr policy))))
 
 (defun only-waits-p (policy scope)
-  "True if POLICY, plan text, is a wait after which it does nothing."
   (and (consp policy)
        (operator-in-p policy '("WAIT-FOR" "WAIT-UNTIL"))
        (not (suspends-p (second policy) scope))))
@@ -60,7 +58,6 @@ returns a value."
                            (value-lost-in policy))))))
 
 (defun watches-text-p (policy)
-  "True if POLICY, plan text, reacts to something, fails or leaves."
   (find-call (lambda (form)
                (or (fail-p form)
                    (operator-in-p form '("WHENEVER" "AT-LOCATION" "LOOP"))

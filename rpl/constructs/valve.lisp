@@ -147,7 +147,6 @@ innermost first."
   (every (lambda (valve) (available-p valve claim)) (claim-valves claim)))
 
 (defun lose (valve claim)
-  "Take VALVE from CLAIM, if it still has that, and keep its task from running."
   (when (and (member valve (claim-taken claim)) (not (member valve (claim-lost claim))))
     (push valve (claim-lost claim))
     (block-task (claim-task claim) t)))
@@ -262,7 +261,6 @@ VALVE and the rival."
   (mapc #'admit-parts (task-children task)))
 
 (defun regain (valve claim)
-  "Let CLAIM have VALVE, which it holds, again if it had lost it."
   (when (member valve (claim-lost claim))
     (setf (claim-lost claim) (remove valve (claim-lost claim)))
     (unblock-task (claim-task claim) t)

@@ -53,7 +53,6 @@ parts begun; its memory is the environment to be."
                    (first scopes))))
 
 (defun binding-scope (scope variables bindings body sequential)
-  "Return SCOPE with VARIABLES bound as by BINDINGS around BODY, one after the other if SEQUENTIAL."
   (let ((inner (variable-scope scope variables)))
     (inner-scope inner :fluents (append (bound-to-fluents bindings body scope sequential)
                                         (scope-fluents inner)))))

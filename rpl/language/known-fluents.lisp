@@ -72,7 +72,6 @@ one."
                (mentions-p 'fluent-value form)))))
 
 (defun advice-on-awaited (condition form environment)
-  "Return in words what FORM, which waits for CONDITION in ENVIRONMENT, gets wrong; NIL if nothing."
   (let ((name (first form)))
     (cond ((mistaken-for-fluent-p condition environment)
            (format nil "~(~A~) needs a fluent, and ~S is a value, which never changes. Write ~
@@ -89,7 +88,6 @@ one."
                    name condition (and (realp condition) (plusp condition) condition))))))
 
 (defun check-awaited (condition form scope)
-  "Warn if CONDITION, which FORM waits for, in SCOPE, is known to be a value, which cannot change."
   (let ((advice (and (own-text-p form)
                      (let ((*print-case* :downcase) (*print-pretty* t)
                            (*print-right-margin* 10000))
@@ -116,7 +114,6 @@ one."
           finally (return (nreverse types)))))
 
 (defun misplaced-fluent (form environment)
-  "Return the argument of FORM, a call, that is a fluent where the function can take none, or NIL."
   (let ((arguments (rest form)))
     (and (some (lambda (argument) (known-fluent-p argument environment)) arguments)
          (loop for argument in arguments

@@ -47,7 +47,6 @@ variables in ENVIRONMENT."
             (t (first-trouble variables))))))
 
 (defun forgotten-parameters-text (parameters environment)
-  "Return in a sentence that PARAMETERS are a form of the body, if they are like one; or NIL."
   (and (typep parameters '(cons symbol))
        (known-function-p (first parameters) environment)
        "The list of parameters stands before the body; write () if there are none"))
@@ -83,7 +82,6 @@ are a lambda list."
 ;;; Forms that bind, also where they are Lisp's to run.
 
 (defun check-bindings (form environment)
-  "Signal MALFORMED-DEFINITION unless Lisp can read the bindings of FORM, a LET."
   (let ((bindings (second form)))
     (unless (proper-list-p bindings)
       (reject-clause (author) form "(variable value) for each variable, in a list that ends"))
@@ -94,7 +92,6 @@ are a lambda list."
       (check-variables (list (first (ensure-list (or entry '(nil))))) environment form))))
 
 (defun check-local-functions (form environment)
-  "Signal MALFORMED-DEFINITION unless Lisp can read the definitions of FORM, an FLET or LABELS."
   (unless (proper-list-p (second form))
     (reject-clause (author) form "(name parameters form...) for each, in a list that ends"))
   (dolist (definition (second form))
@@ -104,7 +101,6 @@ are a lambda list."
     (plain-parameters (second definition) definition environment)))
 
 (defun check-names (form environment)
-  "Signal MALFORMED-DEFINITION if FORM, of the plan's text, binds what cannot be bound."
   (flet ((is (&rest names) (operator-in-p form names)))
     (cond ((is "LET" "LET*") (check-bindings form environment))
           ((is "FLET" "LABELS") (check-local-functions form environment))

@@ -109,8 +109,6 @@ then ENDING, in one of how many there were. A frame remembers the next one and t
   (binding-body-code body (variable-scope (single-scope scope) (list variable))))
 
 (defun each-code (maker form variable part result body scope)
-  "Return code for FORM, a DOLIST or DOTIMES over PART, (slot form), which binds VARIABLE around
-BODY and RESULT, both forms: a call of MAKER."
   (destructuring-bind (slot source) part
     (hoisting (source) form scope
       (block-code nil form scope

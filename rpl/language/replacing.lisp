@@ -54,7 +54,6 @@
     (nreverse found)))
 
 (defun find-tagged (operator path)
-  "Return the tagged node that PATH, of OPERATOR, leads to. Signals WRONG-ARGUMENT and MISUSE."
   (unless (and (proper-list-p path) (rest path) (every #'symbolp (rest path)))
     (reject-argument operator 'path path
                      "a list of a plan and a tag, or of tags around each other"))

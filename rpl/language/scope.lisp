@@ -77,7 +77,6 @@ builds the plan, that hold their nodes."
                  :fluents (set-difference (scope-fluents scope) variables))))
 
 (defun function-scope (scope names)
-  "Return SCOPE with the local functions NAMES held in an environment of their own."
   (let ((level (1+ (scope-level scope))))
     (layered-scope scope (list :functions level names) level :function names)))
 

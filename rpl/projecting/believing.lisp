@@ -49,8 +49,6 @@ those that FUNCTION makes cannot be changed, and fluents of outside are as in a 
           (secluded (funcall function)))))))
 
 (defun run-in-belief (scene trial seed)
-  "Return the rollout number TRIAL, with SEED, of SCENE, run in the current simulation. Signals
-MISUSE if there is none."
   (unless *simulation*
     (reject-use "project: the function :world is to call what it is given inside of ~
                  (with-simulation ...)."))

@@ -62,8 +62,6 @@ believed in, which does not know it."
   +parked+)
 
 (defun question-of-plan (task plan arguments options)
-  "Return the question of TASK, of a plan, what may become of PLAN with the list ARGUMENTS, given
-the plist OPTIONS. All may be fluents."
   (let ((question (make-question task (asking-interface task) (fluent-value plan)
                                  (fluent-value arguments) options)))
     (when (option question :world) (check-believable question))

@@ -52,8 +52,6 @@ end counts, or NIL: see NOTE-ENDED."
   (make-projection (text-of question) (simulation-tick) (option question :horizon) '()))
 
 (defun roll-out-in-fork (scene trial seed then)
-  "Return the values of THEN, a function that is called with the rollout number TRIAL, with SEED, of
-SCENE, where that has ended in a fork of the scene's moment."
   (let ((fork (fork-simulation (scene-moment scene) :seed seed)))
     (unwind-protect
          (call-in-fork

@@ -126,8 +126,6 @@ in a clause of KIND (:pulse, which tells of its end, or :error) is the first to 
     (and fluent (fluent-in-plan fluent part))))
 
 (defun doubt-count-in-plan (name command-name parameters forms)
-  "Warn if FORMS, the arguments in a call of NAME, of plans for a command, are not as many as
-PARAMETERS."
   (unless (= (length parameters) (length forms))
     (doubt-definition "~(~A~) takes ~:[no argument~;~:*~(~A~)~], not ~D argument~:P.~:[~; In ~
                        plans the robot and the continuation are left out: ~A.~]"

@@ -16,7 +16,6 @@ commands of the robot such as COMMAND; or NIL."
              (tasks-of interface))))
 
 (defun tell-of-outside (interface command)
-  "Say once if a plan of INTERFACE watches for the end of COMMAND, which no plan has given."
   (let ((task (call-with-plans-if-free (lambda () (watcher-of-end interface command)) interface)))
     (when task
       (tell-once interface (list :outside (task-label task))

@@ -277,8 +277,6 @@ a fork of it, or in the one that goes on since it was rewound."
           (t task))))
 
 (defun task-here (task)
-  "Return TASK or, if it is in a run that this thread works in a fork of, or that has been rewound
-since, what it is there."
   (let ((client (and (task-runner task) (runner-client (task-runner task)))))
     (if client (task-now client task) task)))
 

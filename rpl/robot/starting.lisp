@@ -94,7 +94,6 @@ as one of them says so itself."
       interface)))
 
 (defun init-robot (robot)
-  "Do what RPL-INIT-ROBOT does with ROBOT. Return the interface."
   (check-world robot)
   (drive-in-eras robot (list (cons (gensym "ERA") 0))))
 

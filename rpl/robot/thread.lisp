@@ -45,7 +45,6 @@ NIL if that was aborted."
   (setf (interface-tick-wanted-p interface) nil))
 
 (defun run-thread (interface)
-  "Let the plans react to what is posted for as long as there are any."
   (loop
     (loop while (plusp (interface-wanted interface)) do (yield-thread))
     (let-fork-be-kept (interface-simulation interface))

@@ -29,7 +29,6 @@ NIL."
         (and wait (format nil "If the plan is to end with it, let it ~A." wait)))))
 
 (defun tell-of-unawaited (interface task)
-  "Say once if commands of TASK, a plan of INTERFACE that has succeeded, are under way."
   (let ((deed (first (unawaited-deeds interface task))))
     (when deed
       (tell-once interface (list :unawaited (task-label task))

@@ -35,7 +35,6 @@ TASK, or NIL if it was at none."
        (eql (look-steps look) (look-steps earlier))))
 
 (defun unwanted-p (interface task)
-  "True if TASK, or all plans of INTERFACE, are to end."
   (or (interface-closing-p interface)
       (not (live-p (interface-simulation interface)))
       (member (task-top task) (interface-unwanted interface))))

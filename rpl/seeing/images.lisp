@@ -83,7 +83,6 @@ first; of many the innermost."
 ;;; The tree.
 
 (defun rows-of-tasks (tasks folded most)
-  "Return images of TASKS and their parts, at most MOST; without the parts of those FOLDED."
   (let ((rows '()) (count 0))
     (labels ((add (task depth)
                (let ((folded-p (and (member (task-serial task) folded) t)))

@@ -62,7 +62,6 @@ this task."
  'out "In a plan that is being stepped: finish what this is a part of, and stop after that.")
 
 (defun stop-at (course task frame form leaf-p)
-  "Let somebody see TASK of COURSE before FORM at FRAME, and say how far it is to go."
   (restart-case
       (progn (enter-break (make-condition 'plan-break
                                           :task task :frame frame

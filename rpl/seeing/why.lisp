@@ -144,8 +144,6 @@
 
 ;; A construct that is decided while some parts are still to evaporate ends without a wake-up.
 (defun decision-sentence (entry start end trace)
-  "Return how it came that the wait for parts of ENTRY, number START of TRACE, was over before
-number END, if by no wake-up; or NIL."
   (let ((part (find-if (lambda (end)
                          (and (member (trace-entry-event end) '(:succeed :fail))
                               (part-ended-p end (trace-entry-task entry) trace)))

@@ -65,7 +65,6 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
     t))
 
 (defun settle-courtesies (runner)
-  "Let those tasks of RUNNER that have come to rest hear what they are to. True if there were such."
   (settle-all (remove-if-not (lambda (courtesy) (at-rest-p (courtesy-hearer courtesy) runner))
                              (runner-courtesies runner))
               runner))

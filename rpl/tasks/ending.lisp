@@ -164,7 +164,6 @@ Signals WRONG-ARGUMENT."
              (evaporate-here task)))))
 
 (defun evaporate-here (task)
-  "Let TASK, of the plans at work here, evaporate."
   (setf (task-doomed task) t)
   (cond ((task-cleaning task)
          (setf (frame-data (first (last (task-cleaning task)))) :evaporate))

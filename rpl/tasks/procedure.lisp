@@ -77,7 +77,6 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
 
 ;; Users give a call, a form of plans, a function, or the name of a function for that of a plan.
 (defun list-remedy (list)
-  "Return in a sentence what to do instead of giving LIST for a plan."
   (let ((name (first list)))
     (if (and (symbolp name)
              (or (live-namesake name) (not (fboundp name))))
@@ -167,7 +166,6 @@ LAMBDA-LIST."
           (procedure-keys-p procedure) (not (eq :none (shape-keys shape))))))
 
 (defun warn-if-function (procedure)
-  "Warn if PROCEDURE, which is about to be defined, takes its name from a function of Lisp's."
   (let ((name (procedure-name procedure)))
     (when (and (fboundp name) (not (eq (fdefinition name) (procedure-stub procedure))))
       (warn-of-definition "~(~A~) was ~:[a function~;a macro~] of Lisp's, which the plan procedure ~

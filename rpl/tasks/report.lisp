@@ -52,7 +52,6 @@ them, a column and STREAM."
                (form-text (failure-passed-on-by failure)))))
 
 (defun clause-types (form)
-  "Return what the clauses of FORM, an expression of a plan, are for, if it handles failures."
   (and (operator-called-p form "HANDLE-FAILURE" "WITH-FAILURE-HANDLING")
        (loop for (type) in (remove-if-not #'consp (ensure-list (second form)))
              append (remove-if-not #'symbolp (ensure-list type)))))

@@ -52,7 +52,6 @@
                live (simulator 'ROBOT) and (run-plan '~:*~A)." plan))
 
 (defun command-advice (tasks)
-  "Return in a sentence which command the plan of TASKS, which wait for the robot, has given last."
   (let* ((task (first tasks)) (plan (task-label (task-top task)))
          (client (runner-client (task-runner task))))
     (multiple-value-bind (name part) (and client (last-command client task))
@@ -66,7 +65,6 @@
 
 ;; Whatever has pulsed a fluent that is waited for itself came before the wait.
 (defun missed-pulses-text (tasks)
-  "Return in a sentence that a fluent that one of TASKS waits for was pulsed before; or NIL."
   (let ((fluent (find-if (lambda (subject)
                            (and (fluent-p subject)
                                 (equal (list subject) (base-fluents subject))
@@ -78,7 +76,6 @@
                       only pulses that come later." (fluent-text fluent) (fluent-pulses fluent)))))
 
 (defun missed-end-text (tasks)
-  "Return in sentences when a command pulsed the fluent that one of TASKS waits for; or NIL."
   (loop for task in tasks
         for subject = (traced-subject (task-awaiting task))
         for tick = (and (fluent-p subject)
@@ -98,7 +95,6 @@
     (symbol (search "RETURN" (symbol-name form)))))
 
 (defun endless-form-p (form)
-  "True if FORM, of a plan, is a WHENEVER or LOOP without an exit."
   (and (consp form)
        (symbolp (first form))
        (or (string= "WHENEVER" (first form))
