@@ -199,11 +199,8 @@ ARGUMENTS, call FUNCTION at once."
   (apply #'fl-funcall function (apply #'list* arguments)))
 
 (defun depends-p (fluent source)
-  "True if FLUENT is SOURCE, or a network that is computed from it."
-  (or (eq fluent source)
-      (and (derived-p fluent)
-           (some (lambda (each) (and (fluent-p each) (depends-p each source)))
-                 (derived-sources fluent)))))
+  "True if FLUENT is SOURCE, a base fluent, or a network that is computed from it."
+  (and (member source (base-fluents fluent)) t))
 
 (defun base-fluents (fluent)
   "Return the base fluents that FLUENT is computed from, without repetition; of a base fluent, it."

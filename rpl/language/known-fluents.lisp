@@ -134,51 +134,45 @@ one."
        (known-fluent-p (second form) environment)
        (second form)))
 
-(defun look-at-operands (form environment)
-  "Warn if FORM, of the plan's text, gives a fluent to a function that cannot take it. Return NIL."
+(defun look-at-counting (form environment)
+  "Warn if FORM, of the plan's text, is an INCF or DECF with a fluent as its place."
+  (when (and (operator-in-p form '("INCF" "DECF"))
+             (typep form '(cons t (cons t (or null (cons t null)))))
+             (known-fluent-p (second form) environment))
+    (destructuring-bind (name fluent &optional (by 1)) form
+      (warn-of-form form "~(~A~) cannot change ~S, which is a fluent. Write ~S."
+                    name fluent
+                    `(set-value ,fluent (,(if (same-name-p name 'incf) '+ '-)
+                                         (fluent-value ,fluent) ,by))))))
+
+(defun look-at-assignments (form environment)
+  "Warn if FORM, of the plan's text, puts a value in the place of a fluent."
+  (when (operator-in-p form '("SETQ" "SETF"))
+    (loop for (place value) on (rest form) by #'cddr
+          when (and (symbolp place)
+                    (known-fluent-p place environment)
+                    (known-value-p value environment))
+            do (warn-of-form form "~(~A~) puts ~S in the place of the fluent ~S, which is lost. ~
+                                   Write ~S."
+                             (first form) value place `(set-value ,place ,value)))))
+
+(defun look-at-arguments (form environment)
+  "Warn if FORM, of the plan's text, gives a fluent to a function that cannot take it."
   (let ((name (first form)))
-    (when (and (operator-in-p form '("INCF" "DECF"))
-               (typep form '(cons t (cons t (or null (cons t null)))))
-               (known-fluent-p (second form) environment))
-      (warn-of-counting form))
-    (when (operator-in-p form '("SETQ" "SETF"))
-      (loop for (place value) on (rest form) by #'cddr
-            do (when (assigned-over-p place value environment)
-                 (warn-of-assignment form place value))))
     (when (and (proper-list-p form)
                (not (operator-in-p form *lifted-operators*))
                (not (local-function-p name environment))
                (not (macro-function name))
                (not (special-operator-p name)))
       (if (fboundp name)
-          (let ((fluent (misplaced-fluent form environment))
-                (sought (sought-in-vain form environment)))
-            (cond (fluent (warn-of-fluent form fluent))
-                  (sought (warn-of-fluent form sought "never finds"))))
-          (look-later #'look-at-lisp-call form)))
-    nil))
-
-(defun warn-of-counting (form)
-  (destructuring-bind (name fluent &optional (by 1)) form
-    (warn-of-form form "~(~A~) cannot change ~S, which is a fluent. Write ~S."
-                  name fluent
-                  `(set-value ,fluent (,(if (same-name-p name 'incf) '+ '-)
-                                       (fluent-value ,fluent) ,by)))))
-
-(defun assigned-over-p (place value environment)
-  "True if PLACE, in ENVIRONMENT, is a variable of a fluent, and VALUE a form that gives none."
-  (and (symbolp place)
-       (known-fluent-p place environment)
-       (known-value-p value environment)))
-
-(defun warn-of-assignment (form fluent value)
-  (warn-of-form form "~(~A~) puts ~S in the place of the fluent ~S, which is lost. Write ~S."
-                (first form) value fluent `(set-value ,fluent ,value)))
-
-(defun warn-of-fluent (form fluent &optional (what "cannot take"))
-  (warn-of-form form "~(~A~) ~A ~S, which is a fluent. Write (fluent-value ~:*~S) for its value ~
-                      now, or (fl-funcall #'~(~3:*~A~) ...) for a network."
-                (first form) what fluent))
+          (let* ((fluent (misplaced-fluent form environment))
+                 (found (or fluent (sought-in-vain form environment))))
+            (when found
+              (warn-of-form form "~(~A~) ~:[never finds~;cannot take~] ~S, which is a fluent. ~
+                                  Write (fluent-value ~:*~S) for its value now, or (fl-funcall ~
+                                  #'~(~3:*~A~) ...) for a network."
+                            name fluent found)))
+          (look-later #'look-at-lisp-call form)))))
 
 ;;; Variables.
 

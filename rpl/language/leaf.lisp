@@ -102,8 +102,10 @@
         ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
         ((plan-in-leaf-p form) (values form t))
         ((construct-behind form) (reject-in-lisp (construct-behind form)))
-        ((look-at-operands form environment))
-        (t (doubt-namesake form)
+        (t (look-at-counting form environment)
+           (look-at-assignments form environment)
+           (look-at-arguments form environment)
+           (doubt-namesake form)
            (let ((meaning (if (local-function-p (first form) environment)
                               form
                               (plan-meaning form environment))))
