@@ -246,25 +246,19 @@ known to be at Lisp code that does not return. One that waits in a debugger can 
   (let ((interface (interface-here)))
     (and (usable-p interface) interface)))
 
-(defun alone-p ()
-  "True if a plan is at work here that is run without a robot, as by RUN-PLAN-ALONE."
-  (and *runner* (null (runner-client *runner*))))
-
-(defun robot-name-here ()
-  "Return the name of the first robot of the run that we are in, or ROBOT if there is none."
-  (let ((robots (and *simulation* (simulation-robots *simulation*))))
-    (if robots (robot-name (first robots)) 'robot)))
-
 (defun the-interface ()
   "Return the interface that can be used here. If plans react here whose robot is gone, the plan at
 work ends. Signals MISUSE if there is none."
   (or (usable-interface)
       (and *reacting* (not (interface-valid-p *reacting*)) (leave-plan))
-      (reject-use "No robot to drive. ~:[Call (rpl-init-robot ROBOT) first; after a simulator has ~
-                   been started anew, or the robot defined anew, call it again. Outside of plans ~
-                   use commands without RPL-, such as (robot-turn ~(~A~) 1).~;RUN-PLAN-ALONE ~
-                   runs plans without one, and RUN-PLAN on the robot of the run.~]"
-                  (alone-p) (robot-name-here))))
+      (let ((robots (and *simulation* (simulation-robots *simulation*)))
+            (alone-p (and *runner* (null (runner-client *runner*)))))
+        (reject-use "No robot to drive. ~:[Call (rpl-init-robot ROBOT) first; after a simulator ~
+                     has been started anew, or the robot defined anew, call it again. Outside of ~
+                     plans use commands without RPL-, such as (robot-turn ~(~A~) ~
+                     1).~;RUN-PLAN-ALONE runs plans without one, and RUN-PLAN on the robot of the ~
+                     run.~]"
+                    alone-p (if robots (robot-name (first robots)) 'robot)))))
 
 (addition rpl-robot)
 (defun rpl-robot ()

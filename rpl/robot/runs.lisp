@@ -228,7 +228,7 @@ place. Signals UNKNOWN-NAME and MISUSE, also if the run is over before it begins
 (defun want-end (interface task)
   "Let TASK of INTERFACE, or all if it is NIL, evaporate when its runner gets to that."
   (check-not-secluded (interface-simulation interface))
-  (note-of-plans interface #'end-again (and task (task-serial task)))
+  (note-of-plans interface #'say-again #'end-again '() (and task (task-serial task)))
   (dolist (task (if task (list task) (tasks-of interface)))
     (unless (task-over-p task) (atomic-push task (interface-unwanted interface))))
   (stop-plan (interface-runner interface) task))
@@ -240,12 +240,9 @@ place. Signals UNKNOWN-NAME and MISUSE, also if the run is over before it begins
     (asking ((interface-simulation interface))
       (with-plans (interface) (react-fully interface)))))
 
-(defun end-again (serial)
-  "End the task with the number SERIAL, or all plans if that is NIL, as somebody did then."
-  (let* ((interface (usable-interface))
-         (task (and interface serial (task-numbered serial (interface-runner interface)))))
-    (when (and interface (or task (null serial)))
-      (end-in interface task))))
+(defun end-again (subject)
+  "End SUBJECT, a task or, for all of its plans, a runner, as somebody did then."
+  (end-in (usable-interface) (and (task-p subject) subject)))
 
 (defun plan-ending-p (task)
   "True if somebody has ended TASK, a plan, which may still be under way."
