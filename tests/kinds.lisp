@@ -171,6 +171,43 @@
   (is (eql 0 (search "Return " (documentation 'sonar:sonar-pings 'function))))
   (is (eql 0 (search "True if " (documentation 'robot:storage-bin-closed-p 'function)))))
 
+(test kinds.describe-predicates-and-constructors
+  (is (eql 0 (search "True of objects of type SONAR. " (documentation 'sonar::sonar-p 'function))))
+  (is (eql 0 (search "Return a new object of type SONAR. "
+                     (documentation 'sonar::make-sonar 'function)))))
+
+(base:define-record (bat-call (:conc-name call-)
+                              (:constructor make-call (pitch &optional loud-p) "Return a call."))
+  "What a bat says."
+  (pitch 0 fixnum "how high the call is, in kilohertz")
+  (loud-p nil boolean "others hear the call" :writable)
+  (echo nil t :writable))
+
+(test records.describe-their-functions
+  (loop for (text . function) in '(("Return how high the call is, in kilohertz." . call-pitch)
+                                   ("True if others hear the call." . call-loud-p)
+                                   (nil . call-echo)
+                                   ("Return a call." . make-call)
+                                   ("True of objects of type BAT-CALL. What a bat says."
+                                    . bat-call-p))
+        do (is (equal text (documentation function 'function)) "~A" function)))
+
+(test records.can-be-set-only-where-they-say-so
+  (is (fboundp '(setf call-loud-p)))
+  (is (not (fboundp '(setf call-pitch))))
+  (is (not (fboundp 'copy-bat-call))))
+
+(test records.export-the-readers-that-say-so
+  (is (equal '((export '(call-echo)) (base:addition call-pitch))
+             (base:reader-marks '((pitch 0 fixnum "high" :addition)
+                                              (loud-p nil boolean) (echo nil t :export))
+                                            (lambda (slot) (base:symbolicate 'call- slot))))))
+
+(test records.reject-what-makes-no-sense
+  (dolist (slot '(pitch (pitch) (pitch 0) (pitch 0 fixnum "high" :unheard) ("pitch" 0 fixnum)))
+    (signals base:malformed-definition
+      (macroexpand-1 `(base:define-record bat-call "It." ,slot)))))
+
 (test kinds.show-what-is-in-an-object
   (with-bat ()
     (is (equal '(sonar::pings 0) (subseq (find 'sonar::pings (base:object-slots (ears 0) :state)

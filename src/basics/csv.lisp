@@ -13,7 +13,8 @@
              (format stream "No row of a table: ~A" (cut (broken-line-text condition) 200))))
   (:documentation "A line of a table cannot be taken apart."))
 
-(document-functions broken-line-text "Return the line that cannot be taken apart.")
+(setf (documentation 'broken-line-text 'function)
+      "Return the line that cannot be taken apart.")
 
 ;;; Spreadsheets take what begins with = + - or @ for a formula, and carry it out. Such a text, if
 ;;; it is no number, has ' before it, which says that it is text; so has one that begins with a '

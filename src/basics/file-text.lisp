@@ -13,8 +13,8 @@
                      (illegible-file-line condition))))
   (:documentation "A file that is to be read as text has a line that is no text in UTF-8."))
 
-(document-functions
-  illegible-file-line "Return the number of the first line that is no text in UTF-8.")
+(setf (documentation 'illegible-file-line 'function)
+      "Return the number of the first line that is no text in UTF-8.")
 
 (defun file-text (path)
   "Return the text in the file PATH, without a byte order mark. Signals an error if it has none, and

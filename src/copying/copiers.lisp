@@ -2,29 +2,22 @@
 
 (in-package :ars-magna.copying)
 
-(export '(copier with-copier copier-environment copier-variable copier-option copier-objects
-          note-copy settled))
+(export '(copier with-copier copier-variable copier-option note-copy settled))
 
-(defstruct (copier (:constructor make-copier ()) (:copier nil))
-  "What copies a run. TABLE has what was copied to what; WORK the copies that are to be put right,
-each followed by how; TABLES the hash tables that are to be filled when all else is done. HOLDER is
-what is being put right. ENVIRONMENT is a list (variable . value): what the run has bound. OPTIONS
-are a plist for those who know what to do about it, OBJECTS what a layer knows of its copies.
-SCREEN, a function or NIL, is called with what is about to be copied: it returns what there is to be
-instead of a copy, and true; or NIL and false."
-  (table (make-hash-table :test 'eq :size 500) :type hash-table)
-  (work (make-array 512) :type simple-vector)
-  (fill 0 :type fixnum)
-  (tables '() :type list)
-  (holder nil)
-  (environment '() :type list)
-  (objects nil)
-  (screen nil :type (or null function))
-  (options '() :type list))
-
-(document-functions
-  copier-objects "Return what a layer has put there to find copies by. Can be set."
-  copier-environment "Return a list (variable . value): what the run that is copied has bound.")
+(define-record (copier (:constructor make-copier ()))
+  "What copies a run."
+  (table (make-hash-table :test 'eq :size 500) hash-table "what was copied, and to what" :writable)
+  (work (make-array 512) simple-vector
+        "the copies that are to be put right, each followed by how" :writable)
+  (fill 0 fixnum :writable)
+  (tables '() list "the hash tables that are to be filled when all else is done" :writable)
+  (holder nil t "what is being put right" :writable)
+  (environment '() list
+               "a list (variable . value): what the run that is copied has bound" :writable :export)
+  (objects nil t "what a layer has put there to find copies by. Can be set" :writable :export)
+  (screen nil (or null function) "a function of what is about to be copied, or NIL: it returns what
+there is to be instead of a copy, and true; or NIL and false" :writable)
+  (options '() list "a plist for those who know what to do about it" :writable))
 
 (defun copier-option (copier key)
   "Return what the one who asked for COPIER said of KEY, or NIL."

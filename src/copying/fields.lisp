@@ -2,28 +2,20 @@
 
 (in-package :ars-magna.copying)
 
-(export '(field-name field-kept-p field-reader field-writer field-initial fields-of-type
-          blank-object note-lasting lasting-name lasting-function))
+(export '(fields-of-type blank-object note-lasting lasting-name lasting-function))
 
 ;;; A copy in a file has what another object of a run would need to go on: of a kind, what its
 ;;; roles :FIXED, :STATE and :MEMORY say; what is :SCRATCH or a :LINK is as at first. A structure
 ;;; without a kind has no roles, and all that is in it counts.
 
-(defstruct (field (:constructor make-field (name kept-p reader writer initial)) (:copier nil))
+(define-record (field (:constructor make-field (name kept-p reader writer initial)))
   "What is known of a slot of structures of one type."
-  (name nil :type symbol :read-only t)
-  (kept-p t :type boolean :read-only t)
-  (reader nil :type function :read-only t)
-  (writer nil :type function :read-only t)
-  (initial nil :type function :read-only t))
-
-(document-functions
-  field-name "Return the name of the slot, a symbol."
-  field-kept-p "True if what is in the slot is to be written down."
-  field-reader "Return the function of an object that returns what is in the slot."
-  field-writer "Return the function of a value and an object that puts the value into the slot, and
-signals an error if it is of the wrong type."
-  field-initial "Return the function that returns what the slot begins with.")
+  (name nil symbol "the name of the slot, a symbol" :export)
+  (kept-p t boolean "what is in the slot is to be written down" :export)
+  (reader nil function "the function of an object that returns what is in the slot" :export)
+  (writer nil function "the function of a value and an object that puts the value into the slot, and
+signals an error if it is of the wrong type" :export)
+  (initial nil function "the function that returns what the slot begins with" :export))
 
 (defun field-of-kind (slot)
   "Return the field that SLOT, of a kind, is."

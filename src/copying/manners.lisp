@@ -27,9 +27,10 @@ fork has NIL instead; MAKE-NO-FORK."))
  'share-value "Make the fork; both runs have the same object."
  'leave-out-value "Make the fork; it has NIL instead of the object."
  'make-no-fork "Make no fork. The function that was to make one returns NIL.")
-(document-functions
-  cannot-fork-value "Return what cannot be copied."
-  cannot-fork-place "Return where it was found: a text, such as the name of a plan's variable.")
+(setf (documentation 'cannot-fork-value 'function)
+      "Return what cannot be copied."
+      (documentation 'cannot-fork-place 'function)
+      "Return where it was found: a text, such as the name of a plan's variable.")
 
 (defun found-in (value copier)
   "Return a text that says where COPIER has come upon VALUE: what its option :PLACE-OF, a function,

@@ -8,19 +8,13 @@
   "Return the symbol of the reader of SLOT in structures whose accessors begin with CONC."
   (symbolicate conc slot))
 
-(defun reader-text (slot)
-  "Return the documentation of a reader of SLOT."
-  (if (ends-with-subseq "-P" (symbol-name (kind-slot-name slot)))
-      (format nil "True if ~A." (kind-slot-text slot))
-      (format nil "Return ~A." (kind-slot-text slot))))
-
 (defun document-readers (kind conc package)
   "Document the readers of KIND, whose names in PACKAGE begin with CONC."
   (dolist (slot (kind-slots kind))
-    (let ((reader (find-symbol (concatenate 'string conc (symbol-name (kind-slot-name slot)))
-                               package)))
+    (let* ((name (kind-slot-name slot))
+           (reader (find-symbol (concatenate 'string conc (symbol-name name)) package)))
       (when (and reader (fboundp reader))
-        (setf (documentation reader 'function) (reader-text slot))))))
+        (set-documentations (list (cons reader (reader-text name (kind-slot-text slot)))))))))
 
 (defun register-kind (name parent slots conc)
   "Let NAME be a kind with SLOTS of its own besides those of the kind called PARENT."
@@ -62,7 +56,8 @@ slot...)."
   "Signal MALFORMED-DEFINITION unless SLOT of the kind NAME makes sense beside KNOWN, other names."
   (unless (and (proper-list-p slot) (<= 4 (length slot))
                (symbolp (first slot)) (first slot)
-               (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part :shared :near)))
+               (stringp (fourth slot))
+               (subsetp (nthcdr 4 slot) '(:part :shared :near :export :addition)))
     (reject-clause-of-kind name slot
                            "(name default type \"what it is\" [:part] [:shared] [:near])"))
   (when (member (first slot) known :test #'same-name-p)
@@ -109,7 +104,8 @@ with, says."
   "Define a structure and say what each of its slots is. NAME-AND-OPTIONS is its name, or (name
 [:include kind] [:constructor constructor]), as in DEFSTRUCT. GROUPS are lists (role slot...), a
 slot is (name default type \"what it is\"), and behind that :PART if what is in it belongs to the
-object, :SHARED if it is never altered, :NEAR if it is to stand beside others. The roles are
+object, :SHARED if it is never altered, :NEAR if it is to stand beside others; :EXPORT and :ADDITION
+are as in DEFINE-RECORD. The roles are
   :fixed    how the object was made;
   :state    what decides the future, or what programs are told of it;
   :memory   what is shown to people and decides nothing;
@@ -126,16 +122,18 @@ MALFORMED-DEFINITION."
 (defun kind-definition (name include constructor documentation groups)
   "Return the form that defines the kind NAME."
   (let ((slots (slots-by-role groups))
-        (conc (concatenate 'string (symbol-name name) "-")))
+        (conc (concatenate 'string (symbol-name name) "-"))
+        (constructor (ensure-list constructor)))
     `(progn
        (defstruct (,name ,@(when include `((:include ,include)))
-                         ,(if (consp constructor)
-                              `(:constructor ,@constructor)
-                              `(:constructor ,constructor))
+                         (:constructor ,@(or constructor '(nil)))
                          (:copier nil))
          ,documentation
          ,@(loop for (slot default type) in (slots-by-place groups)
                  collect `(,slot ,default :type ,type)))
+       ,@(reader-marks (slots-by-place groups) (lambda (slot) (reader-name conc slot)))
+       (set-documentations ',(function-texts name documentation (list (symbolicate name "-P"))
+                                             (list constructor)))
        (register-kind ',name ',include (list ,@(slot-forms name conc slots)) ,conc)
        (defmethod describe-object ((object ,name) stream)
          (describe-by-kind object stream))

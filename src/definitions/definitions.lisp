@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(current-source *definition* definition-again make-defining defining-form reject-clause
+(export '(current-source *definition* definition-again make-defining reject-clause
           call-with-definition expand-definition forms-or-rejection title check-function-name
           other-definition-p in-file-p missing-name read-value clause-place current-form-digest
           endless-p))
@@ -11,19 +11,13 @@
 ;;; both, *DEFINITION* says which one it is, so that an error names file and line, and restarts
 ;;; leave the definition out, read it again from its file, or take something else instead.
 
-(defstruct (defining-form (:conc-name defining-) (:constructor make-defining (source form))
-                          (:copier nil))
+(define-record (defining-form (:conc-name defining-) (:constructor make-defining (source form)))
   "The definition FORM, from SOURCE, that is being expanded or carried out."
-  (source '() :type list :read-only t)
-  (form '() :type list :read-only t)
-  ;; Which of the forms of that operator and name in its file it is, from 0, once looked up.
-  (ordinal nil)
-  ;; The part of it that was rejected last.
-  (clause nil))
-
-(document-functions
-  make-defining "Return that FORM, from SOURCE, is being expanded or carried out."
-  defining-form "Return the form that is being expanded or carried out.")
+  (source '() list)
+  (form '() list "the form that is being expanded or carried out" :export)
+  (ordinal nil t "which of the forms of that operator and name in its file it is, from 0, once
+looked up" :writable)
+  (clause nil t "the part of it that was rejected last" :writable))
 
 (defvar *definition* nil
   "The definition that is being expanded or carried out, or NIL.")

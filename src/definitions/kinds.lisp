@@ -2,10 +2,8 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(slots-to-show *object-kinds* kind-p kind-of kind-called kind-name kind-slots all-kinds
-          find-kind-name kind-slot-name kind-slot-role kind-slot-type kind-slot-text
-          kind-slot-part-p kind-slot-reader kind-slot-writer object-slots reset kind-slot-shared-p
-          kind-decisive-slots kind-slot-initial slot-content))
+(export '(slots-to-show *object-kinds* kind-p kind-of kind-called all-kinds find-kind-name
+          object-slots reset slot-content))
 
 ;;; A kind is a structure whose slots say what they are, by role:
 ;;;
@@ -21,50 +19,36 @@
 ;;; :SHARED is replaced and never altered: forks have the same. Slots marked as :NEAR stand first in
 ;;; memory, beside each other: what is read of many objects, one after the other, belongs there.
 
-(defstruct (kind-slot (:constructor make-kind-slot
-                          (name role type text part-p shared-p initial reader writer))
-                      (:copier nil))
-  "What is known of a slot of a kind. INITIAL returns the value that it begins with."
-  (name nil :type symbol :read-only t)
-  (role nil :type (member :fixed :state :memory :scratch :link) :read-only t)
-  (type t :read-only t)
-  (text "" :type string :read-only t)
-  (part-p nil :type boolean :read-only t)
-  (shared-p nil :type boolean :read-only t)
-  (initial nil :type function :read-only t)
-  (reader nil :type function :read-only t)
-  (writer nil :type function :read-only t))
+(define-record (kind-slot (:constructor make-kind-slot
+                              (name role type text part-p shared-p initial reader writer)))
+  "What is known of a slot of a kind."
+  (name nil symbol "the name of the slot, a symbol" :export)
+  (role nil (member :fixed :state :memory :scratch :link)
+        "what the slot is: :FIXED, :STATE, :MEMORY, :SCRATCH or :LINK" :export)
+  (type t t "the Lisp type of the slot's values" :export)
+  (text "" string "what is in the slot, in words" :export)
+  (part-p nil boolean "what is in the slot belongs to the object" :export)
+  (shared-p nil boolean "what is in the slot is never altered, so that copies can share it" :export)
+  (initial nil function "the function that returns what the slot holds at first" :export)
+  (reader nil function "the function of an object that returns what is in the slot" :export)
+  (writer nil function
+          "the function of a value and an object that puts the value into the slot" :export))
 
 (defun decisive-p (slot)
   "True if SLOT has state in it, or parts."
   (or (eq :state (kind-slot-role slot))
       (and (eq :fixed (kind-slot-role slot)) (kind-slot-part-p slot))))
 
-(defstruct (object-kind (:conc-name kind-)
-                        (:constructor make-kind
-                            (name slots parent
-                             &aux (decisive-slots (remove-if-not #'decisive-p slots))))
-                        (:predicate kind-p) (:copier nil))
-  "A kind of object: its slots, those of its PARENT first."
-  (name nil :type symbol :read-only t)
-  (slots '() :type list :read-only t)
-  (decisive-slots '() :type list :read-only t)
-  (parent nil :type (or null object-kind) :read-only t))
-
-(document-functions
-  kind-slot-name "Return the name of the slot, a symbol."
-  kind-slot-role "Return what the slot is: :FIXED, :STATE, :MEMORY, :SCRATCH or :LINK."
-  kind-slot-type "Return the Lisp type of the slot's values."
-  kind-slot-text "Return what is in the slot, in words."
-  kind-slot-part-p "True if what is in the slot belongs to the object."
-  kind-slot-shared-p "True if what is in the slot is never altered, so that copies can share it."
-  kind-slot-reader "Return the function of an object that returns what is in the slot."
-  kind-slot-writer "Return the function of a value and an object that puts the value into the slot."
-  kind-slot-initial "Return the function that returns what the slot holds at first."
-  kind-decisive-slots "Return those slots of the kind whose contents decide what happens."
-  kind-p "True of kinds."
-  kind-name "Return the name of the kind, the type of its objects."
-  kind-slots "Return a list of what is known of the slots of the kind, inherited ones first.")
+(define-record (object-kind (:conc-name kind-)
+                            (:constructor make-kind
+                                (name slots parent
+                                 &aux (decisive-slots (remove-if-not #'decisive-p slots))))
+                            (:predicate kind-p))
+  "A kind of object."
+  (name nil symbol "the name of the kind, the type of its objects" :export)
+  (slots '() list "a list of what is known of the slots of the kind, inherited ones first" :export)
+  (decisive-slots '() list "those slots of the kind whose contents decide what happens" :export)
+  (parent nil (or null object-kind) "the kind that it includes, or NIL"))
 
 (defmethod print-object ((kind object-kind) stream)
   (print-unreadable-object (kind stream :type t) (princ (kind-name kind) stream)))

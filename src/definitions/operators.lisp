@@ -2,23 +2,19 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(operator-name operator-function define-operator check-operands find-operator))
+(export '(define-operator check-operands find-operator))
 
 ;;; An operator says what its arguments are, and how it is done again when a journal is replayed.
 ;;; Nothing else is ever called because a journal says so.
 
-(defstruct (askable (:conc-name operator-) (:constructor make-operator (name types rest function))
-                    (:predicate operator-p) (:copier nil))
-  "Something that can be asked of a run. TYPES are argument types, REST that of any further
-arguments or NIL; FUNCTION, of the arguments, asks it again."
-  (name nil :type symbol :read-only t)
-  (types '() :type list :read-only t)
-  (rest nil :type symbol :read-only t)
-  (function nil :type function :read-only t))
-
-(document-functions
-  operator-name "Return the name of the operator, a symbol."
-  operator-function "Return the function of the operator's arguments that asks it again.")
+(define-record (askable (:conc-name operator-)
+                        (:constructor make-operator (name types rest function))
+                        (:predicate operator-p))
+  "Something that can be asked of a run."
+  (name nil symbol "the name of the operator, a symbol" :export)
+  (types '() list "the types of the arguments")
+  (rest nil symbol "the type of any further arguments, or NIL")
+  (function nil function "the function of the operator's arguments that asks it again" :export))
 
 (define-registry operator "operator" :object-p operator-p :fixed t :internal t)
 

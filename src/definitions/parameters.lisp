@@ -2,41 +2,28 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(parameter parameter-symbol parameter-clean parameter-type check-parameter-value
-          describe-type define-parameter parameter-settings check-parameters
-          *noise-before-cleaning*))
+(export '(parameter check-parameter-value describe-type define-parameter parameter-settings
+          check-parameters *noise-before-cleaning*))
 
 ;;; Each parameter is a special variable that users may SETF. From its one definition come its
 ;;; documentation, the check of its value, what CLEAN-SIMULATION does to it and the prompt's
 ;;; list. A headless run binds all of them anew; a live run follows the global values.
 
-(defstruct (parameter (:copier nil))
+(addition parameter-p)
+(define-record parameter
   "What is known of one simulation parameter besides its value."
-  (symbol nil :type symbol :read-only t)
-  (default nil :read-only t)
-  (unit "" :type string :read-only t)
-  (type t :read-only t)
-  ;; True of the values that are of the type.
-  (test (constantly t) :type function :read-only t)
-  (kind :limit :type (member :noise :delay :limit :setting) :read-only t)
-  (clean nil :read-only t)
-  (group "" :type string :read-only t)
-  (sentence "" :type string :read-only t)
-  ;; True if digests have its value even where that is the default; see DIGEST-PARAMETERS.
-  (digested-p t :type boolean :read-only t))
-
-(addition parameter-p parameter-default parameter-unit parameter-kind parameter-group
-          parameter-sentence)
-(setf (documentation 'parameter-p 'function) "True of parameters."
-      (documentation 'parameter-default 'function) "Return the value that the manual gives."
-      (documentation 'parameter-unit 'function) "Return the unit of the values, a string."
-      (documentation 'parameter-kind 'function) "Return :NOISE, :DELAY, :LIMIT or :SETTING."
-      (documentation 'parameter-group 'function) "Return the heading that chapter 4 lists it under."
-      (documentation 'parameter-sentence 'function) "Return what the parameter means.")
-(document-functions
-  parameter-symbol "Return the special variable that is the parameter."
-  parameter-clean "Return the value in a noiseless world of a parameter of kind :NOISE."
-  parameter-type "Return the type of the parameter's values.")
+  (symbol nil symbol "the special variable that is the parameter" :export)
+  (default nil t "the value that the manual gives" :addition)
+  (unit "" string "the unit of the values, a string" :addition)
+  (type t t "the type of the parameter's values" :export)
+  (test (constantly t) function "the function that is true of the values that are of the type")
+  (kind :limit (member :noise :delay :limit :setting)
+        ":NOISE, :DELAY, :LIMIT or :SETTING" :addition)
+  (clean nil t "the value in a noiseless world of a parameter of kind :NOISE" :export)
+  (group "" string "the heading that chapter 4 lists it under" :addition)
+  (sentence "" string "what the parameter means" :addition)
+  (digested-p t boolean
+              "digests have its value even where that is the default; see DIGEST-PARAMETERS"))
 
 (addition parameter-name)
 (defun parameter-name (parameter)

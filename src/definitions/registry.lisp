@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(registry define-registry registry-objects register *definition-listener*
-          lookup-entry from-this-file-p entry-name entry-object entry-source
-          entry-digest registry-entries users-p names-to-offer defined-names all-definitions
+(export '(registry define-registry register *definition-listener* lookup-entry
+          from-this-file-p users-p names-to-offer defined-names all-definitions
           definition-to-replace variable-in-use-p entries-meant take-back reinstate))
 
 ;;; One registry for each kind of definition. Names compare as names, whatever package they were
@@ -14,45 +13,31 @@
 ;;; The lists are replaced, never altered, so that any thread may read them at any time. All
 ;;; writing is done under one lock.
 
-(defstruct (entry (:constructor make-entry (name object source variable
-                                            &optional (digest (current-form-digest))
-                                              (head (current-head))
-                                              (documentation (current-docstring))))
-                  (:copier nil))
-  "That NAME means OBJECT, by a definition in SOURCE; VARIABLE, if any, holds what it stands for.
-DIGEST is a number for the form of the definition, or NIL if there was none, HEAD its operator and
-name, DOCUMENTATION what its author says there of what is defined."
-  (name nil :type symbol :read-only t)
-  (object nil :read-only t)
-  (source nil :type list :read-only t)
-  (variable nil :type symbol :read-only t)
-  (digest nil :type (or null integer) :read-only t)
-  (head '() :type list :read-only t)
-  (documentation nil :type (or null string) :read-only t))
+(define-record (entry (:constructor make-entry (name object source variable
+                                                &optional (digest (current-form-digest))
+                                                  (head (current-head))
+                                                  (documentation (current-docstring)))))
+  "That NAME means OBJECT, by a definition in SOURCE."
+  (name nil symbol "the symbol that is defined" :export)
+  (object nil t "what the name of the entry means" :export)
+  (source nil list "the source of the entry's definition; see sources.lisp" :export)
+  (variable nil symbol "the variable that holds what the name stands for, or NIL")
+  (digest nil (or null integer) "a number for the form of the entry's definition, or NIL" :export)
+  (head '() list "the operator and name of that form, a list")
+  (documentation nil (or null string) "what its author says there of what is defined, or NIL"))
 
-(defstruct (registry (:constructor %make-registry (kind text)) (:copier nil))
-  "All definitions of one KIND, called TEXT in messages: entries in order, and their objects."
-  (kind nil :type symbol :read-only t)
-  (text "" :type string :read-only t)
-  (entries '() :type list)
-  (objects '() :type list)
-  ;; True if names that are different symbols mean different things.
-  (by-symbol-p nil :type boolean)
-  ;; True if users cannot take back any definitions, or those that they find.
-  (fixed-p nil :type boolean)
-  (sealed-p nil :type boolean)
-  ;; What else UNDEFINE may call the kind.
-  (synonyms '() :type list)
-  ;; Returns what else an object may be called, a list of strings and symbols.
-  (aliases (constantly '()) :type function))
-
-(document-functions
-  entry-name "Return the symbol that is defined."
-  entry-object "Return what the name of the entry means."
-  entry-source "Return the source of the entry's definition; see sources.lisp."
-  entry-digest "Return a number for the form of the entry's definition, or NIL."
-  registry-entries "Return what is known of the definitions in REGISTRY, in order."
-  registry-objects "Return what REGISTRY has, in order of definition; do not alter it.")
+(define-record (registry (:constructor %make-registry (kind text)))
+  "All definitions of one KIND, called TEXT in messages."
+  (kind nil symbol)
+  (text "" string)
+  (entries '() list "what is known of the definitions in the registry, in order" :writable :export)
+  (objects '() list "what REGISTRY has, in order of definition; do not alter it" :writable :export)
+  (by-symbol-p nil boolean "names that are different symbols mean different things" :writable)
+  (fixed-p nil boolean "users cannot take back any definitions, or those that they find" :writable)
+  (sealed-p nil boolean :writable)
+  (synonyms '() list "what else UNDEFINE may call the kind" :writable)
+  (aliases (constantly '()) function "the function that returns what else an object may be called,
+strings and symbols" :writable))
 
 (defmethod print-object ((registry registry) stream)
   (print-unreadable-object (registry stream :type t)

@@ -3,9 +3,8 @@
 (in-package :ars-magna.definitions)
 
 (export '(call-user-code *user-error-hooks* note-waiting report-break continue-inside user-calls
-          make-user-calls user-calls-origin user-calls-count *user-calls* user-calls-waiting-p
-          user-calls-place as-users-code abort-user-code *spoilt-by-leaving-p* brief-text
-          text-of-origin recurring-code recurring-remedy report-user-error))
+          make-user-calls *user-calls* as-users-code abort-user-code *spoilt-by-leaving-p*
+          brief-text text-of-origin recurring-code recurring-remedy report-user-error))
 
 ;;; Continuations, kickers, tests and whatever else users give to the simulator is called here. A
 ;;; call may end in four ways besides returning. It may signal an error, or be aborted: then it has
@@ -24,23 +23,14 @@ is queued as an error message that names its origin, and the run goes on.")
 
 ;;; What users' code a thread is in.
 
-(defstruct (user-calls (:constructor make-user-calls (&optional stop)) (:copier nil))
+(define-record (user-calls (:constructor make-user-calls (&optional stop)))
   "What users' code a thread calls. STOP is a function that ends what the thread does."
-  (origin nil :type t)
-  (count 0 :type fixnum)
-  ;; It is in a debugger.
-  (waiting-p nil :type t)
-  ;; Says which form of a file is loaded, perhaps by that code.
-  (place nil :type (or null function))
-  (stop nil :type (or null function) :read-only t))
-
-(document-functions
-  make-user-calls "Return a record of users' code called by a thread which the function STOP stops."
-  user-calls-origin "Return whose code the thread is in, an item or a list of items, or NIL."
-  user-calls-place "Return a function that says where the form is that the thread loads of a file,
-or NIL if it loads none. Can be set."
-  user-calls-count "Return how many calls of users' code the thread has begun."
-  user-calls-waiting-p "True if the last of them waits for an answer in a debugger.")
+  (origin nil t "whose code the thread is in, an item or a list of items, or NIL" :writable :export)
+  (count 0 fixnum "how many calls of users' code the thread has begun" :writable :export)
+  (waiting-p nil t "the last of them waits for an answer in a debugger" :writable :export)
+  (place nil (or null function) "a function that says where the form is that the thread loads of a
+file, or NIL if it loads none. Can be set" :writable :export)
+  (stop nil (or null function) "a function that ends what the thread does, or NIL"))
 
 (defvar *user-calls* nil
   "The USER-CALLS of this thread, or NIL if nobody watches them.")
