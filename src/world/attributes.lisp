@@ -8,29 +8,17 @@
 ;;; nobody defined may be stored and matched but are never sensed unasked. Manual 3.3, 3.4.2
 ;;; and 5.4.
 
-(defstruct (attribute (:constructor make-attribute) (:copier nil))
+(addition attribute-p)
+(define-record (attribute (:constructor make-attribute))
   "What is known of an attribute of things: its possible values and sensing parameters."
-  (name nil :type symbol :read-only t)
-  (kind :discrete :type (member :discrete :numeric) :read-only t)
-  (domain '() :type list :read-only t)
-  (success 1d0 :type double-float :read-only t)
-  (base 0d0 :type double-float :read-only t)
-  (max-mult 1d0 :type double-float :read-only t)
-  (noticed 0d0 :type double-float :read-only t)
-  (supporters '() :type list :read-only t))
-
-(addition attribute-p attribute-name attribute-kind attribute-domain attribute-success
-          attribute-base attribute-max-mult attribute-noticed attribute-supporters)
-(document-functions
- attribute-p "True of an attribute."
- attribute-name "Return the keyword that the attribute is called."
- attribute-kind "Return :discrete or :numeric."
- attribute-domain "Return the list of possible values of a discrete attribute; NIL if numeric."
- attribute-success "Return the base probability that a discrete reading is correct."
- attribute-base "Return the base standard deviation of numeric readings."
- attribute-max-mult "Return the largest multiplier of that deviation, far away."
- attribute-noticed "Return the base probability that the attribute is sensed unasked."
- attribute-supporters "Return the keywords of the attributes that support this one.")
+  (name nil symbol "the keyword that the attribute is called" :addition)
+  (kind :discrete (member :discrete :numeric) ":discrete or :numeric" :addition)
+  (domain '() list "the list of possible values of a discrete attribute; NIL if numeric" :addition)
+  (success 1d0 double-float "the base probability that a discrete reading is correct" :addition)
+  (base 0d0 double-float "the base standard deviation of numeric readings" :addition)
+  (max-mult 1d0 double-float "the largest multiplier of that deviation, far away" :addition)
+  (noticed 0d0 double-float "the base probability that the attribute is sensed unasked" :addition)
+  (supporters '() list "the keywords of the attributes that support this one" :addition))
 
 (defmethod print-object ((attribute attribute) stream)
   (print-unreadable-object (attribute stream :type t)

@@ -2,44 +2,36 @@
 
 (in-package :ars-magna.world)
 
-(export '(*kickers* kicker-test kicker-body kicker define-kicker attachment *kicker-generation*))
+(export '(*kickers* kicker define-kicker attachment *kicker-generation*))
 
 ;;; A KICKER is abstract; an ATTACHMENT is a kicker on a thing. A thing has at most one kicker
 ;;; of each name. Redefining a kicker changes it wherever it is attached: worlds notice by
 ;;; *KICKER-GENERATION*. Manual 5.3.1.
 
-(defstruct (kicker (:constructor make-kicker (name)) (:copier nil))
+(addition kicker-p)
+(define-record (kicker (:constructor make-kicker (name)))
   "Code that is run with probability PROB on any tick on which TEST, if any, holds."
-  (name nil :type symbol)
-  (prob 1d0 :type (double-float 0d0 1d0))
-  (test nil :type (or null function))
-  (body (constantly nil) :type function)
-  ;; The attributes that the test reads. The outcome is NIL before the first test, :NO while all
-  ;; tests were false, T after a true one.
-  (test-attributes '() :type list)
-  (test-outcome nil :type (member nil :no t))
-  ;; True after the first attachment, or the first run that ended without one.
-  (checked-p nil :type boolean))
-(addition kicker-p kicker-name kicker-prob)
-(document-functions
- kicker-p "True of a kicker."
- kicker-name "Return the symbol that the kicker is called."
- kicker-prob "Return the kicker's probability per tick."
- kicker-test "Return the function of a thing that says whether the kicker may run, or NIL."
- kicker-body "Return the function of a thing that the kicker runs.")
+  (name nil symbol "the symbol that the kicker is called" :writable :addition)
+  (prob 1d0 (double-float 0d0 1d0) "the kicker's probability per tick" :writable :addition)
+  (test nil (or null function)
+        "the function of a thing that says whether the kicker may run, or NIL" :writable :export)
+  (body (constantly nil) function "the function of a thing that the kicker runs" :writable :export)
+  (test-attributes '() list "the attributes that the test reads" :writable)
+  (test-outcome nil (member nil :no t) "NIL before the first test, :NO while all tests were false, T
+after a true one" :writable)
+  (checked-p nil boolean "it has been attached, or a run has ended without that" :writable))
 
 (define-kind (attachment :constructor (make-attachment (kicker thing)))
     "A kicker on a thing."
   (:fixed
-   (kicker nil kicker "the attached kicker")
-   (thing nil thing "the thing that the kicker is on"))
+   (kicker nil kicker "the attached kicker" :addition)
+   (thing nil thing "the thing that the kicker is on" :addition))
   (:state
    (alive-p t boolean "the kicker has not been taken off")
    (due 0 tick-count "the tick of kickers in which it is to run because somebody asked for it")
    (ran 0 tick-count "the tick of kickers in which it last ran for that reason")
    (index 0 fixnum "its number in its group")
    (group nil t "the group of equal kickers that it is in, or NIL")))
-(addition attachment-kicker attachment-thing)
 
 (defmethod reference ((attachment attachment))
   (list :attachment (thing-serial (attachment-thing attachment)) (attachment-name attachment)))

@@ -2,23 +2,19 @@
 
 (in-package :ars-magna.world)
 
-(export '(*map-clauses* all-clause-kinds clause-kind-name clause-kind-usage))
+(export '(*map-clauses* all-clause-kinds))
 
 ;;; A definition says all that is to be known of a kind of clause: how it is written, which clauses
 ;;; are right, and what they stand for. Our own kinds are walls that are drawn, or things; those of
 ;;; users stand for other clauses. So a map keeps only ours, and its cache depends on nothing else.
 
-(defstruct (clause-kind (:constructor make-clause-kind (name usage derived-p function))
-                        (:copier nil))
-  "What clauses called NAME are: written as USAGE says, and of other clauses if DERIVED-P. FUNCTION
-returns, of an option, a map and a clause, the value of the form for the option."
-  (name nil :type symbol :read-only t)
-  (usage "" :type string :read-only t)
-  (derived-p nil :type boolean :read-only t)
-  (function nil :type function :read-only t))
-(document-functions
- clause-kind-name "Return the symbol that clauses of the kind begin with."
- clause-kind-usage "Return how clauses of the kind are written, a string.")
+(define-record (clause-kind (:constructor make-clause-kind (name usage derived-p function)))
+  "What clauses of a name are."
+  (name nil symbol "the symbol that clauses of the kind begin with" :export)
+  (usage "" string "how clauses of the kind are written, a string" :export)
+  (derived-p nil boolean "the clauses are of other clauses")
+  (function nil function "the function of an option, a map and a clause that returns the value of
+the form for the option"))
 
 (define-registry map-clause "kind of map clause" :sealed t :internal t
   :finder find-clause-kind :lister all-clause-kinds)

@@ -2,10 +2,8 @@
 
 (in-package :ars-magna.world)
 
-(export '(map-flags map-parameters map-substances map-substance-types map-places map-directions
-          map-place-types map-least-parameter map-greatest-parameter map-enclosed map-things
-          map-resident map-attribute-names map-package map-replaced map-form map-index point-index
-          +wall+ +obsmove+ +obsview+ +occupied+ +opaque+ cell *maps* map-clause-kinds))
+(export '(map-replaced map-form map-index point-index +wall+ +obsmove+ +obsview+ +occupied+ +opaque+
+          cell *maps*))
 
 ;;; A map is built once (see defmap.lisp) and shared, without locks, by all worlds made of it.
 ;;; Cell (X, Y) covers [X, X+1) x [Y, Y+1) and has the index X + Y * width. Outside the map
@@ -29,34 +27,49 @@
 (deftype indices () '(simple-array (unsigned-byte 16) (*)))
 
 (public map)
-(defstruct (map (:constructor %make-map) (:copier nil))
+(addition map-p)
+(define-record (map (:constructor %make-map))
   "A fixed grid of cells, with the recipe of the things that a fresh world of it holds (manual
 5.1)."
-  (name nil :type symbol :read-only t)
-  (width 1 :type (integer 1 32767) :read-only t)
-  (height 1 :type (integer 1 32767) :read-only t)
-  (flags (make-octets 0) :type octets)
-  (parameters (make-doubles 0) :type doubles)
-  (substances (make-array 0 :element-type '(unsigned-byte 16)) :type indices)
-  (substance-types #(nil) :type simple-vector)
-  (places (make-octets 0) :type octets)
-  (directions (make-doubles 0) :type doubles)
-  (place-types #(nil) :type simple-vector)
-  (least-parameter 0d0 :type double-float)
-  (greatest-parameter 0d0 :type double-float)
-  (enclosed nil :type boolean)
-  (things '() :type list)
-  ;; The names, keywords, of the attributes that its things say something of.
-  (attribute-names '() :type list)
-  ;; The name of the package that its author wrote in.
-  (package nil :type (or null string) :read-only t)
-  (clauses '() :type list)
-  ;; The names of the kinds of clauses that users have defined and its author wrote.
-  (clause-kinds '() :type list)
-  (cache nil :type (or null string pathname))
-  ;; Where the map lies elsewhere; see MAP-FRAME.
-  (frame '(1 0 0 0) :type list :read-only t)
-  (resident nil))
+  (name nil symbol "the symbol that the map is called" :addition)
+  (width 1 (integer 1 32767) "how many cells the map is wide" :addition)
+  (height 1 (integer 1 32767) "how many cells the map is high" :addition)
+  (flags (make-octets 0) octets
+         "the flags of the map's cells by index: +WALL+ where filled" :writable :export)
+  (parameters (make-doubles 0) doubles "the substance parameters of the map's cells by index, 0
+where empty" :writable :export)
+  (substances (make-array 0 :element-type '(unsigned-byte 16)) indices
+              "the indices, by cell index, into the map's MAP-SUBSTANCE-TYPES" :writable :export)
+  (substance-types #(nil) simple-vector
+                   "a vector of substance names; element 0 is NIL, for no wall" :writable :export)
+  (places (make-octets 0) octets
+          "the indices, by cell index, into the map's MAP-PLACE-TYPES" :writable :export)
+  (directions (make-doubles 0) doubles "the basic canonical directions of the map's cells by index,
+radians" :writable :export)
+  (place-types #(nil) simple-vector
+               "a vector of the place types known to the map; element 0 is NIL" :writable :export)
+  (least-parameter 0d0 double-float
+                   "the least parameter of any wall in the map, 0 without walls" :writable :export)
+  (greatest-parameter 0d0 double-float "the greatest parameter of any wall in the map, 0 without
+walls" :writable :export)
+  (enclosed nil boolean "true if walls fill all cells at the map's edges, so that no line leads
+out" :writable :export)
+  (things '() list
+          "the recipes of the things that a fresh world of the map starts with" :writable :export)
+  (attribute-names '() list "the keywords of the attributes that the map's things start
+with" :writable :export)
+  (package nil (or null string)
+           "the name of the package that the map's author wrote in, or NIL" :export)
+  (clauses '() list "the clauses that its author wrote" :writable)
+  (clause-kinds '() list "the names of the users' kinds of clauses that the map is written
+with" :writable :export)
+  (cache nil (or null string pathname) "where it is kept as a file, or NIL" :writable)
+  (frame '(1 0 0 0) list "a list (size x y yaw): how many metres of elsewhere a side of the map's
+cells is, where its lower left corner lies there, in metres, and how far its x axis is turned there,
+radians against the clock. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP said something
+else" :addition)
+  (resident nil t "the world of the map that top-level code works in, NIL if nobody has
+asked" :writable :export))
 
 (defun make-octets (size) (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
 (defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
@@ -67,31 +80,6 @@
     (setf (map-flags map) (make-octets size)
           (map-parameters map) (make-doubles size)
           (map-substances map) (make-array size :element-type '(unsigned-byte 16)))))
-
-(addition map-p map-name map-width map-height map-frame)
-(document-functions
- map-p "True of a map."
- map-name "Return the symbol that the map is called."
- map-width "Return how many cells the map is wide."
- map-height "Return how many cells the map is high."
- map-frame "Return a list (size x y yaw): how many metres of elsewhere a side of the map's cells
-is, where its lower left corner lies there, in metres, and how far its x axis is turned there,
-radians against the clock. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP said something else."
- map-flags "Return the flags of the map's cells by index: +WALL+ where filled."
- map-parameters "Return the substance parameters of the map's cells by index, 0 where empty."
- map-substances "Return, by cell index, indices into the map's MAP-SUBSTANCE-TYPES."
- map-substance-types "Return a vector of substance names; element 0 is NIL, for no wall."
- map-places "Return, by cell index, indices into the map's MAP-PLACE-TYPES."
- map-directions "Return the basic canonical directions of the map's cells by index, radians."
- map-place-types "Return a vector of the place types known to the map; element 0 is NIL."
- map-least-parameter "Return the least parameter of any wall in the map, 0 without walls."
- map-greatest-parameter "Return the greatest parameter of any wall in the map, 0 without walls."
- map-enclosed "Return true if walls fill all cells at the map's edges, so that no line leads out."
- map-resident "Return the world of the map that top-level code works in, NIL if nobody has asked."
- map-attribute-names "Return the keywords of the attributes that the map's things start with."
- map-clause-kinds "Return the names of the users' kinds of clauses that the map is written with."
- map-package "Return the name of the package that the map's author wrote in, or NIL."
- map-things "Return the recipes of the things that a fresh world of the map starts with.")
 
 (defmethod print-object ((map map) stream)
   (if (or *print-escape* *print-readably*)
@@ -183,17 +171,12 @@ WRONG-ARGUMENT."
   (let ((index (map-index map x y)))
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
 
-(defstruct (cell (:constructor make-cell (map x y)) (:copier nil))
+(addition cell-p)
+(define-record (cell (:constructor make-cell (map x y)))
   "A cursor on the cell with the integer coordinates X and Y of MAP, perhaps outside it."
-  (map nil :type map :read-only t)
-  (x 0 :type fixnum)
-  (y 0 :type fixnum))
-(addition cell-p cell-map cell-x cell-y)
-(document-functions
- cell-p "True of a cell."
- cell-map "Return the map that the cell is in."
- cell-x "Return the cell's column, an integer."
- cell-y "Return the cell's row, an integer.")
+  (map nil map "the map that the cell is in" :addition)
+  (x 0 fixnum "the cell's column, an integer" :writable :addition)
+  (y 0 fixnum "the cell's row, an integer" :writable :addition))
 
 (defmethod print-object ((cell cell) stream)
   (print-unreadable-object (cell stream)

@@ -9,27 +9,20 @@
 ;;; probability, directions and drawing hold at once, which cells are of it holds for maps built
 ;;; later and for those rebuilt with REBUILD-MAP. Manual 5.1.1.
 
-(defstruct (place-type (:constructor %make-place-type (name)) (:copier nil))
+(addition place-type-p)
+(define-record (place-type (:constructor %make-place-type (name)))
   "A stereotypical bit of wall structure that the robot can sense and align with."
-  (name nil :type symbol)
-  (confusion 0d0 :type (double-float 0d0 1d0))
-  (invisible-p nil :type boolean)
-  (rules '() :type list)
-  (table nil :type (or null octets))
-  (checker nil :type (or null function))
-  (directions nil :type (or null function))
-  (graphics nil :type (or null function))
-  (key 0 :type integer))
-
-(addition place-type-p place-type-name place-type-confusion place-type-invisible-p
-          place-type-graphics)
-(document-functions
- place-type-p "True of a place type."
- place-type-name "Return the symbol that the place type is called."
- place-type-confusion "Return the probability of a false designator in a search for the type."
- place-type-invisible-p "True if no designator can be acquired for the place type."
- place-type-graphics "Return the function (window x y) that draws the place type, or NIL; can
-be set. X and Y are the upper left corner of the cell in pixels.")
+  (name nil symbol "the symbol that the place type is called" :writable :addition)
+  (confusion 0d0 (double-float 0d0 1d0)
+             "the probability of a false designator in a search for the type" :writable :addition)
+  (invisible-p nil boolean "no designator can be acquired for the place type" :writable :addition)
+  (rules '() list :writable)
+  (table nil (or null octets) :writable)
+  (checker nil (or null function) :writable)
+  (directions nil (or null function) :writable)
+  (graphics nil (or null function) "the function (window x y) that draws the place type, or NIL; can
+be set. X and Y are the upper left corner of the cell in pixels" :writable :addition)
+  (key 0 integer :writable))
 
 (defmethod print-object ((type place-type) stream)
   (if (or *print-escape* *print-readably*)

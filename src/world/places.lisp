@@ -184,18 +184,13 @@ with a warning. Return MAP, and true if no type was left out. See reading 70."
 
 ;;; Reading.
 
-(defstruct (place (:constructor make-place (type canonical-dir cell)) (:copier nil))
+(addition place-p)
+(define-record (place (:constructor make-place (type canonical-dir cell)))
   "A cell as a place: its PLACE-TYPE, basic canonical direction (radians) and the cell."
-  (type nil :type place-type :read-only t)
-  (canonical-dir 0d0 :type double-float :read-only t)
-  (cell nil :type cell :read-only t))
-(addition place-p place-type place-canonical-dir place-cell)
-(document-functions
- make-place "Return a place of a PLACE-TYPE with its basic canonical direction (radians) and cell."
- place-p "True of a place."
- place-type "Return the PLACE-TYPE that the place is of."
- place-canonical-dir "Return the place's basic canonical direction, radians (manual 5.1.1)."
- place-cell "Return the cell that is the place.")
+  (type nil place-type "the PLACE-TYPE that the place is of" :addition)
+  (canonical-dir 0d0 double-float
+                 "the place's basic canonical direction, radians (manual 5.1.1)" :addition)
+  (cell nil cell "the cell that is the place" :addition))
 
 (defmethod reference ((place place))
   (list :place (name-string (place-type-name (place-type place)))

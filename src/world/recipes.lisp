@@ -9,19 +9,16 @@
 ;;; are made before their container, each with the next serial number of the world; prototypes
 ;;; take none. Manual 5.1 and 5.3.
 
-(defstruct (recipe (:constructor make-recipe (name attributes contents &key kickers x y))
-                   (:copier nil))
-  "A thing to be made: in a map's recipe, at X, Y."
-  (name nil :type symbol :read-only t)
-  (attributes '() :type list :read-only t)
-  (contents '() :type list :read-only t)
-  (kickers '() :type list :read-only t)
-  (x nil :type (or null double-float) :read-only t)
-  (y nil :type (or null double-float) :read-only t))
-
-(document-functions
-  make-recipe "Return the recipe of a thing NAME with ATTRIBUTES, CONTENTS, recipes, and KICKERS,
-at X, Y if they are given.")
+(define-record (recipe (:constructor make-recipe (name attributes contents &key kickers x y)))
+  "A thing to be made: NAME with ATTRIBUTES, CONTENTS and KICKERS; in a map's recipe, at X, Y."
+  (name nil symbol)
+  (attributes '() list "what it is like, an object descriptor")
+  (contents '() list "the recipes of what is in it")
+  (kickers '() list "the kickers on it")
+  (x nil (or null double-float)
+     "where it is put, the x coordinate in metres; NIL if it is not said")
+  (y nil (or null double-float)
+     "where it is put, the y coordinate in metres; NIL if it is not said"))
 
 (defmethod reference ((recipe recipe))
   (list :recipe (recipe-name recipe) (recipe-attributes recipe) (recipe-contents recipe)

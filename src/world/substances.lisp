@@ -8,14 +8,11 @@
 ;;; (manual 2.1). Walls give both. The value of a thing's :substance is a number (the
 ;;; parameter), a symbol (the type, its parameter as defined here) or a list of both.
 
-(defstruct (substance (:constructor make-substance (name %parameter)) (:copier nil))
-  "A type of substance with the parameter that things of it have unless they say otherwise."
-  (name nil :type symbol :read-only t)
-  (%parameter 0d0 :type double-float :read-only t))
-(addition substance-p substance-name)
-(document-functions
- substance-p "True of a substance."
- substance-name "Return the symbol that the substance is called.")
+(addition substance-p)
+(define-record (substance (:constructor make-substance (name %parameter)))
+  "A type of substance."
+  (name nil symbol "the symbol that the substance is called" :addition)
+  (%parameter 0d0 double-float "the parameter that things of it have unless they say otherwise"))
 
 (defmethod print-object ((substance substance) stream)
   (print-unreadable-object (substance stream :type t)

@@ -8,40 +8,35 @@
 ;;; value), replaced and never altered in place. Those that physics needs are cached in typed
 ;;; slots. A thing without a world is a prototype. Manual 3.3 and 5.3.
 
+(addition thing-p)
 (define-kind (thing :constructor (%make-thing (name serial world)))
     "An object in a world, or a prototype of such."
   (:fixed
-   (name nil symbol "the symbol that the thing is called; others may be called the same")
-   (serial 0 fixnum "the thing's number in its world, from 1; 0 for prototypes")
-   (world nil t "the world that the thing is in, or NIL for a prototype" :near))
+   (name nil symbol "the symbol that the thing is called; others may be called the same" :addition)
+   (serial 0 fixnum "the thing's number in its world, from 1; 0 for prototypes" :addition)
+   (world nil t "the world that the thing is in, or NIL for a prototype" :near :addition))
   (:state
-   (location nil t "where the thing is: :FLOOR, what holds it, or NIL if it is nowhere" :near)
+   (location nil t
+             "where the thing is: :FLOOR, what holds it, or NIL if it is nowhere" :near :addition)
    (x 0d0 double-float "the x coordinate in metres, now or when the thing was last on the floor"
-      :near)
+      :near :addition)
    (y 0d0 double-float "the y coordinate in metres, now or when the thing was last on the floor"
-      :near)
+      :near :addition)
    (attributes '() list "the thing's attributes as an object descriptor; do not alter it"
-               :shared)
-   (contents '() list "the list of things directly inside the thing, in order of arrival")
-   (kickers '() list "the list of the thing's kickers, as ATTACHMENTs" :part)
-   (alive-p t boolean "the thing has not been destroyed")
-   (obsmove-p nil boolean "the thing blocks movement")
-   (obsview-p nil boolean "the thing obstructs vision")
-   (closed-p nil boolean "the thing, as a container, is closed")
-   (substance-p nil boolean "the thing has a :substance")
-   (size 0d0 double-float "the thing's :size, 0 if unspecified")
-   (weight 0d0 double-float "the thing's own :weight, 0 if unspecified")
-   (capacity 0d0 double-float "the thing's :capacity, 0 if it is no container")
+               :shared :addition)
+   (contents '() list "the list of things directly inside the thing, in order of arrival" :addition)
+   (kickers '() list "the list of the thing's kickers, as ATTACHMENTs" :part :addition)
+   (alive-p t boolean "the thing has not been destroyed" :addition)
+   (obsmove-p nil boolean "the thing blocks movement" :addition)
+   (obsview-p nil boolean "the thing obstructs vision" :addition)
+   (closed-p nil boolean "the thing, as a container, is closed" :addition)
+   (substance-p nil boolean "the thing has a :substance" :addition)
+   (size 0d0 double-float "the thing's :size, 0 if unspecified" :addition)
+   (weight 0d0 double-float "the thing's own :weight, 0 if unspecified" :addition)
+   (capacity 0d0 double-float "the thing's :capacity, 0 if it is no container" :addition)
    (substance-parameter 0d0 double-float
-                        "the parameter of the thing's :substance, 0 if unspecified")
+                        "the parameter of the thing's :substance, 0 if unspecified" :addition)
    (rank 0 fixnum "where in the vector of its world's things it is" :near)))
-
-(addition thing-p thing-name thing-serial thing-world thing-location thing-x thing-y
-          thing-attributes thing-contents thing-kickers thing-alive-p thing-obsmove-p
-          thing-obsview-p thing-closed-p thing-substance-p thing-size thing-weight thing-capacity
-          thing-substance-parameter)
-(document-functions
- thing-p "True of a thing.")
 
 (defmethod reference ((thing thing))
   (and (thing-world thing) (list :thing (thing-serial thing))))

@@ -2,46 +2,42 @@
 
 (in-package :ars-magna.world)
 
-(export '(world-writer world world-flags do-cell world-rank-count thing-of-rank world-timeline
-          world-dice-set world-move-watchers world-settled-p do-things world-live-count
-          world-kicker-generation))
+(export '(world do-cell world-rank-count thing-of-rank do-things))
 
 ;;; A world is made fresh from its map's recipe. Nothing in it depends on anything but the map
 ;;; and the seed. Serial numbers count from 1 in order of creation, so that things in order of
 ;;; creation are things in order of serial number.
 
+(addition world-p)
 (define-kind (world :constructor (%make-world (map)))
     "Things, dice and kickers on a map, in the state that they have now."
   (:fixed
-   (map nil map "the map that the world is of")
-   (robots '() list "the list of the world's robots; the layer above keeps it" :part)
-   (kicker-generation 0 fixnum "which definitions of kickers its groups were made by")
-   (timeline nil t "the timeline of the world, once there is one; the layer above keeps it")
+   (map nil map "the map that the world is of" :addition)
+   (robots '() list "the list of the world's robots; the layer above keeps it" :part :addition)
+   (kicker-generation 0 fixnum "which definitions of kickers its groups were made by" :export)
+   (timeline nil t "the timeline of the world, once there is one; the layer above keeps it" :export)
    (move-watchers '() list
                   "the list of functions (thing old-location new-location) called after a thing has
-moved, been made or been destroyed"))
+moved, been made or been destroyed" :export))
   (:state
-   (seed 0 integer "the integer that all chance in the world comes from")
+   (seed 0 integer "the integer that all chance in the world comes from" :addition)
    (flags (make-octets 0) octets
-          "the flags of the world's cells by index: walls, and things on the floor")
+          "the flags of the world's cells by index: walls, and things on the floor" :export)
    (stock (make-stock) stock "its things, and which of them lie where on the floor" :part)
-   (live-count 0 fixnum "how many things are alive in the world")
+   (live-count 0 fixnum "how many things are alive in the world" :export)
    (next-serial 1 fixnum "the serial number of the next thing to be made")
-   (dice-set #() simple-vector "a vector of the world's dice, one for each purpose" :part)
+   (dice-set #() simple-vector "a vector of the world's dice, one for each purpose" :part :export)
    (kicker-groups '() list "the groups of equal kickers" :part)
    (kicker-tick 0 tick-count "how many ticks kickers were run in")
    (due-kickers '() list "the kickers to run in the next tick because somebody asked for it" :part))
   (:scratch
    (noted-names '() list "the names of attributes that somebody has been warned of")
-   (writer nil t "the thread that is changing the world, or NIL"))
+   (writer nil t "the thread that is changing the world, or NIL" :export))
   ;; As long as it is NIL, each tick looks.
   (:link
    (settled-p nil boolean "a tick has nothing to settle in the world: no robot has a designator, an
-ended track, a part inside of something, a hand with two things in it or with a watched grip")))
-
-(addition world-p world-map world-seed world-robots)
-(document-functions
- world-p "True of a world.")
+ended track, a part inside of something, a hand with two things in it or with a watched
+grip" :export)))
 
 (defmethod print-object ((world world) stream)
   (print-unreadable-object (world stream :identity t)
