@@ -7,20 +7,14 @@
 ;;; its own.
 
 (addition chart)
-(defstruct (chart (:constructor %make-chart (terrain)) (:copier nil))
-  "A map as somebody knows it: a TERRAIN, and which of its cells are barred, or cost more."
-  (terrain nil :type terrain :read-only t)
-  ;; Pairs (node . cost): what a metre costs more than on the terrain.
-  (barred '() :type list)
-  ;; A field in which cells are barred, and the nodes that have changed since it was looked at.
-  (field nil :type (or null field))
-  (changed '() :type list))
+(addition chart-p)
+(define-record (chart (:constructor %make-chart (terrain)))
+  "A map as somebody knows it: a terrain, and which of its cells are barred, or cost more."
+  (terrain nil terrain "the terrain of the chart, which it shares with others of its map" :addition)
+  (barred '() list "pairs (node . cost): what a metre costs more than on the terrain" :writable)
+  (field nil (or null field) "a field in which cells are barred, or NIL" :writable)
+  (changed '() list "the nodes that have changed since the field was looked at" :writable))
 (declaim-final chart)
-
-(addition chart-p chart-terrain)
-(document-functions
- chart-p "True of a chart."
- chart-terrain "Return the terrain of the chart, which it shares with others of its map.")
 
 (addition chart-map)
 (defun chart-map (chart)

@@ -23,28 +23,20 @@
 (defun make-amounts (size amount)
   (make-array size :element-type 'double-float :initial-element amount))
 
-(defstruct (terrain (:constructor %make-terrain (map places clearance costs columns cells))
-                    (:copier nil))
+(addition terrain-p)
+(define-record (terrain (:constructor %make-terrain (map places clearance costs columns cells)))
   "A map and what a metre costs in each of its cells, for one clearance and one table of the costs
 of places. It does not change, so all threads and copies of runs share it."
-  (map nil :type map :read-only t)
-  ;; What the map's places were.
-  (places nil :type simple-array :read-only t)
-  (clearance 0 :type real :read-only t)
-  (costs '() :type list :read-only t)
-  ;; How many cells a row has, with its margin.
-  (columns 0 :type (integer 0 40000) :read-only t)
-  (cells nil :type amounts :read-only t)
-  ;; Fields of goals that were asked for, newest first. The list is replaced, never altered.
-  (fields '() :type list)
-  (lock (make-lock "terrain") :read-only t))
+  (map nil map "the map that the terrain is of" :addition)
+  (places nil simple-array "what the map's places were")
+  (clearance 0 real "how near to walls the terrain's cells cost more, in metres" :addition)
+  (costs '() list "the costs of places")
+  (columns 0 (integer 0 40000) "how many cells a row has, with its margin")
+  (cells nil amounts)
+  (fields '() list "the fields of goals that were asked for, newest first; replaced, never
+altered" :writable)
+  (lock (make-lock "terrain") t))
 (declaim-final terrain)
-
-(addition terrain-p terrain-map terrain-clearance)
-(document-functions
- terrain-p "True of a terrain, which is what charts of a map share."
- terrain-map "Return the map that the terrain is of."
- terrain-clearance "Return how near to walls the terrain's cells cost more, in metres.")
 
 (defmethod print-object ((terrain terrain) stream)
   (print-unreadable-object (terrain stream :type t)
