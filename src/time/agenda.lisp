@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.time)
 
-(export '(event event-pending-p event-resource event-time event-function event-interrupt agenda
-          make-agenda agenda-tick agenda-pending queue-event queue-again +longest-delay+
-          cancel-event interrupt-event pending-event advance-agenda pending-events))
+(export '(event agenda make-agenda queue-event queue-again +longest-delay+ cancel-event
+          interrupt-event pending-event advance-agenda pending-events))
 
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
 ;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; what lies
@@ -23,13 +22,14 @@
 (define-kind (event :include request :constructor (%make-event (function)))
     "Something that FUNCTION, called with the event, will do in the tick TIME."
   (:fixed
-   (function #'identity function "the function of the event that is called in its tick")
-   (interrupt nil (or null function) "the function of the event to call if it is interrupted")
-   (resource nil t "the resource that the event occupies, or NIL"))
+   (function #'identity function "the function of the event that is called in its tick" :export)
+   (interrupt nil (or null function)
+              "the function of the event to call if it is interrupted" :export)
+   (resource nil t "the resource that the event occupies, or NIL" :export))
   (:state
-   (time 0 tick-count "the tick that the event waits for")
+   (time 0 tick-count "the tick that the event waits for" :export)
    (priority 0 fixnum "the event's priority; higher ones come first")
-   (pending-p nil boolean "the event waits for its tick"))
+   (pending-p nil boolean "the event waits for its tick" :export))
   ;; True while some bucket holds the event, pending or cancelled, and what comes after it there.
   (:link
    (queued-p nil boolean "a bucket holds the event, pending or cancelled")
@@ -44,23 +44,17 @@
 (defun make-wheel ()
   (make-array +page-size+ :initial-element nil))
 
-(defstruct (agenda (:constructor make-agenda ()) (:copier nil))
+(define-record (agenda (:constructor make-agenda () "Return an agenda without events, at tick 0."))
   "The events of one simulation."
-  (tick 0 :type tick-count)
-  (near (make-wheel) :type wheel :read-only t)
-  ;; NIL as long as no event lay beyond the current page: short runs never need it.
-  (far nil :type (or null wheel))
-  (beyond nil :type bucket)
-  ;; How many events are pending, and how many of those have a priority other than 0.
-  (pending 0 :type fixnum)
-  (unequal 0 :type fixnum)
-  ;; The pending event of each resource that is not a RESOURCE structure; lists and strings are
-  ;; the same resource if they look the same.
-  (claims (make-hash-table :test 'equal) :type hash-table :read-only t))
-(document-functions
-  make-agenda "Return an agenda without events, at tick 0."
-  agenda-tick "Return the tick that the agenda has reached."
-  agenda-pending "Return how many events are pending.")
+  (tick 0 tick-count "the tick that the agenda has reached" :writable :export)
+  (near (make-wheel) wheel "the events of the current page")
+  (far nil (or null wheel) "the events beyond that page; NIL as long as there were none, as in
+short runs" :writable)
+  (beyond nil bucket :writable)
+  (pending 0 fixnum "how many events are pending" :writable :export)
+  (unequal 0 fixnum "how many of those have a priority other than 0" :writable)
+  (claims (make-hash-table :test 'equal) hash-table "the pending event of each resource that is not
+a RESOURCE structure; lists and strings are the same resource if they look the same"))
 
 (declaim (inline behind first-of))
 (defun behind (last event)

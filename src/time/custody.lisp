@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(custody-questions custody-starter answer-questions call-with-custody mine-p
-          answer-meanwhile))
+(export '(answer-questions call-with-custody mine-p answer-meanwhile))
 
 ;;; A world, with the timelines of its runs, which follow one another, is in the custody of one
 ;;; thread at a time: the one that paces it, or one that passes its ticks or changes it, for as long
@@ -11,20 +10,15 @@
 ;;; thread meanwhile. Who does not get it leaves a question, a function, which the thread that has
 ;;; it calls between two ticks, or before it gives custody up.
 
-(defstruct (custody (:constructor make-custody ()) (:copier nil))
+(define-record (custody (:constructor make-custody ()))
   "Which thread may touch a world."
-  (thread nil :type t)
-  (questions '() :type t)
-  (wake-up (make-semaphore "custody") :type t :read-only t)
-  (asleep-p nil :type t)
-  ;; How the thread that has it paces the world, or NIL if it does not.
-  (pacing nil :type t)
-  ;; The thread that is starting the world, or NIL.
-  (starter nil :type t))
-
-(document-functions
-  custody-questions "Return what others have asked those who have the custody, newest first."
-  custody-starter "Return the thread that is starting the world, or NIL. Can be set.")
+  (thread nil t :writable)
+  (questions '() t
+             "what others have asked those who have the custody, newest first" :writable :export)
+  (wake-up (make-semaphore "custody") t)
+  (asleep-p nil t :writable)
+  (pacing nil t "how the thread that has it paces the world, or NIL if it does not" :writable)
+  (starter nil t "the thread that is starting the world, or NIL. Can be set" :writable :export))
 
 (defvar *held* '()
   "The custodies that this thread has and has not handed over.")

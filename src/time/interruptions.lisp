@@ -2,28 +2,19 @@
 
 (in-package :ars-magna.time)
 
-(export '(request-name note-interruption interruption interruption-tick interruption-what
-          interruption-asker interruption-by interruption-by-asker))
+(export '(request-name note-interruption interruption))
 
 (defgeneric request-name (request)
   (:documentation "Return what REQUEST asks for, as people call it.")
   (:method ((request request)) (request-operator request)))
 
-(defstruct (interruption (:constructor make-interruption (tick what asker by by-asker))
-                         (:copier nil))
+(define-record (interruption (:constructor make-interruption (tick what asker by by-asker)))
   "That WHAT, asked for by ASKER, was interrupted in TICK by BY, which BY-ASKER asked for."
-  (tick 0 :type tick-count :read-only t)
-  (what nil :read-only t)
-  (asker nil :read-only t)
-  (by nil :read-only t)
-  (by-asker nil :read-only t))
-
-(document-functions
-  interruption-tick "Return the tick in which it was."
-  interruption-what "Return the name of what was interrupted."
-  interruption-asker "Return a note of who had asked for that."
-  interruption-by "Return the name of what interrupted it."
-  interruption-by-asker "Return a note of who had asked for that.")
+  (tick 0 tick-count "the tick in which it was" :export)
+  (what nil t "the name of what was interrupted" :export)
+  (asker nil t "a note of who had asked for that" :export)
+  (by nil t "the name of what interrupted it" :export)
+  (by-asker nil t "a note of who had asked for that" :export))
 
 (defun note-interruption (request rival tick)
   "Remember, for people to read, that RIVAL interrupts REQUEST on the resource of that in TICK."

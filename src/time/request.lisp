@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(request request-operator request-arguments request-entry request-asker request-forked-p
-          request-phase perform))
+(export '(request request-entry perform))
 
 ;;; A request names an operator and has its arguments. It waits in a timeline (see timeline.lisp)
 ;;; until a tick begins; then it is performed, in the order of asking. Layers above include the
@@ -12,12 +11,13 @@
 (define-kind (request :constructor (make-request (operator arguments)))
     "Something asked of a run."
   (:fixed
-   (operator nil t "what is asked for: an operator's name, or what has one")
-   (arguments '() list "what it is asked for with")
-   (forked-p (goes-on-in-forks-p) boolean "who asked for it goes on in forks of the run too")
-   (phase 0 fixnum "the phase of the tick in which it was asked for, 0 between ticks"))
+   (operator nil t "what is asked for: an operator's name, or what has one" :export)
+   (arguments '() list "what it is asked for with" :export)
+   (forked-p (goes-on-in-forks-p) boolean
+             "who asked for it goes on in forks of the run too" :export)
+   (phase 0 fixnum "the phase of the tick in which it was asked for, 0 between ticks" :export))
   (:memory
-   (asker nil t "a note of who asked for it")))
+   (asker nil t "a note of who asked for it" :export)))
 
 (defgeneric perform (request timeline)
   (:documentation

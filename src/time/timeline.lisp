@@ -2,13 +2,10 @@
 
 (in-package :ars-magna.time)
 
-(export '(timeline make-timeline timeline-p timeline-of timeline-name timeline-tick
-          timeline-agenda timeline-run timeline-over timeline-custody timeline-phase phase-here
-          timeline-moments timeline-on-moment begin-moment timeline-ticking-p timeline-passing-p
-          timeline-tick-dice timeline-inbox timeline-pacing timeline-fork-p check-not-over
-          check-own-run check-not-secluded secluded wake-owner post post-again take-requests
-          asked-inside-p owner-p *repeated* untold-p notify-later deliver-notifications
-          timeline-real-p share-custody))
+(export '(timeline make-timeline timeline-p timeline-of timeline-tick phase-here begin-moment
+          check-not-over check-own-run check-not-secluded secluded wake-owner post post-again
+          take-requests asked-inside-p owner-p *repeated* untold-p notify-later
+          deliver-notifications share-custody))
 
 ;;; Whoever has the timeline in custody passes its ticks. Others reach it in two ways. POST leaves a
 ;;; request, which is performed at the start of the next tick, and returns at once; it is how
@@ -27,34 +24,37 @@
 (define-kind (timeline :constructor (make-timeline (name &optional (custody (make-custody)))))
     "The events of a run, and what was asked of it."
   (:fixed
-   (name "" (or symbol string) "what the timeline is called, for messages")
-   (real-p nil boolean "plans think in a thread of their own while the clock goes on"))
+   (name "" (or symbol string) "what the timeline is called, for messages" :export)
+   (real-p nil boolean "plans think in a thread of their own while the clock goes on" :export))
   (:state
-   (agenda (make-agenda) agenda "the events that wait for their ticks" :part)
+   (agenda (make-agenda) agenda "the events that wait for their ticks" :part :export)
    (charge '() list "what thinking costs: NIL for no ticks, or a plist; see thinking.lisp"))
   ;; What is asked of a run is no part of its state before it is taken.
   (:scratch
-   (inbox '() t "the requests that wait for the next tick, newest first")
+   (inbox '() t "the requests that wait for the next tick, newest first" :export)
    (notifications '() list "what to call at the end of the tick: lists (function argument...), the
 newest first")
    (untold '() list "those of them whose turn has come, the oldest first"))
   (:link
-   (phase 0 fixnum "how many phases of the tick that is under way have begun; 0 between ticks")
-   (moments 0 fixnum "how often in the tick what goes on in forks too was told something or acted")
-   (on-moment nil (or null function) "what is to be called before that, or NIL")
-   (ticking-p nil boolean "a tick is under way, and the world changes")
-   (passing-p nil boolean "somebody passes ticks without a clock")
-   (fork-p nil boolean "the timeline is that of a fork")
+   (phase 0 fixnum
+          "how many phases of the tick that is under way have begun; 0 between ticks" :export)
+   (moments 0 fixnum
+            "how often in the tick what goes on in forks too was told something or acted" :export)
+   (on-moment nil (or null function) "what is to be called before that, or NIL" :export)
+   (ticking-p nil boolean "a tick is under way, and the world changes" :export)
+   (passing-p nil boolean "somebody passes ticks without a clock" :export)
+   (fork-p nil boolean "the timeline is that of a fork" :export)
    (seclusion *seclusion* symbol "what kept the code that made it apart from other runs, or NIL")
-   (run nil t "the run that the timeline is of, NIL as long as there is none")
-   (over nil (or null string) "why the run is over, a sentence without its full stop, or NIL")
-   (tick-dice (make-tick-dice) tick-dice "Lisp's dice for users' code that changes the world")
-   (custody (make-custody) custody "which thread may touch the timeline and its world")
-   (pacing nil t "how the timeline is paced, or NIL if it never was")))
+   (run nil t "the run that the timeline is of, NIL as long as there is none" :export)
+   (over nil (or null string)
+         "why the run is over, a sentence without its full stop, or NIL" :export)
+   (tick-dice (make-tick-dice) tick-dice
+              "Lisp's dice for users' code that changes the world" :export)
+   (custody (make-custody) custody "which thread may touch the timeline and its world" :export)
+   (pacing nil t "how the timeline is paced, or NIL if it never was" :export)))
 
-(document-functions
-  timeline-p "True of timelines."
-  make-timeline "Return a timeline called NAME, at tick 0, without events and requests. With CUSTODY
+(setf (documentation 'make-timeline 'function)
+      "Return a timeline called NAME, at tick 0, without events and requests. With CUSTODY
 it follows another in the same world.")
 
 (declaim (inline timeline-tick))
