@@ -2,36 +2,22 @@
 
 (in-package :ars-magna.robot)
 
-(export '(all-blueprints blueprint-x blueprint-y blueprint blueprint-name blueprint-map
-          blueprint-angle blueprint-cameras blueprint-hands blueprint-bins blueprint-parts
-          *robots* find-blueprint))
+(export '(all-blueprints blueprint *robots* find-blueprint))
 
 ;;; A blueprint is fixed once DEFROBOT has read it; any number of robots can be made by it, each in
 ;;; a world of its own.
 
-(defstruct (blueprint (:copier nil))
+(define-record blueprint
   "What DEFROBOT said of a robot."
-  (name nil :type symbol :read-only t)
-  (map nil :type symbol :read-only t)
-  (x 0d0 :type double-float :read-only t)
-  (y 0d0 :type double-float :read-only t)
-  (angle 0d0 :type double-float :read-only t)
-  (cameras '() :type list :read-only t)
-  (hands '() :type list :read-only t)
-  (bins '() :type list :read-only t)
-  ;; Of other kinds: lists (kind initarg value ...).
-  (parts '() :type list :read-only t))
-
-(document-functions
-  blueprint-name "Return the name of the robot."
-  blueprint-map "Return the name of the map that the robot starts in."
-  blueprint-x "Return the x coordinate where the robot starts, in metres."
-  blueprint-y "Return the y coordinate where the robot starts, in metres."
-  blueprint-angle "Return the heading with which the robot starts, in radians."
-  blueprint-cameras "Return a list (field-of-view resolution) for each of its cameras."
-  blueprint-hands "Return the strength of each of its hands, in a list."
-  blueprint-bins "Return the capacity of each of its bins, in a list."
-  blueprint-parts "Return a list (kind initarg value ...) for each part of a kind of one's own.")
+  (name nil symbol "the name of the robot" :export)
+  (map nil symbol "the name of the map that the robot starts in" :export)
+  (x 0d0 double-float "the x coordinate where the robot starts, in metres" :export)
+  (y 0d0 double-float "the y coordinate where the robot starts, in metres" :export)
+  (angle 0d0 double-float "the heading with which the robot starts, in radians" :export)
+  (cameras '() list "a list (field-of-view resolution) for each of its cameras" :export)
+  (hands '() list "the strength of each of its hands, in a list" :export)
+  (bins '() list "the capacity of each of its bins, in a list" :export)
+  (parts '() list "a list (kind initarg value ...) for each part of a kind of one's own" :export))
 
 (defmethod print-object ((blueprint blueprint) stream)
   (print-unreadable-object (blueprint stream :type t) (princ (blueprint-name blueprint) stream)))

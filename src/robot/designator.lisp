@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(designator-serial *robot-meant* designators-on *designator-limit* thing-space
-          designator-local-p* serial-designator make-designator))
+(export '(*robot-meant* designators-on *designator-limit* thing-space designator-local-p*
+          serial-designator make-designator))
 
 ;;; A designator denotes a thing, a PLACE, or nothing: then it is false and X, Y is where the robot
 ;;; believes something to be. Type, angle and data are for programs to read, the rest is the
@@ -13,37 +13,35 @@
 
 (public designator)
 ;; As reading 138 says.
+(addition designator-p)
 (define-kind (designator)
     "A handle on a thing or place that a camera has seen, or believes that it has (manual 3.4.1)."
   (:fixed
-   (robot nil (or null robot) "the robot that the designator is a handle for")
-   (number 0 fixnum "the designator's number; after it was dropped, another may have it")
-   (serial 0 fixnum "how many designators the robot had before it"))
+   (robot nil (or null robot) "the robot that the designator is a handle for" :addition)
+   (number 0 fixnum "the designator's number; after it was dropped, another may have it" :addition)
+   (serial 0 fixnum "how many designators the robot had before it" :export))
   (:state
-   (type :non-local (member :local :non-local) ":LOCAL or :NON-LOCAL (manual 3.4.1)")
+   (type :non-local (member :local :non-local) ":LOCAL or :NON-LOCAL (manual 3.4.1)" :addition)
    (angle 0d0 double-float "the estimated angle of what the designator denotes relative to the
-robot's heading, in radians, not normalised (manual 3.4.1)")
+robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
    (data '() list "what was seen: a list of lists (attribute value), or of the name of a place type
-(manual 3.4.1)" :shared)
+(manual 3.4.1)" :shared :addition)
    (denotation nil (or null thing place)
-               "the THING or PLACE that the designator denotes; NIL: it is false")
-   (distance 0d0 double-float "the distance at which the denotation was last seen, in metres")
-   (valid-p t boolean "the designator has not been dropped")
-   (x 0d0 double-float "the x coordinate where the denotation was last seen, in metres")
-   (y 0d0 double-float "the y coordinate where the denotation was last seen, in metres")
-   (location nil t "the container or bin where the denotation was seen, or NIL")
+               "the THING or PLACE that the designator denotes; NIL: it is false" :addition)
+   (distance 0d0 double-float
+             "the distance at which the denotation was last seen, in metres" :addition)
+   (valid-p t boolean "the designator has not been dropped" :addition)
+   (x 0d0 double-float "the x coordinate where the denotation was last seen, in metres" :addition)
+   (y 0d0 double-float "the y coordinate where the denotation was last seen, in metres" :addition)
+   (location nil t "the container or bin where the denotation was seen, or NIL" :addition)
    (bearing 0d0 double-float "the true direction in which it was last seen, in radians")
    (bearing-p nil boolean "it was seen from far enough to have a direction")
    (relative-bearing 0d0 double-float "that direction relative to the robot's heading, in radians")
    (swing 0d0 double-float "by how much the direction changed in the tick REFRESHED, in radians")
    (refreshed -1 fixnum "the tick in which it was last brought up to date")))
 
-(addition designator-p designator-type designator-angle designator-data designator-robot
-          designator-number designator-denotation designator-distance designator-valid-p
-          designator-x designator-y designator-location)
-(document-functions
-  make-designator "Return a new designator, which no robot knows by number yet."
-  designator-p "True of a designator.")
+(setf (documentation 'make-designator 'function)
+      "Return a new designator, which no robot knows by number yet.")
 
 (define-argument-type 'designator #'designator-p "a designator"
   (constantly (format nil "searches of cameras give them to their continuations, such as ~

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(odometer-robot odometer-estimate odometer-origin-angle))
+(export '(odometer-estimate))
 
 ;;; An odometer is dead reckoning with intervals. It starts at (0,0) with heading 0 when it is
 ;;; reset, so the x axis of its positions is the heading at that moment. Each step adds an interval
@@ -11,12 +11,13 @@
 ;;; rounding error.
 
 (public odometer)
+(addition odometer-p)
 (define-kind (odometer :constructor (%make-odometer (robot name)))
     "An uncertain estimate of the robot's position and heading since the odometer was reset (manual
 3.2.2)."
   (:fixed
-   (robot nil (or null robot) "the robot that the odometer is of")
-   (name nil symbol "the symbol that names the odometer"))
+   (robot nil (or null robot) "the robot that the odometer is of" :export)
+   (name nil symbol "the symbol that names the odometer" :addition))
   (:state
    (x-min 0d0 double-float "the least x, in metres") (x-max 0d0 double-float "the greatest x")
    (y-min 0d0 double-float "the least y, in metres") (y-max 0d0 double-float "the greatest y")
@@ -31,7 +32,7 @@
    (origin-x 0d0 double-float "the robot's true x when the position was last reset, in metres")
    (origin-y 0d0 double-float "the robot's true y when the position was last reset, in metres")
    (origin-angle 0d0 double-float
-                 "the robot's true heading when the angle was last reset, in radians")))
+                 "the robot's true heading when the angle was last reset, in radians" :export)))
 
 (defmethod copy-plan-value ((odometer odometer) fork)
   (copy-of-robots odometer (odometer-robot odometer) fork))
@@ -50,9 +51,6 @@ metres on the map, and the heading in radians. For displays: no program of the r
     (values (+ (odometer-origin-x odometer) (- (* cos x) (* sin y)))
             (+ (odometer-origin-y odometer) (+ (* sin x) (* cos y)))
             (+ axis (* 0.5d0 (+ (odometer-angle-min odometer) (odometer-angle-max odometer)))))))
-
-(addition odometer-p odometer-name)
-(document-functions odometer-p "True of odometers.")
 
 (defmethod print-object ((odometer odometer) stream)
   (print-named odometer stream (format nil "Odometer ~A" (odometer-name odometer))))

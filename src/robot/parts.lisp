@@ -2,11 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(robot-blueprint robot-retired robot-enders robot-drove-tick robot-failure
-          robot-designators robot-resources robot-mind mind-p mind-robot parts-of-kind
-          robot-ended-tracks part camera-last-view-tick camera-tracking unsettle hand-way-in
-          ensure-timeline robot-placements robot-put-x robot-put-y robot-moved robot-turned-low
-          robot-turned-high))
+(export '(robot-resources mind-p parts-of-kind part unsettle ensure-timeline))
 
 ;;; The robot and each part is a resource: it does one thing at a time. A part's LOCATION is NIL
 ;;; (with the robot), a container among the things, or a storage bin.
@@ -18,56 +14,62 @@
 (define-kind (mind :include resource)
     "What a robot thinks with: one thought at a time, beside what its body and parts do."
   (:fixed
-   (robot nil t "the robot whose mind it is")))
+   (robot nil t "the robot whose mind it is" :export)))
 
 (public robot)
 ;; As reading 92 says.
+(addition robot-p)
 (define-kind (robot :include resource :constructor %make-robot)
     "A point robot: it turns in place, drives straight ahead, and carries its parts along (manual
 2.2)."
   (:fixed
-   (name nil symbol "the symbol that the robot was defined by")
-   (blueprint nil (or null blueprint) "what the robot was made by")
-   (world nil (or null world) "the world that the robot is in")
-   (cameras #() simple-vector "the vector of the robot's cameras" :part)
-   (hands #() simple-vector "the vector of the robot's hands" :part)
-   (bins #() simple-vector "the vector of the robot's storage bins" :part)
-   (sensors #() simple-vector "the vector of the robot's parts of other kinds" :part)
-   (mind nil (or null mind) "what the robot thinks with, beside what it does" :part))
+   (name nil symbol "the symbol that the robot was defined by" :addition)
+   (blueprint nil (or null blueprint) "what the robot was made by" :export)
+   (world nil (or null world) "the world that the robot is in" :addition)
+   (cameras #() simple-vector "the vector of the robot's cameras" :part :addition)
+   (hands #() simple-vector "the vector of the robot's hands" :part :addition)
+   (bins #() simple-vector "the vector of the robot's storage bins" :part :addition)
+   (sensors #() simple-vector "the vector of the robot's parts of other kinds" :part :addition)
+   (mind nil (or null mind) "what the robot thinks with, beside what it does" :part :export))
   (:state
-   (x 0d0 double-float "the robot's true x coordinate, in metres")
-   (y 0d0 double-float "the robot's true y coordinate, in metres")
-   (angle 0d0 double-float "the robot's true heading, in radians, never normalised")
+   (x 0d0 double-float "the robot's true x coordinate, in metres" :addition)
+   (y 0d0 double-float "the robot's true y coordinate, in metres" :addition)
+   (angle 0d0 double-float "the robot's true heading, in radians, never normalised" :addition)
    (cos 1d0 double-float "the cosine of the robot's heading")
    (sin 0d0 double-float "the sine of the robot's heading")
-   (speed +default-speed+ double-float "the speed that was set, in metres per tick")
+   (speed +default-speed+ double-float "the speed that was set, in metres per tick" :addition)
    (turn-angle +default-turn-angle+ double-float
-               "the turning speed that was set, in radians per tick")
+               "the turning speed that was set, in radians per tick" :addition)
    (odometer-list '() list "the robot's odometers, oldest first" :part)
    (designators (make-array 4 :adjustable t :fill-pointer 0) vector
-                "the vector of the robot's designators by number; NIL: none" :part)
+                "the vector of the robot's designators by number; NIL: none" :part :export)
    (designators-made 0 fixnum "how many designators the robot ever had")
-   (ended-tracks '() list "the tracks that have ended in this tick, newest first: (track . code)")
-   (last-place nil symbol "the name of the place type that the robot last sensed, or NIL")
-   (drove-tick -1 fixnum "the tick in which the robot last drove"))
+   (ended-tracks '() list
+                 "the tracks that have ended in this tick, newest first: (track . code)" :export)
+   (last-place nil symbol "the name of the place type that the robot last sensed, or NIL" :addition)
+   (drove-tick -1 fixnum "the tick in which the robot last drove" :export))
   (:memory
    (start-x 0d0 double-float "where the last movement began, the x coordinate in metres")
    (start-y 0d0 double-float "where the last movement began, the y coordinate in metres")
    (estimate-x 0d0 double-float "how far the robot believes it has moved since, in x, in metres")
    (estimate-y 0d0 double-float "how far the robot believes it has moved since, in y, in metres")
-   (placements 0 fixnum "how many times the robot has been put somewhere, other than by driving")
-   (put-x 0d0 double-float "where the robot was last put, the x coordinate in metres")
-   (put-y 0d0 double-float "where the robot was last put, the y coordinate in metres")
-   (failure nil t "what is known of the command that failed last on the robot or a part, or NIL")
+   (placements 0 fixnum
+               "how many times the robot has been put somewhere, other than by driving" :export)
+   (put-x 0d0 double-float "where the robot was last put, the x coordinate in metres" :export)
+   (put-y 0d0 double-float "where the robot was last put, the y coordinate in metres" :export)
+   (failure nil t
+            "what is known of the command that failed last on the robot or a part, or NIL" :export)
    (published-way nil t "the way that the robot's program said last it would take, or NIL"
                   :shared))
   (:scratch
-   (moved 0d0 double-float "the metres that the last step of driving really took the robot")
-   (turned-low 0d0 double-float "the lower bound read for the last step of turning, in radians")
-   (turned-high 0d0 double-float "the upper bound read for the last step of turning, in radians"))
+   (moved 0d0 double-float "the metres that the last step of driving really took the robot" :export)
+   (turned-low 0d0 double-float
+               "the lower bound read for the last step of turning, in radians" :export)
+   (turned-high 0d0 double-float
+                "the upper bound read for the last step of turning, in radians" :export))
   (:link
-   (retired nil (or null string) "why the robot's run is over, or NIL as long as it is not")
-   (enders '() list "the functions that are called when the robot's run is over")))
+   (retired nil (or null string) "why the robot's run is over, or NIL as long as it is not" :export)
+   (enders '() list "the functions that are called when the robot's run is over" :export)))
 
 ;; What is of another run stays what it is.
 (defun copy-of-robots (object robot copier)
@@ -79,64 +81,58 @@
 (defmethod copy-plan-value ((robot robot) fork)
   (copy-of-robots robot robot fork))
 
+(addition part-p)
 (define-kind (part :include resource :constructor nil)
     "A camera, hand or storage bin of a robot, or a sensor of a kind of one's own."
   (:fixed
-   (robot nil (or null robot) "the robot that the part is mounted on")
-   (index 0 fixnum "the part's index among its kind, from 0"))
+   (robot nil (or null robot) "the robot that the part is mounted on" :addition)
+   (index 0 fixnum "the part's index among its kind, from 0" :addition))
   (:state
-   (location nil t "the container or storage bin that the part is inside of, or NIL")))
+   (location nil t "the container or storage bin that the part is inside of, or NIL" :addition)))
 
 (defmethod copy-plan-value ((part part) fork)
   (copy-of-robots part (part-robot part) fork))
 
 (public camera)
+(addition camera-p)
 (define-kind (camera :include part)
     "A camera: it sees a wedge FIELD-OF-VIEW radians wide around its ANGLE, which is relative to
 the robot, and its views have RESOLUTION pixels (manual 3.4)."
   (:fixed
-   (field-of-view 1d0 double-float "the width of what the camera sees, in radians")
-   (resolution 1 (integer 1) "the number of pixels of the camera's views"))
+   (field-of-view 1d0 double-float "the width of what the camera sees, in radians" :addition)
+   (resolution 1 (integer 1) "the number of pixels of the camera's views" :addition))
   (:state
-   (angle 0d0 double-float "the camera's angle relative to the robot, in radians")
-   (tracking nil t "the camera's TRACK, or NIL if it tracks nothing; see CAMERA-TRACKS" :part))
+   (angle 0d0 double-float "the camera's angle relative to the robot, in radians" :addition)
+   (tracking nil t
+             "the camera's TRACK, or NIL if it tracks nothing; see CAMERA-TRACKS" :part :export))
   (:memory
-   (last-view '() list "the last view, a list of numbers; () before the first" :shared)
-   (last-view-tick 0 tick-count "the tick in which that was taken")))
+   (last-view '() list "the last view, a list of numbers; () before the first" :shared :addition)
+   (last-view-tick 0 tick-count "the tick in which that was taken" :export)))
 
 (public hand)
+(addition hand-p)
 (define-kind (hand :include part)
     "A hand: an arm with a gripper that lifts up to STRENGTH weight units (manual 3.6)."
   (:fixed
-   (strength 0d0 double-float "the largest weight that the hand can lift"))
+   (strength 0d0 double-float "the largest weight that the hand can lift" :addition))
   (:state
-   (contents '() list "a list of the thing that the hand holds, or ()"))
+   (contents '() list "a list of the thing that the hand holds, or ()" :addition))
   (:memory
-   (way-in '() list "what plans told the hand to go into and it is inside of, innermost first")))
+   (way-in '() list
+           "what plans told the hand to go into and it is inside of, innermost first" :export)))
 
 (public storage-bin)
+(addition storage-bin-p)
 (define-kind (storage-bin :include part)
     "A storage bin on the robot, with room for things of CAPACITY size units (manual 3.6)."
   (:fixed
-   (capacity 0d0 double-float "the size of all that fits into the bin"))
+   (capacity 0d0 double-float "the size of all that fits into the bin" :addition))
   (:state
-   (closed-p nil boolean "the bin is closed")
-   (contents '() list "the things in the bin, newest first")))
+   (closed-p nil boolean "the bin is closed" :addition)
+   (contents '() list "the things in the bin, newest first" :addition)))
 
-(addition robot-p part-p camera-p hand-p storage-bin-p camera-robot camera-index camera-location
-          hand-robot hand-index hand-location storage-bin-robot storage-bin-index robot-name
-          robot-world robot-x robot-y robot-angle robot-speed robot-turn-angle robot-cameras
-          robot-hands robot-bins robot-sensors robot-last-place part-robot part-index part-location
-          camera-field-of-view camera-resolution camera-angle camera-last-view
-          hand-strength hand-contents storage-bin-capacity storage-bin-closed-p
-          storage-bin-contents)
-(document-functions
-  robot-p "True of robots."
-  part-p "True of cameras, hands, storage bins and other parts."
-  camera-p "True of cameras."
-  hand-p "True of hands."
-  mind-p "True of what robots think with."
-  storage-bin-p "True of storage bins.")
+(addition camera-robot camera-index camera-location hand-robot hand-index hand-location
+          storage-bin-robot storage-bin-index)
 
 (defun not-a-robot-text (value)
   "Return in words why VALUE is no robot, and how to have one, if it is NIL or a robot's name."

@@ -16,9 +16,6 @@
    (y 0d0 double-float "where it seems to be, the y coordinate in metres")
    (data '() list "what it looks like")))
 
-(document-functions
-  sighting-p "True of sightings.")
-
 (defmethod reference ((sighting sighting))
   (list :sighting (sighting-type sighting) (sighting-x sighting) (sighting-y sighting)
         (sighting-data sighting)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(tracking-p end-track drop-designator track track-operation track-ended approaching-p))
+(export '(tracking-p end-track drop-designator track track-ended approaching-p))
 
 ;;; A track is what a camera does in the background of its commands: it keeps pointing where its
 ;;; designator's denotation is. Tracks are looked after once a tick, after events and kickers. A
@@ -19,7 +19,7 @@
     "What a camera does while it tracks a designator."
   (:state
    (designator nil (or null designator) "what is tracked")
-   (operation nil t "what is told when the track ends, see TRACK-ENDED; or NIL")))
+   (operation nil t "what is told when the track ends, see TRACK-ENDED; or NIL" :export)))
 
 (defgeneric track-ended (operation code designator)
   (:documentation "Let OPERATION know that the track of DESIGNATOR, which it began, has ended with
