@@ -163,12 +163,8 @@ things, which no method is for."
           (far-designator operation)
           (and (null (operation-subject operation)) (things-meant operation))))
 
-(defstruct (manipulation-command (:include command) (:copier nil)
-                                 (:constructor %make-manipulation-command))
+(define-record (manipulation-command (:include command) (:constructor %make-manipulation-command))
   "The command by which a manipulation is carried out.")
-
-(document-functions
-  manipulation-command-p "True of commands by which manipulations are carried out.")
 
 (defmethod command-entry ((command manipulation-command) operation)
   (list* 'manipulate (command-name command) (operation-arguments operation)))

@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.command)
 
-(export '(define-manipulation manipulation-methods method-shape method-source method-digest
-          manipulation-method))
+(export '(define-manipulation method-shape manipulation-method))
 
 ;;; A manipulation is a name with methods, the newest first. Of those that take what was given, the
 ;;; first that is for the things designated is chosen when the manipulation begins; it must still be
@@ -16,39 +15,33 @@
 ;;; variables, types and attributes is taken for an earlier version unless no thing could be for
 ;;; both.
 
-(defstruct (parameter-list (:constructor make-parameter-list (objects patterns by others))
-                           (:copier nil))
+(define-record (parameter-list (:constructor make-parameter-list (objects patterns by others)))
   "The parameters of a method: variables and patterns of its objects, and then its resource and
 others, each a list (variable type), with NIL for no type."
-  (objects '() :type list :read-only t)
-  (patterns '() :type list :read-only t)
-  (by '() :type list :read-only t)
-  (others '() :type list :read-only t))
+  (objects '() list)
+  (patterns '() list)
+  (by '() list)
+  (others '() list))
 
-(defstruct (manipulation-method (:conc-name method-) (:copier nil))
+(define-record (manipulation-method (:conc-name method-))
   "One way to carry out a manipulation."
-  (form '() :type list :read-only t)
-  (source '() :type list :read-only t)
-  (digest nil :type (or null integer) :read-only t)
-  (parameters nil :type parameter-list :read-only t)
-  (success 1d0 :type double-float :read-only t)
-  (delay 0 :type tick-count :read-only t)
-  (body nil :type function :read-only t))
+  (form '() list)
+  (source '() list "the source of the method's definition; see SOURCE-HERE" :export)
+  (digest nil (or null integer) "a number for the form of the method's definition, or NIL" :export)
+  (parameters nil parameter-list)
+  (success 1d0 double-float)
+  (delay 0 tick-count)
+  (body nil function))
 
 (defmethod reference ((method manipulation-method))
   (list :method (method-form method)))
 
-(defstruct (manipulation (:constructor make-manipulation (name)) (:copier nil))
-  "A named action on things. COMMAND, made when it is first needed, carries it out."
-  (name nil :type symbol)
-  (methods '() :type list)
-  (command nil :type (or null command)))
-(addition manipulation-name)
-(document-functions
-  method-source "Return the source of the method's definition; see SOURCE-HERE."
-  method-digest "Return a number for the form of the method's definition, or NIL."
-  manipulation-methods "Return a list of the methods of the manipulation, the newest first."
-  manipulation-name "Return the symbol that the manipulation is called.")
+(define-record (manipulation (:constructor make-manipulation (name)))
+  "A named action on things."
+  (name nil symbol "the symbol that the manipulation is called" :writable :addition)
+  (methods '() list "a list of the methods of the manipulation, the newest first" :writable :export)
+  (command nil (or null command)
+           "the command that carries it out, once it was needed; or NIL" :writable))
 
 (define-registry manipulation "manipulation" :object-p manipulation-p)
 

@@ -45,9 +45,8 @@ command that it cut short, or NIL"))
 (note-lasting 'run-operation)
 (note-lasting 'interrupt-operation)
 
-(document-functions
-  operation-p "True of operations."
-  operation-resource "Return the robot or part that the operation occupies.")
+(setf (documentation 'operation-resource 'function)
+      "Return the robot or part that the operation occupies.")
 
 (declaim (inline operation-command))
 (defun operation-command (operation)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.command)
 
-(export '(withdraw-command withdrawal withdrawal-continuation))
+(export '(withdraw-command withdrawal))
 
 ;;; GRAB-RESOURCE takes a resource from whatever occupies it by then. Who only wants an end of what
 ;;; it has asked for itself withdraws that. A command is known by its continuation. What the journal
@@ -14,7 +14,7 @@
     "That a command is to be interrupted on a resource, the first argument, if it is under way."
   (:fixed
    (continuation nil t "what the command was to tell of its end; NIL if the second argument says
-where the command is: :COMMAND, :TRACK or NIL")))
+where the command is: :COMMAND, :TRACK or NIL" :export)))
 
 (defun track-operation-of (resource)
   "Return the operation of the track that RESOURCE keeps, or NIL."
