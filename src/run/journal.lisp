@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(journal journal-remarks))
+(export '(journal))
 
 ;;; A journal is a header, entries (tick operator argument ...) in the order in which they took
 ;;; effect, and the tick at which it ended. An operator is a name that DEFINE-OPERATOR has
@@ -15,25 +15,17 @@
   "How many entries a journal holds at most (about 200 bytes each). One that is full says so, and
 repeats the run up to there.")
 
-(defstruct (journal (:constructor make-journal (header)) (:copier nil))
+(addition journal-p)
+(define-record (journal (:constructor make-journal (header)))
   "The record of one run."
-  (header '() :type list)
-  (newest-first '() :type list)
-  (length 0 :type fixnum)
-  (end 0 :type tick-count)
-  ;; What is told of the run that a replay cannot know, the newest first; see REMARK.
-  (remarks '() :type list)
-  ;; True once there was something to note and no room for it.
-  (full-p nil :type boolean))
-(addition journal-p journal-header journal-length journal-end)
-(document-functions
-  journal-p "True of journals."
-  journal-header "Return the plist with which the run began: map, robots, seed, parameters, and what
-the definitions were that decide it."
-  journal-length "Return how many entries the journal has."
-  journal-remarks "Return lists (tick kind text robot x y), the newest first: what is told of the
-run that a replay cannot know. ROBOT is a name, a string, or NIL."
-  journal-end "Return the tick at which the journal ends.")
+  (header '() list "the plist with which the run began: map, robots, seed, parameters, and what the
+definitions were that decide it" :writable :addition)
+  (newest-first '() list "its entries, the newest first" :writable)
+  (length 0 fixnum "how many entries the journal has" :writable :addition)
+  (end 0 tick-count "the tick at which the journal ends" :writable :addition)
+  (remarks '() list "lists (tick kind text robot x y), the newest first: what is told of the run
+that a replay cannot know. ROBOT is a name, a string, or NIL" :writable :export)
+  (full-p nil boolean "there was something to note and no room for it" :writable))
 
 (defmethod print-object ((journal journal) stream)
   (print-unreadable-object (journal stream :type t)

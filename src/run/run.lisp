@@ -2,19 +2,18 @@
 
 (in-package :ars-magna.run)
 
-(export '(simulation simulation-timeline simulation-gate simulation-observers simulation-trails
-          simulation-participants simulation-messages simulation-over simulation-agenda
-          simulation-ticking-p simulation-thread latest add-participant remove-participant
-          headless-p end-simulation simulation-past simulation-plans-dice-p))
+(export '(simulation simulation-over simulation-agenda simulation-ticking-p simulation-thread latest
+          add-participant remove-participant headless-p end-simulation))
 
 ;;; A run has no state of its own but the values of the parameters as it knows them: the rest is its
 ;;; timeline's and its world's.
 
+(addition simulation-p)
 (define-kind (simulation :constructor (%make-simulation (timeline world)))
     "One run: a timeline, a world, and what goes with them."
   (:fixed
-   (timeline nil (or null timeline) "the timeline of the simulation" :part)
-   (world nil (or null world) "the world that the simulation changes" :part))
+   (timeline nil (or null timeline) "the timeline of the simulation" :part :export)
+   (world nil (or null world) "the world that the simulation changes" :part :addition))
   (:memory
    ;; It decides the future, but is digested in a way of its own, below.
    (known-parameters (parameter-values) simple-vector
@@ -22,30 +21,27 @@
   (:link
    (known-noise *noise-before-cleaning* list
                 "what DIRTY-SIMULATION would restore, as the journal knows it")
-   (journal nil t "the journal that the simulation keeps, or NIL")
+   (journal nil t "the journal that the simulation keeps, or NIL" :addition)
    (variables '() list "the symbols that are bound for the headless simulation")
    (environment '() list "what they are, a list (symbol . value), in a fork")
    (left '() list "what they were when a thread at work in the simulation last said so")
    (dice nil (or null random-state)
          "what its programs roll by CL:RANDOM, if it comes from a file that says that, or NIL")
    (plans-dice-p nil boolean "its plans roll dice of their own by CL:RANDOM: a run that is or was
-live has no dice that all its threads roll")
-   (past nil t "what is kept of the past, or NIL")
+live has no dice that all its threads roll" :export)
+   (past nil t "what is kept of the past, or NIL" :export)
    (line nil list "the simulation that goes on, in a list that all share of which one was rewound
 to the next, or NIL if there was no rewinding")
    (output nil (or null stream) "where its threads write, if an editor wants that, or NIL")
-   (messages *message-queue* message-queue "the message queue that the simulation reports to")
+   (messages *message-queue* message-queue
+             "the message queue that the simulation reports to" :export)
    (forked-p nil boolean "somebody has forked it, perhaps to look at what would come")
-   (gate nil (or null function)
-         "a function of the simulation that says how many ticks may pass before it is asked again")
-   (observers '() list "the functions that are called after each tick")
-   (trails '() list
-           "what displays keep of where robots were; replaced, never altered, as forks share it")
-   (participants '() list "what takes part in the simulation, see participant.lisp")))
-
-(addition simulation-p simulation-world simulation-journal)
-(document-functions
-  simulation-p "True of simulations.")
+   (gate nil (or null function) "a function of the simulation that says how many ticks may pass
+before it is asked again" :export)
+   (observers '() list "the functions that are called after each tick" :export)
+   (trails '() list "what displays keep of where robots were; replaced, never altered, as forks
+share it" :export)
+   (participants '() list "what takes part in the simulation, see participant.lisp" :export)))
 
 (defmethod digest-state :after ((simulation simulation) digest)
   (digest-parameters (simulation-known-parameters simulation) digest))
