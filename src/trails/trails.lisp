@@ -2,22 +2,21 @@
 
 (in-package :ars-magna.trails)
 
-(export '(way-trial way-outcome way-pieces note-places ways-along straightened))
+(export '(note-places ways-along straightened))
 
-(defstruct (way (:constructor make-way (trial outcome pieces)) (:copier nil))
-  "Where a robot was in TRIAL, a number, which ended with OUTCOME: PIECES are lists of conses
-(x . y), in metres, one for each tick in which it moved, the first being where it started. A piece
-ends where the robot was put elsewhere; the next begins there."
-  (trial 0 :type integer :read-only t)
-  (outcome "" :type string :read-only t)
-  (pieces '() :type list :read-only t))
+(define-record (way (:constructor make-way (trial outcome pieces)))
+  "Where a robot was in a trial."
+  (trial 0 integer "the number of the trial in which the way was gone" :export)
+  (outcome "" string "how that ended: \"success\", \"failure\", \"limit\" or \"error\"" :export)
+  (pieces '() list "the pieces of the way, lists of points (x . y), in order" :export))
 
-(defstruct (trail (:constructor make-trail (robot)) (:copier nil))
-  "Where ROBOT has been so far: PIECES as those of a way, latest first, as are the points of each;
-PLACEMENTS is how often it had been put somewhere when it was seen last."
-  (robot nil :type robot :read-only t)
-  (placements nil :type (or null fixnum))
-  (pieces '() :type list))
+(define-record (trail (:constructor make-trail (robot)))
+  "Where ROBOT has been so far."
+  (robot nil robot)
+  (placements nil (or null fixnum)
+              "how often it had been put somewhere when it was seen last, or NIL" :writable)
+  (pieces '() list
+          "the pieces as those of a way, latest first, as are the points of each" :writable))
 
 (defun note-point (trail x y)
   "Let the last piece of TRAIL go on to X, Y."
@@ -54,11 +53,6 @@ counts."
   (if trails
       (loop for trail in (reverse trails) collect (make-way trial outcome (pieces-along trail)))
       (list (make-way trial outcome '()))))
-
-(document-functions
-  way-trial "Return the number of the trial in which the way was gone."
-  way-outcome "Return how that ended: \"success\", \"failure\", \"limit\" or \"error\"."
-  way-pieces "Return the pieces of the way, lists of points (x . y), in order.")
 
 ;;; A way has a point for each tick. What is nearly straight needs only its ends.
 
