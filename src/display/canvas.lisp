@@ -17,8 +17,8 @@
   ((color-p :initarg :color-p :initform t :reader canvas-color-p
             :documentation "True if the canvas shows colours."))
   (:documentation "Something to draw on."))
-(document-functions
-  canvas-color-p "True if the canvas shows colours.")
+(setf (documentation 'canvas-color-p 'function)
+      "True if the canvas shows colours.")
 
 (defun canvas-p (object)
   "True of a canvas."

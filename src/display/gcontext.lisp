@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.canvas)
 
-(export '(gcontext gcontext-p create-gcontext gcontext-foreground gcontext-background
-          gcontext-line-width gcontext-line-style gcontext-dashes with-gcontext))
+(export '(gcontext gcontext-p create-gcontext with-gcontext))
 
 ;;; A graphics context is changed only for the extent of a body, as WITH-GCONTEXT of CLX does.
 ;;; Whatever starts to draw on a canvas binds a fresh one, so threads that draw share nothing.
@@ -12,25 +11,23 @@
 
 (deftype dashes () '(or (integer 1 1000) list))
 
-(defstruct (gcontext (:constructor create-gcontext (&key foreground background line-width
-                                                      line-style dashes)))
+(define-record (gcontext (:constructor create-gcontext
+                             (&key foreground background line-width line-style dashes)
+                             "Return a new graphics context: by default solid black lines, one
+pixel wide.")
+                         (:copier copy-gcontext))
   "With what to draw."
-  (foreground #x000000 :type color)
-  (background #xFFFFFF :type color)
-  (line-width 1 :type (real 0))
-  (line-style :solid :type line-style)
-  (dashes 4 :type dashes))
-
-(document-functions
-  create-gcontext "Return a new graphics context: by default solid black lines, one pixel wide."
-  gcontext-p "True of a graphics context."
-  gcontext-foreground "Return the colour that the graphics context draws with. Can be set."
-  gcontext-background "Return the colour that CLEAR-AREA and image glyphs fill with. Can be set."
-  gcontext-line-width "Return how wide lines are, in pixels; 0 means the thinnest. Can be set."
-  gcontext-line-style "Return how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set."
-  gcontext-dashes
-  "Return how long dashes and the gaps between them are, in pixels: one integer for all, by
-default 4, or a list (dash gap ...). Can be set. A canvas may have dashes of its own instead.")
+  (foreground #x000000 color
+              "the colour that the graphics context draws with. Can be set" :writable :export)
+  (background #xFFFFFF color
+              "the colour that CLEAR-AREA and image glyphs fill with. Can be set" :writable :export)
+  (line-width 1 (real 0)
+              "how wide lines are, in pixels; 0 means the thinnest. Can be set" :writable :export)
+  (line-style :solid line-style
+              "how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set" :writable :export)
+  (dashes 4 dashes "how long dashes and the gaps between them are, in pixels: one integer for all,
+by default 4, or a list (dash gap ...). Can be set. A canvas may have dashes of its own
+instead" :writable :export))
 
 (public draw-gcontext*)
 (defvar draw-gcontext* (create-gcontext)

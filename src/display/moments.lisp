@@ -12,31 +12,19 @@
   :test #'cl:equal
   :documentation "What sorts of moments there are.")
 
-(addition moment-p moment-tick moment-kind moment-text moment-x moment-y moment-robot)
-(defstruct (moment (:constructor make-moment (tick kind text &optional x y robot code))
-                   (:copier nil))
+(addition moment-p)
+(define-record (moment (:constructor make-moment (tick kind text &optional x y robot code)))
   "That at TICK something happened of which TEXT tells, to ROBOT, the name of one, that was at X, Y.
-KIND is what sort of thing that is; CODE is the error code of a command that failed."
-  (tick 0 :type real :read-only t)
-  (kind :note :type symbol :read-only t)
-  (text "" :type string :read-only t)
-  (x nil :type (or null real) :read-only t)
-  (y nil :type (or null real) :read-only t)
-  (robot nil :type symbol :read-only t)
-  (code nil :type symbol :read-only t))
-
-(document-functions
-  make-moment "Return a moment: that at a tick something of a kind happened, of which a text
-tells, to a robot at x, y, of a name; with an error code."
-  moment-p "True of moments: of things that happened in a run."
-  moment-tick "Return the tick at which it was."
-  moment-kind "Return what sort of thing it was: :GRASP, :RELEASE, :STOW; :FAILURE of a command;
+KIND is what sort of thing that is."
+  (tick 0 real "the tick at which it was" :addition)
+  (kind :note symbol "what sort of thing it was: :GRASP, :RELEASE, :STOW; :FAILURE of a command;
 :PLAN, that failed or was ended; :PART of a plan, in which something failed that the plan may have
-taken care of, or that somebody ended; :ERROR in users' code; :NOTE of a user's."
-  moment-text "Return a few words about it."
-  moment-x "Return where the robot was then, in metres, or NIL if that is unknown."
-  moment-y "Return where the robot was then, in metres, or NIL if that is unknown."
-  moment-robot "Return the name of the robot, a symbol, or NIL if that is unknown.")
+taken care of, or that somebody ended; :ERROR in users' code; :NOTE of a user's" :addition)
+  (text "" string "a few words about it" :addition)
+  (x nil (or null real) "where the robot was then, in metres, or NIL if that is unknown" :addition)
+  (y nil (or null real) "where the robot was then, in metres, or NIL if that is unknown" :addition)
+  (robot nil symbol "the name of the robot, a symbol, or NIL if that is unknown" :addition)
+  (code nil symbol "the error code of a command that failed, or NIL"))
 
 (defmethod print-object ((moment moment) stream)
   (print-unreadable-object (moment stream)

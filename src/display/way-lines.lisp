@@ -79,23 +79,18 @@ few, none on a very short one, and none on OTHERS."
 in widths of its line. As with queens on a chessboard, no two share a row, a column or a diagonal,
 in which they would lie on each other.")
 
-(defstruct (way-line (:constructor make-way-line
-                         (position pieces &key (color (turn-ink position))
-                                               (dashes (turn-dashes position)) (width 2)
-                                               (arrows-p t) (lane position)))
-                     (:copier nil))
-  "A way, the one at POSITION of several, as a line: PIECES are lists x y ... in pixels, between
-which something was put elsewhere; with arrowheads if ARROWS-P, in LANE, a number."
-  (position 0 :type integer :read-only t)
-  (lane 0 :type integer :read-only t)
-  (pieces '() :type list :read-only t)
-  (color 0 :type integer :read-only t)
-  (dashes '() :type list :read-only t)
-  (width 2 :type real :read-only t)
-  (arrows-p t :read-only t))
-
-(document-functions
-  make-way-line "Return the line of the way at a position of several, of its pieces.")
+(define-record (way-line (:constructor make-way-line
+                             (position pieces &key (color (turn-ink position))
+                                                   (dashes (turn-dashes position)) (width 2)
+                                                   (arrows-p t) (lane position))))
+  "A way, the one at POSITION of several, as a line of PIECES."
+  (position 0 integer)
+  (lane 0 integer "the number of the lane that it is drawn in")
+  (pieces '() list "lists x y ... in pixels, between which something was put elsewhere")
+  (color 0 integer)
+  (dashes '() list)
+  (width 2 real)
+  (arrows-p t t "it has arrowheads"))
 
 (defun pieces-in-lane (line)
   "Return the pieces of the way LINE that are lines, each in its lane."
