@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*interface* interface-p interface-robot interface-simulation interface-runner
-          interface-wishes holding-p call-with-plans))
+(export '(*interface* interface-p holding-p call-with-plans))
 
 ;;; Whoever lets plans react holds the interface's lock. Headless that is whoever passes ticks or
 ;;; starts plans; live a thread of their own, which exists while there are plans and a clock. The
@@ -25,21 +24,21 @@ SAVE-PLAN-TIMELINE.")
 (define-kind (interface :constructor (make-interface (robot simulation eras commanded)))
     "The robot that plans drive, and what runs them."
   (:fixed
-   (robot nil (or null robot) "the robot that plans drive")
-   (simulation nil t "the simulation that the robot is in")
+   (robot nil (or null robot) "the robot that plans drive" :export)
+   (simulation nil t "the simulation that the robot is in" :export)
    (commanded nil (or null robot (eql :none))
               "the robot that a prompt commanded when this was made, or NIL; :NONE if the prompt has
 been told since which robot it commands")
    (valve (make-valve "robot") valve "the valve of the robot, for plans that want to have it"))
   (:state
-   (runner nil (or null plan-runner) "what runs the plans")
+   (runner nil (or null plan-runner) "what runs the plans" :export)
    (tick-wanted-p nil boolean "the plans are to go on with the next tick")
    (unwanted '() t "the plans that somebody wants to end")
    (deeds '() list "the commands of plans that are under way, the oldest first")
    (answers '() list "what was answered to them and is not yet heard, the oldest first")
    (takeovers '() list "how often plans have taken which resource in a tick")
    (takeover-tick nil t "the tick in which that was")
-   (wishes '() list "what tasks want done while all plans rest, the oldest first")
+   (wishes '() list "what tasks want done while all plans rest, the oldest first" :export)
    (wishes-served 0 fixnum "how many wishes have been served in a tick")
    (wish-tick nil t "the tick in which that was"))
   (:memory
