@@ -22,30 +22,13 @@
 
 (defun close-window (window)
   "Close WINDOW, from whatever thread. The simulator goes on. Return nothing."
+  (call-in-window #'clim:frame-exit window))
+
+(defun show-in-front (window)
+  "Let WINDOW be seen: above others, and not as an icon."
   (let ((sheet (clim:frame-top-level-sheet window)))
-    (when sheet
-      (clim:queue-event sheet (make-instance 'close-event :sheet sheet))))
-  (values))
-
-(defclass close-event (clim:window-manager-event) ()
-  (:documentation "The window is to be closed."))
-
-(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event close-event))
-  (clim:frame-exit (clim:pane-frame sheet)))
-
-(defclass front-event (clim:window-manager-event) ()
-  (:documentation "The window is to be seen: above others, and not as an icon."))
-
-(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event front-event))
-  (climb:port-enable-sheet (clim:port sheet) sheet)
-  (clim:raise-sheet sheet))
-
-(defun bring-to-front (window)
-  "Let WINDOW, which is open, be seen. Return nothing."
-  (let ((sheet (clim:frame-top-level-sheet window)))
-    (when sheet
-      (clim:queue-event sheet (make-instance 'front-event :sheet sheet))))
-  (values))
+    (climb:port-enable-sheet (clim:port sheet) sheet)
+    (clim:raise-sheet sheet)))
 
 ;;; A window's life.
 
@@ -303,7 +286,7 @@ MISUSE where there is no X server."
     (cond ((null window) (open-new-window robot))
           (t (unless (shows-p window (robot-name robot) (robot-simulation robot))
                (lead-window window robot))
-             (bring-to-front window)
+             (call-in-window #'show-in-front window)
              window))))
 
 (defun await-windows ()

@@ -11,15 +11,6 @@
 (defparameter *help-line*
   "Type a command below and press return, or choose one from a menu. HELP lists all commands.")
 
-(defun make-detail-pane (class name display)
-  (clim:make-pane class :name name :display display))
-
-(defun make-title (section)
-  (clim:make-pane 'title-pane :name (title-name section) :section section))
-
-(defun make-splitter (name)
-  (clim:make-pane 'splitter-pane :name name))
-
 (clim:define-application-frame robot-window ()
   ((watcher :initarg :watcher :accessor window-watcher
             :documentation "The watcher that supplies the window's snapshots.")
@@ -64,11 +55,11 @@
    (menus (clim:make-pane 'menu-pane :name 'menus))
    (bar (clim:make-pane 'bar-pane :name 'bar))
    (world (clim:make-pane 'world-pane :name 'world :display :world))
-   (state (make-detail-pane 'detail-pane 'state :state))
-   (designators (make-detail-pane 'designators-pane 'designators :designators))
-   (cameras (make-detail-pane 'detail-pane 'cameras :cameras))
-   (hands (make-detail-pane 'detail-pane 'hands :hands))
-   (bins (make-detail-pane 'detail-pane 'bins :bins))
+   (state (clim:make-pane 'detail-pane :name 'state :display :state))
+   (designators (clim:make-pane 'designators-pane :name 'designators :display :designators))
+   (cameras (clim:make-pane 'detail-pane :name 'cameras :display :cameras))
+   (hands (clim:make-pane 'detail-pane :name 'hands :display :hands))
+   (bins (clim:make-pane 'detail-pane :name 'bins :display :bins))
    (plan (clim:make-pane 'plan-pane :name 'plan :display :plan))
    (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript))
    (interactor (clim:make-pane 'interactor-pane :name 'interactor :display :interactor))
@@ -80,8 +71,14 @@
                     :name 'layout
                     :contents (list* menus bar world state designators cameras hands bins plan
                                      transcript interactor strip popup
-                                     (append (mapcar #'make-title +titled+)
-                                             (mapcar #'make-splitter +splitters+))))))
+                                     (append (loop for section in +titled+
+                                                   collect (clim:make-pane
+                                                            'title-pane
+                                                            :name (title-name section)
+                                                            :section section))
+                                             (loop for name in +splitters+
+                                                   collect (clim:make-pane 'splitter-pane
+                                                                           :name name)))))))
   (:documentation "The displays of a robot in a window."))
 
 (setf (documentation 'window-layers 'function)
@@ -161,14 +158,31 @@ each snapshot."
 
 ;;; Keeping up to date.
 
-(defclass refresh-event (clim:window-manager-event) ()
-  (:documentation "Something in the window may have changed."))
+(defclass call-event (clim:window-manager-event)
+  ((function :initarg :function :reader function-to-call))
+  (:documentation "A function that the window's thread is to call with the window."))
+
+(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event call-event))
+  (funcall (function-to-call event) (clim:pane-frame sheet)))
+
+(defun call-in-window (function window)
+  "Let the thread of WINDOW call FUNCTION with it, if it is on the screen. Any thread may ask. Return
+nothing."
+  (let ((sheet (clim:frame-top-level-sheet window)))
+    (when sheet
+      (clim:queue-event sheet (make-instance 'call-event :sheet sheet :function function)))
+    (values)))
 
 (defun request-refresh (window)
   "Let WINDOW be refreshed soon. Any thread may ask."
-  (let ((sheet (clim:frame-top-level-sheet window)))
-    (when (and sheet (swap-if (car (window-queued window)) nil t))
-      (clim:queue-event sheet (make-instance 'refresh-event :sheet sheet)))))
+  (when (and (clim:frame-top-level-sheet window)
+             (swap-if (car (window-queued window)) nil t))
+    (call-in-window #'refresh-as-requested window)))
+
+(defun refresh-as-requested (window)
+  (setf (car (window-queued window)) nil)
+  (memory-barrier)
+  (refresh window))
 
 (defun refresh (window)
   "Paint those panes of WINDOW that would look different now, all at once."
@@ -190,13 +204,6 @@ each snapshot."
   "Let all of WINDOW be painted soon. Any thread may ask."
   (setf (window-torn-p window) t)
   (request-refresh window))
-
-(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event refresh-event))
-  (let ((window (clim:pane-frame sheet)))
-    (setf (car (window-queued window)) nil)
-    (memory-barrier)
-    (refresh window)))
-
 
 ;;; CLIM's loop reads commands, of which none come: all that happens are events.
 
