@@ -48,10 +48,6 @@ whether the button is on."
 
 (defun lit-p (button window) (and (funcall (button-lit-p button) window) t))
 
-(defun do-command (command)
-  "Do what the window's COMMAND, a symbol, does. Trouble is said in the window."
-  (funcall command))
-
 ;;; The pane.
 
 (defclass bar-pane (display-pane) ()
@@ -63,33 +59,16 @@ whether the button is on."
     (loop for button in *buttons*
           collect (list (button-text button window) (lit-p button window)))))
 
-(defun draw-button (canvas button window x)
-  "Draw BUTTON from X on; return where it ends."
-  (let* ((text (button-text button window))
-         (width (+ 12 (* +character-width+ (max 5 (length text))))))
-    (with-subject (canvas button)
-      (with-gcontext (draw-gcontext* :foreground (if (lit-p button window)
-                                                     (svref lightblue* 9)
-                                                     (svref grey* 60)))
-        (draw-rectangle canvas draw-gcontext* x 3 width (- +bar-height+ 7) t))
-      (with-gcontext (draw-gcontext* :foreground (svref grey* 30))
-        (draw-rectangle canvas draw-gcontext* x 3 width (- +bar-height+ 7)))
-      (draw-glyphs canvas draw-gcontext*
-                   (+ x (floor (- width (* +character-width+ (length text))) 2)) 17 text))
-    (+ x width)))
-
 (defmethod paint ((pane bar-pane))
-  (clear pane clim:+gray88+)
   (painting (canvas pane)
     (loop with x = 4
           for button in *buttons*
-          do (setf x (+ 4 (draw-button canvas button (window-of pane) x))))))
+          for (text lit-p) in (pane-content pane)
+          for width = (+ 12 (* +character-width+ (max 5 (length text))))
+          do (setf x (+ 4 (draw-button canvas button text lit-p x 3 width
+                                       (- +bar-height+ 7)))))))
 
 (defmethod click ((pane bar-pane) mouse-button x y)
   (declare (ignore mouse-button))
   (let ((button (subject-at (pane-subjects pane) x y)))
-    (when button (do-command (button-command button)))))
-
-(defmethod hover-text ((pane bar-pane) x y)
-  (let ((button (subject-at (pane-subjects pane) x y)))
-    (if button (subject-title button) "")))
+    (when button (funcall (button-command button)))))

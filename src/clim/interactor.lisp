@@ -100,17 +100,11 @@
             do (paint-words canvas string 0 y nil))
       (paint-cursor canvas (+ top row) column (focused-p pane)))))
 
-(defun paint-shown (canvas pane label text point note ink)
-  (when note (paint-words canvas (cut note (max 4 (columns-and-rows pane))) 0 14 ink))
-  (paint-line canvas pane label text point (if note 1 0)))
-
 (defmethod paint ((pane interactor-pane))
-  (let ((canvas (make-instance 'clim-canvas :medium pane :magnification (magnification pane)))
-        (shown (what-is-shown pane)))
-    (clear pane)
-    (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
-      (with-canvas (canvas)
-        (when shown (apply #'paint-shown canvas pane shown))))))
+  (painting (canvas pane)
+    (destructuring-bind (&optional label text point note ink) (what-is-shown pane)
+      (when note (paint-words canvas (cut note (max 4 (columns-and-rows pane))) 0 14 ink))
+      (when label (paint-line canvas pane label text point (if note 1 0))))))
 
 ;;; Keys.
 

@@ -47,7 +47,7 @@
 (defun press-button (window button)
   "Do what BUTTON does; if it has opened the panel that is on top of WINDOW, close that."
   (unless (eq (button-command button) (close-popup window))
-    (do-command (button-command button))))
+    (funcall (button-command button))))
 
 (defun do-key (window key-name character)
   "Do what the key called KEY-NAME, which types CHARACTER or NIL, does in WINDOW. True if anything."

@@ -47,15 +47,12 @@ and NIL for a gap."
 
 ;;; As rows of the popup.
 
-(defun submenu-row (window menu outer x y)
-  "Return the row of OUTER, a menu at X, Y of WINDOW, that leads to MENU."
-  (make-row (format nil "~A >" (menu-title menu))
-            :action (lambda () (open-menu window menu x y outer))))
-
 (defun item-row (window item menu x y)
   "Return the row of ITEM of MENU, which is at X, Y of WINDOW."
   (cond ((null item) (make-row ""))
-        ((menu-p item) (submenu-row window item menu x y))
+        ((menu-p item)
+         (make-row (format nil "~A >" (menu-title item))
+                   :action (lambda () (open-menu window item x y menu))))
         (t (destructuring-bind (title command &rest arguments) item
              (make-row title :action (lambda () (apply command arguments)))))))
 
@@ -94,7 +91,6 @@ and NIL for a gap."
     (+ x width)))
 
 (defmethod paint ((pane menu-pane))
-  (clear pane clim:+gray75+)
   (painting (canvas pane)
     (loop with x = 0
           with opener = (open-opener (window-of pane))
@@ -118,7 +114,3 @@ and NIL for a gap."
 
 (defmethod press-past-popup ((pane menu-pane) button x y opener)
   (unless (eq opener (menu-at pane x y)) (click pane button x y)))
-
-(defmethod hover-text ((pane menu-pane) x y)
-  (let ((menu (menu-at pane x y)))
-    (if menu (subject-title menu) "")))

@@ -28,14 +28,14 @@
 
 (defun window-of (pane) (clim:pane-frame pane))
 
-(defun clear (pane &optional (ink clim:+white+))
-  "Paint all of PANE with INK."
+(defun clear (pane)
   (multiple-value-bind (width height) (pane-size pane)
-    (clim:draw-rectangle* pane 0 0 width height :ink ink)))
+    (clim:draw-rectangle* pane 0 0 width height :ink (clim:pane-background pane))))
 
 (defun call-painting (function pane)
-  "Call FUNCTION with a canvas on which it paints PANE, but for lines of text that would be cut;
-remember what was painted where."
+  "Clear PANE, and call FUNCTION with a canvas on which it paints PANE, but for lines of text that
+would be cut; remember what was painted where."
+  (clear pane)
   (let ((canvas (make-instance 'clim-canvas :medium pane :bottom (nth-value 1 (pane-size pane))
                                             :magnification (magnification pane)
                                             :color-p (window-color-p (window-of pane)))))
@@ -46,6 +46,18 @@ remember what was painted where."
 (defmacro painting ((canvas pane) &body body)
   "Run BODY, which paints PANE on CANVAS, within its bounds."
   `(call-painting (lambda (,canvas) ,@body) ,pane))
+
+(defun draw-button (canvas subject text lit-p x y width height)
+  "Draw a button for SUBJECT with TEXT in its middle. Return where it ends."
+  (with-subject (canvas subject)
+    (with-gcontext (draw-gcontext* :foreground (if lit-p (svref lightblue* 9) (svref grey* 60)))
+      (draw-rectangle canvas draw-gcontext* x y width height t))
+    (with-gcontext (draw-gcontext* :foreground (svref grey* 30))
+      (draw-rectangle canvas draw-gcontext* x y width height))
+    (draw-glyphs canvas draw-gcontext*
+                 (+ x (floor (- width (* +character-width+ (length text))) 2)) (+ y height -5)
+                 text))
+  (+ x width))
 
 ;;; Repainting.
 
@@ -106,9 +118,7 @@ remember what was painted where."
 
 (defgeneric hover-text (pane x y)
   (:documentation "Return in one line what lies at X, Y of PANE.")
-  (:method (pane x y)
-    (let ((subject (subject-at (pane-subjects pane) x y)))
-      (if subject (subject-text subject) ""))))
+  (:method (pane x y) (subject-text (subject-at (pane-subjects pane) x y))))
 
 ;;; Details of the robot.
 
@@ -140,7 +150,6 @@ remember what was painted where."
 
 (defmethod paint ((pane detail-pane))
   (let ((window (window-of pane)))
-    (clear pane)
     (painting (canvas pane)
       (with-origin (canvas 0 (- (pane-offset pane)))
         (when (window-robot window)

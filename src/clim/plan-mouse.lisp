@@ -27,9 +27,6 @@
             (task-image-since image))))
 
 (defmethod describe-subject ((bar bar) stream) (format stream "Task ~A~%" (subject-title bar)))
-(defmethod describe-subject ((text string) stream) (format stream "~A~%" text))
-(defmethod describe-subject ((switch switch) stream) (format stream "~A~%" (switch-help switch)))
-(defmethod describe-subject ((mark fold-mark) stream) (format stream "~A~%" (subject-title mark)))
 
 (defmethod describe-subject ((moment plan-moment) stream)
   (format stream "Tick ~D: click to go back to it~@[; drawn here: ~A~]~%" (plan-moment-tick moment)
@@ -82,9 +79,7 @@
          (tick (tick-under pane x y)))
     (if tick (make-plan-moment tick subject) subject)))
 
-(defmethod hover-text ((pane plan-pane) x y)
-  (let ((subject (plan-subject-at pane x y)))
-    (if subject (subject-text subject) "")))
+(defmethod hover-text ((pane plan-pane) x y) (subject-text (plan-subject-at pane x y)))
 
 (defun go-back-to (pane tick)
   "Let the prompt take the run that PANE shows back to TICK."

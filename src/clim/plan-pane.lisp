@@ -65,17 +65,9 @@
                        traced-p))))
 
 (defun draw-switch (canvas switch x y)
-  "Draw SWITCH at X, Y as a button. Return where it ends."
-  (let ((width (+ 10 (* +character-width+ (length (switch-label switch))))))
-    (with-subject (canvas switch)
-      (with-gcontext (draw-gcontext* :foreground (if (switch-lit-p switch)
-                                                     (svref lightblue* 9)
-                                                     (svref grey* 60)))
-        (draw-rectangle canvas draw-gcontext* x y width 17 t))
-      (with-gcontext (draw-gcontext* :foreground (svref grey* 30))
-        (draw-rectangle canvas draw-gcontext* x y width 17))
-      (draw-glyphs canvas draw-gcontext* (+ x 5) (+ y 12) (switch-label switch)))
-    (+ x width)))
+  (let ((label (switch-label switch)))
+    (draw-button canvas switch label (switch-lit-p switch) x y
+                 (+ 10 (* +character-width+ (length label))) 17)))
 
 (defun draw-plan-head (canvas pane)
   "Draw the switches of PANE, and whose plans it shows."
@@ -159,7 +151,6 @@
                                 :to (+ (pane-offset pane) (nth-value 1 (pane-size pane))))))))
 
 (defmethod paint ((pane plan-pane))
-  (clear pane)
   (multiple-value-bind (width height) (pane-size pane)
     (painting (canvas pane)
       (with-clipping (canvas 0 +plan-head+ width (max 1 (- height +plan-head+)))

@@ -51,9 +51,13 @@ or was being dragged, has gone."
   (multiple-value-bind (pane x y) (pane-at-mouse window)
     (when pane (hover pane x y))))
 
+(defmethod describe-subject (subject stream) (format stream "~A~%" (subject-title subject)))
+
 (defun subject-text (subject)
-  "Return in one line what is known of SUBJECT."
-  (one-line (with-output-to-string (stream) (describe-subject subject stream))))
+  "Return in one line what is known of SUBJECT; nothing of NIL."
+  (if subject
+      (one-line (with-output-to-string (stream) (describe-subject subject stream)))
+      ""))
 
 ;;; Picking and offering.
 

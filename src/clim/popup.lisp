@@ -57,7 +57,6 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
 
 (defmethod paint ((pane popup-pane))
   (multiple-value-bind (width height) (pane-size pane)
-    (clear pane clim:+gray97+)
     (painting (canvas pane)
       (with-origin (canvas 0 (- 3 (pane-offset pane)))
         (loop for row in (pane-rows pane)
@@ -80,14 +79,13 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
 
 ;;; Opening and closing.
 
-(defun rows-width (rows)
-  (+ 34 +scroll-bar+ (* +character-width+ (loop for row in rows maximize (length (row-text row))))))
-
 (defun place-popup (popup x y)
   "Put POPUP, as large as its rows need, at X, Y of the window, but inside of it."
   (multiple-value-bind (room-x room-y) (pane-size (clim:sheet-parent popup))
-    (let* ((width (min room-x (rows-width (pane-rows popup))))
-           (extent (+ 6 (* +row-height+ (length (pane-rows popup)))))
+    (let* ((rows (pane-rows popup))
+           (columns (loop for row in rows maximize (length (row-text row))))
+           (width (min room-x (+ 34 +scroll-bar+ (* +character-width+ columns))))
+           (extent (+ 6 (* +row-height+ (length rows))))
            (height (min room-y extent)))
       (setf (pane-extent popup) extent
             (pane-offset popup) 0)

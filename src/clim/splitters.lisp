@@ -30,7 +30,7 @@
 
 (defmethod pane-content ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
 
-(defmethod paint ((pane splitter-pane)) (clear pane clim:+gray75+))
+(defmethod paint ((pane splitter-pane)) (clear pane))
 
 (defmethod press ((pane splitter-pane) button x y)
   (declare (ignore button x y))

@@ -39,7 +39,6 @@
   (list (strip-lines (window-of pane)) (multiple-value-list (pane-size pane))))
 
 (defmethod paint ((pane strip-pane))
-  (clear pane clim:+gray88+)
   (let ((columns (max 4 (floor (- (pane-size pane) 12) +character-width+))))
     (painting (canvas pane)
       (loop for line in (strip-lines (window-of pane))

@@ -35,7 +35,6 @@ trial."
 (defmethod paint ((pane title-pane))
   (let* ((window (window-of pane)) (section (pane-section pane))
          (foldable-p (foldable-p section)))
-    (clear pane clim:+gray88+)
     (painting (canvas pane)
       (when foldable-p
         (draw-lines canvas draw-gcontext*

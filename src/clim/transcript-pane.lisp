@@ -159,13 +159,10 @@ that is the newest: no line that is no longer kept, and a whole page of them."
              (paint-row canvas row y))))
 
 (defmethod paint ((pane transcript-pane))
-  (let ((canvas (make-instance 'clim-canvas :medium pane :magnification (magnification pane))))
-    (clear pane)
-    (multiple-value-bind (columns rows) (columns-and-rows pane)
-      (setf (window-text-size (window-of pane)) (list columns rows)
-            (pane-rows pane) (rows-in-view pane rows columns)))
-    (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
-      (with-canvas (canvas) (paint-rows canvas pane)))))
+  (multiple-value-bind (columns rows) (columns-and-rows pane)
+    (setf (window-text-size (window-of pane)) (list columns rows)
+          (pane-rows pane) (rows-in-view pane rows columns)))
+  (painting (canvas pane) (paint-rows canvas pane)))
 
 ;;; Scrolling.
 
