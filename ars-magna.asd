@@ -339,7 +339,7 @@
                  (:file "plan-mouse") (:file "detail-mouse") (:file "world-mouse") (:file "keys")
                  (:file "keyboard")
                  (:file "help")
-                 (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
+                 (:file "window") (:file "line-menus") (:file "commands")
                  (:file "menus") (:file "menu-keys") (:file "habits")
                  (:file "connecting") (:file "opening") (:file "x-server") (:file "replies")
                  (:file "following")))))

@@ -190,7 +190,6 @@
     (window::say transcript (format nil "one~%tw"))
     (window::say transcript (format nil "o~%"))
     (is (equal '("one" "two" "") (window::latest-lines transcript 10)))
-    (is (equal '("one" "two") (window::latest-lines transcript 2 1)))
     (dotimes (line 5000) (window::say transcript (format nil "~D~%" line)))
     (is (<= (length (window::latest-lines transcript 5000)) 4001))
     (is (equal '("4999" "") (window::latest-lines transcript 2)))))

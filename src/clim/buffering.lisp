@@ -43,7 +43,3 @@ at once."
       (cond ((not (and (plusp width) (plusp height))))
             ((clim:sheet-direct-mirror pane) (call-in-buffer #'paint pane width height))
             (t (clim:with-output-buffered (pane) (paint)))))))
-
-(defmacro buffered ((pane) &body body)
-  "Run BODY, which paints PANE; nothing is seen of that before its end."
-  `(call-buffered (lambda () ,@body) ,pane))

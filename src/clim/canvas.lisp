@@ -138,9 +138,6 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
   "How text is written on CLIM's canvases, by their magnification: so that a letter is as many times
 +CHARACTER-WIDTH+ wide.")
 
-(defun text-style (canvas)
-  (svref *text-styles* (1- (canvas-magnification canvas))))
-
 (defun uncut-p (canvas y)
   "True if text whose base line is at Y is not cut at the upper or lower edge of CANVAS."
   (let ((bottom (canvas-bottom canvas)) (y (+ y (canvas-dy canvas))))
@@ -150,7 +147,8 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
   (extend-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
   (when (uncut-p canvas y)
     (clim:draw-text* (canvas-medium canvas) string x y
-                     :text-style (text-style canvas) :ink (ink (gcontext-foreground gcontext)))))
+                     :text-style (svref *text-styles* (1- (canvas-magnification canvas)))
+                     :ink (ink (gcontext-foreground gcontext)))))
 
 ;;; Where.
 

@@ -52,9 +52,6 @@ back to."
       (tell-to-answer (window-conversation window) "Step")
       (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
 
-(defun say-in-window (window &rest arguments)
-  (say (window-transcript window) (apply #'format nil arguments)))
-
 (defun let-rate-be (window rate)
   "Let ticks pass at RATE in what WINDOW shows, if they pass by themselves there."
   (let ((simulation (window-simulation window)))
@@ -184,7 +181,7 @@ does."
                              :layers (window-layers window)
                              :in-color (window-color-p window)
                              :scale (pane-scale (pane-named window 'world)))))
-    (say (window-transcript window) (format nil "Saved ~A~%" (native-name file)))))
+    (say-in-window window "Saved ~A~%" (native-name file))))
 
 (define-window-command (com-save-svg "Save as SVG") (window)
     "Save a picture of the displays as SVG."

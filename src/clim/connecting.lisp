@@ -2,11 +2,6 @@
 
 (in-package :ars-magna.clim)
 
-(defun x-server-named-p ()
-  (or clim:*default-server-path*
-      (let ((display (environment-value "DISPLAY")))
-        (and display (string/= display "")))))
-
 ;;; If the X server cannot be reached, another value of DISPLAY may help. If it answers and a
 ;;; library fails then, only another library does.
 
@@ -14,16 +9,13 @@
   "Errors of a program, not of what it is connected to."
   '(or type-error cell-error program-error control-error arithmetic-error))
 
-(defun call-reading-from-x-server (reader)
-  "Call READER on a new connection to the X server that DISPLAY names, of CLX alone."
-  (let ((display (xlib:open-default-display)))
-    (unwind-protect (funcall reader display)
-      (xlib:close-display display :abort t))))
-
 (defun clx-fails-p ()
   "True if CLX by itself cannot read a long answer of the X server: which keys are down takes 40
 bytes, and CLX reads 32 of them first."
-  (handler-case (progn (call-reading-from-x-server #'xlib:query-keymap) nil)
+  (handler-case (let ((display (xlib:open-default-display)))
+                  (unwind-protect (xlib:query-keymap display)
+                    (xlib:close-display display :abort t))
+                  nil)
     (program-fault () t)
     (error () nil)))
 
@@ -50,7 +42,8 @@ is at fault if CLX-FAILS-P."
 
 (defun window-port ()
   "Return CLIM's port to the X server. Signals MISUSE if there is none."
-  (unless (x-server-named-p)
+  (unless (or clim:*default-server-path*
+              (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
     (reject-use "No display: there is no X server; set the environment variable DISPLAY."))
   (handler-case (clim:find-port)
     (error (condition) (reject-use "~A" (words-for-no-port condition)))))

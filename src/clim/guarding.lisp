@@ -20,8 +20,7 @@
 (defun call-guarded-command (window title function)
   (handler-case (funcall function)
     (error (condition)
-      (say (window-transcript window)
-           (format nil "*ERROR* -> ~A: ~A.~%" title (one-line-text condition))))))
+      (say-in-window window "*ERROR* -> ~A: ~A.~%" title (one-line-text condition)))))
 
 (defmacro with-guarded-command ((window title) &body body)
   "Run BODY, the work of the command TITLE; what goes wrong is said in WINDOW."

@@ -1,9 +1,9 @@
-;;;; help.lisp -- the panels that tell what keys and mouse do, and let layers be chosen.
+;;;; help.lisp -- the panels that tell what keys and mouse do, and let layers and robots be chosen.
 
 (in-package :ars-magna.clim)
 
 (defparameter *mouse-help*
-  '("Mouse" "  hover               the strip below tells what is there"
+  '("" "Mouse" "  hover               the strip below tells what is there"
     "  click               pick it; it is described below"
     "  right button        what can be done with it"
     "  drag the map        move the view; the wheel zooms"
@@ -12,24 +12,19 @@
     "  designators         where they do not fit: left scrolls down, right up, middle offers")
   "What the help panel says of the mouse.")
 
-(defun key-help ()
-  "Return what the help panel says of keys, line by line."
-  (append (list "Keys, after a click on a display")
-          (loop for button in *buttons*
-                collect (format nil "  ~7A ~A" (key-text (button-key button))
-                                (button-help button)))
-          (list "  arrows  move the view" "  return  back to the line that is typed"
-                "  escape  close such a panel, or as return"
-                "  F10     the menus: arrows and return choose")))
-
 (defun help-rows ()
-  (mapcar #'make-row (append (key-help) (list "") *mouse-help*)))
+  "Return the rows of the help panel."
+  (mapcar #'make-row
+          (append (list "Keys, after a click on a display")
+                  (loop for button in *buttons*
+                        collect (format nil "  ~7A ~A" (key-text (button-key button))
+                                        (button-help button)))
+                  (list "  arrows  move the view" "  return  back to the line that is typed"
+                        "  escape  close such a panel, or as return"
+                        "  F10     the menus: arrows and return choose")
+                  *mouse-help*)))
 
 ;;; Layers.
-
-(defun layers-for-windows ()
-  "Return the layers that a window can show. It has a title, and the mouse is told what things are."
-  (remove :legend (remove :title (picture-layers))))
 
 (defun switch-layer (window layer)
   "Show LAYER in WINDOW, or no longer."
@@ -43,19 +38,38 @@
   (let ((title (layer-title layer)) (words (layer-words layer)))
     (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
 
-(defun layer-row (window layer)
-  (make-row (layer-text layer)
-            :tick-p t :stays-p t
-            :tick (lambda () (member layer (window-layers window)))
-            :action (lambda () (switch-layer window layer))))
-
 (defun layer-rows (window)
-  "Return the rows of the panel of layers."
-  (append (loop for layer in (layers-for-windows) collect (layer-row window layer))
-          (list (make-row "In colour" :tick-p t :stays-p t
-                                      :tick (lambda () (window-color-p window))
-                                      :action (lambda () (switch-color window))))))
+  "Return the rows of the panel of layers. A window has a title, and the mouse is told what things
+are, so there are none for these."
+  (flet ((layer-row (layer)
+           (make-row (layer-text layer)
+                     :tick (lambda () (member layer (window-layers window)))
+                     :action (lambda () (switch-layer window layer)) :stays-p t)))
+    (append (mapcar #'layer-row (remove :legend (remove :title (picture-layers))))
+            (list (make-row "In colour" :tick (lambda () (window-color-p window))
+                                        :action (lambda () (switch-color window)) :stays-p t)))))
 
 (defun switch-color (window)
   (setf (window-color-p window) (not (window-color-p window)))
   (repaint-all window))
+
+;;; Robots.
+
+(defun shown-robot (window)
+  "Return the name of the robot whose details WINDOW shows."
+  (watcher-robot (window-watcher window)))
+
+(defun window-robots (window)
+  "Return the names of the robots of the run that WINDOW shows."
+  (let ((snapshot (window-snapshot window)))
+    (and snapshot (mapcar #'robot-image-name (snapshot-robots snapshot)))))
+
+(defun robot-rows (window)
+  "Return the rows of the menu of robots. The window shows the one that its prompt commands."
+  (flet ((robot-row (name)
+           (make-row (format nil "~A" name)
+                     :tick (lambda () (same-name-p name (shown-robot window)))
+                     :action (lambda ()
+                               (give-line (window-conversation window)
+                                          (format nil "robot ~(~A~)" name))))))
+    (cons (make-row "Which robot?") (mapcar #'robot-row (window-robots window)))))

@@ -8,8 +8,6 @@
 (defclass interactor-pane (display-pane) ()
   (:documentation "A pane that shows the line that is being typed, and takes keys."))
 
-(defun pane-conversation (pane) (window-conversation (window-of pane)))
-
 (defun focused-p (pane)
   (eq pane (clim:port-keyboard-input-focus (clim:port pane))))
 
@@ -18,12 +16,9 @@
 (defun line-in-short (line)
   (if (< 40 (length line)) (format nil "~A..." (subseq line 0 37)) line))
 
-(defun busy-text (line)
-  (format nil "At work on ~A -- control-C, or Interrupt in the menu Run, ends it."
-          (line-in-short line)))
-
-(defun reading-text (line)
-  (format nil "~A waits for your answer -- control-C, or Interrupt in the menu Run, ends it."
+(defun line-text (control line)
+  "Return in words, by CONTROL, what the LINE under way does, and how it is ended."
+  (format nil "~@? -- control-C, or Interrupt in the menu Run, ends it." control
           (line-in-short line)))
 
 (defun waiting-label (count)
@@ -31,11 +26,6 @@
   (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; backspace takes the last one ~
                back. ~]Next> "
           count))
-
-(defun shown-ahead (conversation)
-  "Return label, text and point of what is typed in CONVERSATION while a line is under way."
-  (multiple-value-bind (count text point) (waiting-in conversation)
-    (list (waiting-label count) text point)))
 
 (defun line-shown (conversation)
   "Return label, text and point of the line that is being typed in CONVERSATION, or NIL."
@@ -59,17 +49,19 @@
   "Return what is said above TEXT, which is being typed, and its ink."
   (let ((reading (asked-by conversation))
         (asked (asked-text (answers-awaited conversation))))
-    (cond (reading (list (reading-text reading) :red))
+    (cond (reading (list (line-text "~A waits for your answer" reading) :red))
           (asked (list asked :red))
           (t (list (note-on text) :grey)))))
 
 (defun what-is-shown (pane)
   "Return what PANE shows: label, text and point, and the row above and its ink, or NIL."
-  (let* ((conversation (pane-conversation pane))
+  (let* ((conversation (window-conversation (window-of pane)))
          (shown (line-shown conversation))
          (busy (busy-with conversation)))
     (cond (shown (append shown (row-above conversation (second shown))))
-          (busy (append (shown-ahead conversation) (list (busy-text busy) :red))))))
+          (busy (multiple-value-bind (count text point) (waiting-in conversation)
+                  (list (waiting-label count) text point
+                        (line-text "At work on ~A" busy) :red))))))
 
 (defun rows-wanted (pane)
   "Return how many rows PANE needs for all that is typed in it, and what is said above that."

@@ -70,8 +70,6 @@ STATE."
   "Lists (name character pairs): McCLIM's name of a dead key, what it types before a space, and the
 letters that it changes, each before what it becomes.")
 
-(defun dead-key (name) (assoc name *dead-keys*))
-
 (defun composed (dead character)
   "Return, as a string, what CHARACTER, typed after the dead key of the list DEAD, gives."
   (destructuring-bind (own pairs) (rest dead)
@@ -96,7 +94,7 @@ keyboard.")
 (defun wait-after (name character)
   "Note whether a dead key waits now that the key NAME, of CHARACTER or NIL, was pressed. Return the
 one that has waited before, and the one that NAME is; of either NIL, if there is none."
-  (let ((before *dead-key*) (now (dead-key name)))
+  (let ((before *dead-key*) (now (assoc name *dead-keys*)))
     ;; Keys like shift have no character, and leave a dead key waiting.
     (when (or now character)
       (setf *dead-key* (if (eq now before) nil now)))

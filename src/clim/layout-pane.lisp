@@ -67,11 +67,6 @@ now, as (section pixels)."
   "Return a function from a section to how many pixels it needs according to NEEDS."
   (lambda (section) (or (second (assoc section needs)) 0)))
 
-(defun most-needed (needs before)
-  "Return NEEDS, but for each section what it has needed according to BEFORE if that was more."
-  (loop for (section pixels) in needs
-        collect (list section (max pixels (funcall (need-in before) section)))))
-
 (defun arranged (layout needs)
   "Return where all parts of LAYOUT belong if its sections need NEEDS."
   (multiple-value-call #'arrange (pane-wishes layout) (need-in needs) (pane-size layout)
@@ -93,19 +88,19 @@ now, as (section pixels)."
 (defun settled-needs (layout)
   "Return the heights for which the sections of LAYOUT get room: the most that they have needed, but
 what they need now if only so there is enough for all."
-  (let* ((now (needs-now layout)) (most (most-needed now (pane-needed layout))))
+  (let* ((now (needs-now layout))
+         (before (need-in (pane-needed layout)))
+         (most (loop for (section pixels) in now
+                     collect (list section (max pixels (funcall before section))))))
     (flet ((enough-for-all-p (needs) (enough-p (arranged layout needs) now)))
       (if (and (not (enough-for-all-p most)) (enough-for-all-p now))
           now
           most))))
 
-(defun shown-run-and-robot (window)
-  "Return what is EQUAL to before as long as WINDOW shows the same robot of the same run."
-  (list (window-simulation window) (shown-robot window)))
-
 (defun places (layout)
   "Return where all parts of the window belong now, as the wishes of LAYOUT, their pane, want it."
-  (let ((shown (shown-run-and-robot (clim:pane-frame layout))))
+  (let* ((window (clim:pane-frame layout))
+         (shown (list (window-simulation window) (shown-robot window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
       (setf (pane-needed layout) '())))
   (arranged layout (setf (pane-needed layout) (settled-needs layout))))

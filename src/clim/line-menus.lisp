@@ -20,7 +20,10 @@
   (loop for line in (sort (copy-list (ars-magna.cli:all-lines)) #'string<
                           :key #'ars-magna.cli:line-name)
         when (string= group (line-group line))
-          collect (list (ars-magna.cli:line-name line) 'com-line (ars-magna.cli:line-name line))))
+          collect (line-item (ars-magna.cli:line-name line))))
+
+(defun line-item (name)
+  (list name (lambda () (choose-line clim:*application-frame* name))))
 
 (defun choose-line (window name)
   "Give the prompt the line command called NAME, or let the user add its arguments."
@@ -29,7 +32,3 @@
            (begin-line-with conversation (format nil "~A " text))
            (type-into (pane-named window 'interactor)))
           (t (give-line conversation text)))))
-
-(defun com-line (name)
-  "Do what the menus do for the line command called NAME."
-  (choose-line clim:*application-frame* name))

@@ -80,15 +80,12 @@ window's can be across: so that the smallest window in which all is to be seen f
 the screen has RESOLUTION in dots per inch; NIL stands for what is not known."
   (clamp (round (or resolution 96) 96) 1 (most-magnified width height)))
 
-(defun say-of-size (window text)
-  (say (window-transcript window) (format nil "~A~%" text)))
-
 (defun magnify (window magnification)
   "Let one pixel of WINDOW be MAGNIFICATION of the screen's across; or say that there is no room."
-  (cond ((< magnification 1) (say-of-size window "Smaller than that nothing could be read."))
+  (cond ((< magnification 1) (say-in-window window "Smaller than that nothing could be read.~%"))
         ((< (multiple-value-call #'most-magnified (screen-size (window-layout window)))
             magnification)
-         (say-of-size window "Larger than that not all would fit on this screen."))
+         (say-in-window window "Larger than that not all would fit on this screen.~%"))
         ((/= magnification (window-magnification window))
          (setf (wishes-magnification (window-wishes window)) magnification)
          (rearrange window))))

@@ -4,8 +4,6 @@
 
 ;;; They work wherever the keys go just then: the list is nearer than a line that is typed below it.
 
-(defun rows-to-point-at (popup) (remove nil (pane-rows popup) :key #'row-action))
-
 (defun show-row (popup row)
   "Scroll POPUP so that ROW is in view."
   (let* ((top (* +row-height+ (position row (pane-rows popup))))
@@ -16,7 +14,7 @@
 (defun point-further (popup step)
   "Let the row of POPUP be pointed at that is STEP further than the one which is, or the first or
 last. True if there is one."
-  (let* ((rows (rows-to-point-at popup))
+  (let* ((rows (remove nil (pane-rows popup) :key #'row-action))
          (place (position (pane-pointed popup) rows))
          (row (nth (cond (place (mod (+ place step) (length rows)))
                          ((plusp step) 0)

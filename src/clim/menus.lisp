@@ -53,8 +53,8 @@ and NIL for a gap."
         ((menu-p item)
          (make-row (format nil "~A >" (menu-title item))
                    :action (lambda () (open-menu window item x y menu))))
-        (t (destructuring-bind (title command &rest arguments) item
-             (make-row title :action (lambda () (apply command arguments)))))))
+        (t (destructuring-bind (title command) item
+             (make-row title :action (lambda () (funcall command)))))))
 
 (defun way-back (window outer x y)
   "Return in a list the row that leads back to OUTER, the menu at X, Y of WINDOW, if there is one."

@@ -28,15 +28,12 @@ LINE for that and ARGUMENTS."
 
 ;;; Looking into.
 
-(defun inspector-line (form)
-  "Return in a list the offer to inspect the value of FORM, a string, in the editor that is
-connected, if there is one."
-  (and (editor-server)
-       (list (list "Inspect in the editor" (format nil "(inspect-in-editor ~A)" form)))))
-
 (defun looking-into (form)
-  "Return the offers to look into the value of FORM, a string."
-  (cons (list "All that Lisp has of it" (format nil "(describe ~A)" form)) (inspector-line form)))
+  "Return the offers to look into the value of FORM, a string, also in the editor that is connected,
+if there is one."
+  (cons (list "All that Lisp has of it" (format nil "(describe ~A)" form))
+        (and (editor-server)
+             (list (list "Inspect in the editor" (format nil "(inspect-in-editor ~A)" form))))))
 
 ;;; Things.
 
@@ -113,11 +110,6 @@ HELD-P by the robot itself that is less."
                   (same-subject-p image (hand-image-contents hand))))
            (robot-image-hands (window-robot window))))
 
-(defun bin-with (image window)
-  "Return the image of the bin of the robot of WINDOW that the thing of IMAGE is in, or NIL."
-  (find-if (lambda (bin) (member image (bin-image-contents bin) :test #'same-subject-p))
-           (robot-image-bins (window-robot window))))
-
 (defun insert-offers (hands bins title)
   "Return an offer, which TITLE describes, to put each of HANDS into each of BINS that is open."
   (loop for hand in hands
@@ -139,17 +131,17 @@ HELD-P by the robot itself that is less."
             (insert-offers (list hand) (robot-image-bins (window-robot window))
                            "Put hand ~D with it into storage bin ~D"))))
 
-(defun empty-hands (window)
-  (remove-if #'hand-image-contents (robot-image-hands (window-robot window))))
-
 (defun held-offers (image window)
   "Return what can be done with the thing of IMAGE if the robot of WINDOW holds it, or has it in a
 bin."
-  (let ((hand (hand-with image window)) (bin (bin-with image window)))
+  (let* ((robot (window-robot window))
+         (hand (hand-with image window))
+         (bin (find-if (lambda (bin) (member image (bin-image-contents bin) :test #'same-subject-p))
+                       (robot-image-bins robot))))
     (cond (hand (letting-go-offers hand window))
           (bin (append (offers bin window)
-                       (insert-offers (empty-hands window) (list bin)
-                                      "Put hand ~D into storage bin ~D"))))))
+                       (insert-offers (remove-if #'hand-image-contents (robot-image-hands robot))
+                                      (list bin) "Put hand ~D into storage bin ~D"))))))
 
 (defun on-floor-p (image window)
   "True if the thing of IMAGE lies on the floor, and not in a hand, bin or other thing."
@@ -210,12 +202,9 @@ bin."
                                 (format nil "robot ~A" (text-as-typed (robot-image-name image))))))
             (looking-into form))))
 
-(defun cell-middle (cell)
-  (values (+ (cell-x cell) 1/2) (+ (cell-y cell) 1/2)))
-
 (defmethod offers ((cell cell) window)
   (declare (ignore window))
-  (multiple-value-bind (x y) (cell-middle cell)
+  (let ((x (+ (cell-x cell) 1/2)) (y (+ (cell-y cell) 1/2)))
     (unless (cell-filled? cell)
       (list (go-there x y)
             (list "Put the robot here"

@@ -124,18 +124,13 @@ that a prompt would, or another of the same run if that is shown in another wind
                              (cons name names))
                 simulation)))))
 
-(defun shown-elsewhere-only-p (window)
-  "True if there is a run in which WINDOW could go on, but other windows show all of its robots."
-  (and (ars-magna.cli:run-after (window-simulation window) (shown-robot window)) t))
-
 (defun stay-when-over (window reason)
   "Say in WINDOW, once, that the run which it still shows is over for REASON."
   (let ((over (window-simulation window)))
     (unless (eq over (shiftf (window-known-over window) over))
-      (say (window-transcript window)
-           (format nil "The run of ~A is over: ~A. This window shows how it ended, until WORLD, ~
-                        or SIMULATOR in Lisp, starts another.~%"
-                   (shown-robot window) reason)))))
+      (say-in-window window "The run of ~A is over: ~A. This window shows how it ended, until ~
+                             WORLD, or SIMULATOR in Lisp, starts another.~%"
+                     (shown-robot window) reason))))
 
 (defun leave-run (window reason)
   "Let WINDOW, which shows a run that is over for REASON, go on in another one; or else stay, unless
@@ -144,7 +139,8 @@ others show all there is."
     (cond (name
            (show-robot-called window name simulation)
            (ars-magna.cli:tell-of-run (window-session window) simulation name))
-          ((shown-elsewhere-only-p window)
+          ;; There is a run to go on in, but other windows show all of its robots.
+          ((ars-magna.cli:run-after (window-simulation window) (shown-robot window))
            (warn-of-closing window (format nil "its run is over, ~A" reason))
            (close-window window))
           (t (stay-when-over window reason)))))
@@ -164,13 +160,13 @@ else, if its user has chosen another one of the same run, that that is shown."
              (setf ars-magna.cli:*prompt-robot* (watcher-robot watcher)))
             ((not (eq (watcher-robot watcher) ars-magna.cli:*prompt-robot*))
              (show-robot-called window ars-magna.cli:*prompt-robot* simulation)
-             (say (window-transcript window)
-                  (format nil "~A in ~A.~%" ars-magna.cli:*prompt-robot*
-                          (simulation-name simulation))))))))
+             (say-in-window window "~A in ~A.~%" ars-magna.cli:*prompt-robot*
+                            (simulation-name simulation)))))))
 
 (defun discard (window)
   "Let the X server forget WINDOW, which has closed, and its pixmaps."
-  (forget-pixmaps window)
+  (forget-terrain (pane-named window 'world))
+  (mapc #'forget-buffer (cons (window-popup window) (display-panes window)))
   (clim:disown-frame (clim:frame-manager window) window))
 
 ;;; When the X server goes, the thread that reads the events notices, or that of a window which
@@ -188,13 +184,10 @@ else, if its user has chosen another one of the same run, that that is shown."
     (warn-of-closing window "the X server has gone")
     (close-window window)))
 
-(defun x-server-gone-p (condition)
-  "True if CONDITION, which has come up in the thread of a window, means that its server has gone."
-  (typep condition '(or stream-error xlib:closed-display)))
-
 (defun close-for (condition window)
-  "Say that CONDITION closes WINDOW, in whose thread it has come up, or all on its X server."
-  (if (x-server-gone-p condition)
+  "Say that CONDITION closes WINDOW, in whose thread it has come up, or all on its X server if it
+means that this has gone."
+  (if (typep condition '(or stream-error xlib:closed-display))
       (lose-windows (clim:port window))
       (warn-of-closing window condition)))
 

@@ -75,11 +75,12 @@ would be cut; remember what was painted where."
   "Paint PANE, all at once."
   (when (shown-p pane)
     (setf (pane-painted pane) (pane-content pane))
-    (buffered (pane)
-      (paint pane)
-      (when (limit-offset pane) (paint pane))
-      (paint-selection pane)
-      (paint-scroll-bar pane))
+    (call-buffered (lambda ()
+                     (paint pane)
+                     (when (limit-offset pane) (paint pane))
+                     (paint-selection pane)
+                     (paint-scroll-bar pane))
+                   pane)
     (paint-popup-over pane)
     (point-again pane)))
 

@@ -87,16 +87,13 @@
       (give-line (window-conversation (window-of pane)) (rewind-line tick))
       (hint (window-of pane) "That is now.")))
 
-(defun press-control (pane control)
-  "Do what a click on CONTROL, a switch or the mark of a task in PANE, does."
-  (etypecase control
-    (switch (funcall (switch-action control)))
-    (fold-mark (fold-task pane (fold-mark-serial control)))))
-
 (defmethod click ((pane plan-pane) button x y)
   (let ((subject (plan-subject-at pane x y)))
     (cond ((typep subject '(or switch fold-mark))
-           (when (eq button :left) (press-control pane subject)))
+           (when (eq button :left)
+             (etypecase subject
+               (switch (funcall (switch-action subject)))
+               (fold-mark (fold-task pane (fold-mark-serial subject))))))
           ((eq button :right) (offer pane (and subject (list subject)) x y))
           ((plan-moment-p subject) (go-back-to pane (plan-moment-tick subject)))
           (t (pick (window-of pane) subject)))))

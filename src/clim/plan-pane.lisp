@@ -97,25 +97,16 @@
         (say-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))
         y)))
 
-(defun plans-under-way-p (look)
-  "True if plans are under way that LOOK may not have seen yet."
-  (let ((interface (interface-of (plan-look-simulation look))))
-    (and interface (plan-runner-tasks (interface-runner interface)) t)))
-
 (defun say-no-plan (canvas pane)
-  (if (plans-under-way-p (plan-look-of pane))
-      (say-text canvas pane +plan-head+ "Looking at the plans ...")
-      (let ((y (say-text canvas pane +plan-head+
-                         "No plan is under way. PLAN name ... starts one.")))
-        (say-ending canvas pane
-                    (say-lines canvas y (line-switch pane "Which plans are there?" "plan"
-                                                     "List the plans that can be started"))))))
-
-(defun say-untraced (canvas pane)
-  (say-lines canvas (say-text canvas pane +plan-head+
-                              "No trace is kept of these plans, so there is no timeline.")
-             (line-switch pane "Keep a trace from now on" "trace-plans on"
-                          "Keep a trace of what plans do")))
+  (let ((interface (interface-of (plan-look-simulation (plan-look-of pane)))))
+    ;; Plans may be under way that have not been looked at yet.
+    (if (and interface (plan-runner-tasks (interface-runner interface)))
+        (say-text canvas pane +plan-head+ "Looking at the plans ...")
+        (let ((y (say-text canvas pane +plan-head+
+                           "No plan is under way. PLAN name ... starts one.")))
+          (say-ending canvas pane
+                      (say-lines canvas y (line-switch pane "Which plans are there?" "plan"
+                                                       "List the plans that can be started")))))))
 
 ;;; Painting.
 
@@ -135,17 +126,19 @@
                     (draw-task-tree canvas tree :width (content-width pane) :top +plan-head+))
         (say-no-plan canvas pane))))
 
-(defparameter *too-long*
-  "The trace is too long to be drawn again and again. PLAN-TIMELINE plans.svg saves a picture."
-  "What is said instead of drawing a timeline of very much.")
-
 (defun draw-plan-timeline (canvas pane)
   "Draw the timeline that PANE shows. Return where it ends."
   (let ((page (plan-look-page (plan-look-of pane))))
     (case page
       ((nil) (say-no-plan canvas pane))
-      (:untraced (say-untraced canvas pane))
-      (:too-long (say-text canvas pane +plan-head+ *too-long*))
+      (:untraced (say-lines canvas
+                            (say-text canvas pane +plan-head+
+                                      "No trace is kept of these plans, so there is no timeline.")
+                            (line-switch pane "Keep a trace from now on" "trace-plans on"
+                                         "Keep a trace of what plans do")))
+      (:too-long (say-text canvas pane +plan-head+
+                           (format nil "The trace is too long to be drawn again and again. ~
+                                        PLAN-TIMELINE plans.svg saves a picture.")))
       (t (draw-page canvas page :width (content-width pane) :top +plan-head+
                                 :from (pane-offset pane)
                                 :to (+ (pane-offset pane) (nth-value 1 (pane-size pane))))))))

@@ -5,13 +5,12 @@
 ;;; A window has one, shown or not. It is a pane above the others, so nothing waits for it: the
 ;;; world goes on behind it. It is painted again whenever a pane below it is.
 
-(defstruct (row (:constructor make-row (text &key action tick (tick-p nil) stays-p)) (:copier nil))
+(defstruct (row (:constructor make-row (text &key action tick stays-p)) (:copier nil))
   "ACTION, a function of no arguments or NIL, is what a click on the row TEXT does; the popup goes
-away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is ticked."
+away then unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cannot be."
   (text "" :type string :read-only t)
   (action nil :type (or null function) :read-only t)
   (tick nil :type (or null function) :read-only t)
-  (tick-p nil :read-only t)
   (stays-p nil :read-only t))
 
 (define-constant +row-height+ 18 :documentation "How high a row is, in pixels.")
@@ -52,8 +51,8 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
   (when (and pointed-p (row-action row))
     (with-gcontext (draw-gcontext* :foreground (svref lightblue* 10))
       (draw-rectangle canvas draw-gcontext* 1 y (- width 2) +row-height+ t)))
-  (when (row-tick-p row) (draw-tick-box canvas row y))
-  (draw-glyphs canvas draw-gcontext* (if (row-tick-p row) 22 8) (+ y 13) (row-text row)))
+  (when (row-tick row) (draw-tick-box canvas row y))
+  (draw-glyphs canvas draw-gcontext* (if (row-tick row) 22 8) (+ y 13) (row-text row)))
 
 (defmethod paint ((pane popup-pane))
   (multiple-value-bind (width height) (pane-size pane)
@@ -144,13 +143,9 @@ so, a symbol, or the menu, or T."
 (define-constant +double-click+ 500
   :documentation "Within how many milliseconds two clicks are one deed.")
 
-(defun second-click-p (pane time)
-  "True if a click on PANE at TIME, in milliseconds, is the second of two by which its rows came."
-  (and (pane-turned pane) time (<= 0 (- time (pane-turned pane)) +double-click+)))
-
 (defmethod clim:handle-event :around ((pane popup-pane) (event clim:pointer-button-press-event))
-  (let ((rows (pane-rows pane)) (time (clim:event-timestamp event)))
-    (unless (second-click-p pane time)
+  (let ((rows (pane-rows pane)) (turned (pane-turned pane)) (time (clim:event-timestamp event)))
+    (unless (and turned time (<= 0 (- time turned) +double-click+))
       (setf (pane-turned pane) nil)
       (call-next-method)
       (unless (eq rows (pane-rows pane)) (setf (pane-turned pane) time)))))

@@ -59,9 +59,6 @@ had been; the tick and second from which on the rate is being measured, and that
          (= (simulation-tick simulation) (pulse-last-tick pulse))
          text)))
 
-(defun plans-of (simulation)
-  (let ((*simulation* simulation)) (plans)))
-
 ;; In a trial or fork, which is not live, the prompt lets ticks pass.
 (defun state-at-prompt (simulation)
   "Return the state of SIMULATION, which is not live."
@@ -93,7 +90,7 @@ had been; the tick and second from which on the rate is being measured, and that
           (busy (values :busy busy))
           ((paused-p simulation) :paused)
           ((not (idle-p simulation)) :running)
-          ((plans-of simulation) :waiting)
+          ((let ((*simulation* simulation)) (plans)) :waiting)
           (t :idle))))
 
 (define-constant +measure+ 10 :documentation "From how many ticks on a rate is measured.")

@@ -15,13 +15,6 @@
   (:documentation "A console that writes to a transcript; something else shows the line that is
 being typed."))
 
-(defun make-window-console (transcript size)
-  "Return a console on TRANSCRIPT. SIZE is a function that returns for how many columns and rows
-there is room."
-  (make-instance 'window-console :transcript transcript :window size
-                                 :stream (make-instance 'transcript-stream
-                                                        :transcript transcript)))
-
 (defun tell-news (console)
   (funcall (transcript-news (console-transcript console))))
 
@@ -79,7 +72,10 @@ there is room."
   "Return a prompt that writes to TRANSCRIPT, which has room for as many columns and rows as SIZE
 returns. PLACE is called before each line; OVER when its user leaves it. It begins in the package of
 this thread."
-  (let ((console (make-window-console transcript size)))
+  (let ((console (make-instance 'window-console
+                                :transcript transcript :window size
+                                :stream (make-instance 'transcript-stream
+                                                       :transcript transcript))))
     (make-conversation (ars-magna.cli:make-session
                         :input (ars-magna.cli:make-handed-text console) :output console
                         :color :always :place place
@@ -108,9 +104,8 @@ this thread."
 (defun restart-if-lost (conversation simulation robot-name)
   "If the thread of the prompt was ended, as a line or a program may do to any, begin anew."
   (when (conversation-lost-p conversation)
-    (say (console-transcript (conversation-console conversation))
-         (format nil "The thread of this prompt was ended, and with it the line under way. ~
-                      It begins anew.~%"))
+    (say-in conversation "The thread of this prompt was ended, and with it the line under way. ~
+                          It begins anew.~%")
     (start-conversation conversation simulation robot-name)))
 
 (defun being-typed (conversation)
@@ -121,14 +116,13 @@ this thread."
          (string/= "" (ars-magna.cli:drawn-line-text line))
          (ars-magna.cli:drawn-line-text line))))
 
-(defun say-in (conversation text)
-  (say (console-transcript (conversation-console conversation)) text))
+(defun say-in (conversation &rest arguments)
+  (say (console-transcript (conversation-console conversation)) (apply #'format nil arguments)))
 
 (defun tell-to-answer (conversation what)
   "Say that WHAT, a text, has to come after the answer that the prompt waits for."
-  (say-in conversation
-          (format nil "~A: first say how what has broken goes on, by one of ~A.~%"
-                  what (ars-magna.cli:ways-awaited (conversation-session conversation)))))
+  (say-in conversation "~A: first say how what has broken goes on, by one of ~A.~%"
+          what (ars-magna.cli:ways-awaited (conversation-session conversation))))
 
 ;; Where a break is answered, what is no answer would be taken for a wrong one.
 (defun answered-first-p (conversation line)

@@ -52,4 +52,4 @@
 (defmethod click ((pane strip-pane) button x y)
   (declare (ignore button x y))
   (let ((window (window-of pane)))
-    (say (window-transcript window) (format nil "~A~%" (time-text window)))))
+    (say-in-window window "~A~%" (time-text window))))

@@ -100,16 +100,13 @@ that is the newest: no line that is no longer kept, and a whole page of them."
     (:grey #x606060))
   "In which colours the transcript shows the inks of a terminal: dark ones, as it is white.")
 
-(defun color-of-ink (ink)
-  (or (second (assoc ink *ink-colors*)) black*))
-
 (define-constant +selection-color+ #xB4D5FE :documentation "What is behind selected text.")
 
 (defun column-x (column) (+ 4 (* column +character-width+)))
 
 (defun paint-words (canvas text column y ink)
   "Paint TEXT, from COLUMN of the row at Y on, in INK."
-  (with-gcontext (draw-gcontext* :foreground (color-of-ink ink))
+  (with-gcontext (draw-gcontext* :foreground (or (second (assoc ink *ink-colors*)) black*))
     (draw-glyphs canvas draw-gcontext* (column-x column) y text)))
 
 (defun paint-row (canvas row y)

@@ -68,6 +68,10 @@ where something is counted."
   "Add TEXT to TRANSCRIPT."
   (call-changing-transcript transcript (lambda () (add-text transcript text))))
 
+(defun say-in-window (window &rest arguments)
+  "Add to what WINDOW has said the text that FORMAT makes of ARGUMENTS."
+  (say (window-transcript window) (apply #'format nil arguments)))
+
 (defun say-entered (transcript text)
   "Add TEXT, a line that the user has entered, to TRANSCRIPT."
   (call-changing-transcript transcript (lambda ()
@@ -99,12 +103,6 @@ where something is counted."
      (setf (transcript-lines transcript) (list "")
            (transcript-count transcript) 1))))
 
-(defun latest-lines (transcript count &optional (skip 0))
-  "Return a list of the last COUNT lines of TRANSCRIPT, oldest first, but for the last SKIP."
-  (with-lock ((transcript-lock transcript))
-    (let ((lines (nthcdr skip (transcript-lines transcript))))
-      (reverse (subseq lines 0 (min count (length lines)))))))
-
 (defun numbered-lines (transcript count &optional last)
   "Return at most COUNT lines of TRANSCRIPT up to the one numbered LAST, by default the newest,
 which comes first; each as a list of its number and its text."
@@ -115,6 +113,10 @@ which comes first; each as a list of its number and its text."
             for number downfrom (- newest skip)
             repeat count
             collect (list number line)))))
+
+(defun latest-lines (transcript count)
+  "Return a list of the last COUNT lines of TRANSCRIPT, oldest first."
+  (reverse (mapcar #'second (numbered-lines transcript count))))
 
 (defun text-between (transcript from to)
   "Return what is said in TRANSCRIPT between the places FROM and TO, each a list of the number of a

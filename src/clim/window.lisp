@@ -8,9 +8,6 @@
 ;;; is handled; handling it paints the panes that have changed, as one picture. Everything in the
 ;;; window happens in its own thread.
 
-(defparameter *help-line*
-  "Type a command below and press return, or choose one from a menu. HELP lists all commands.")
-
 (clim:define-application-frame robot-window ()
   ((watcher :initarg :watcher :accessor window-watcher
             :documentation "The watcher that supplies the window's snapshots.")
@@ -114,7 +111,8 @@
                               (lambda () (agree-on-robot window))
                               (lambda () (close-window window))))
     (push (watcher-robot watcher) (window-robots-shown window))
-    (say (window-transcript window) (format nil "~A~%" *help-line*))
+    (say-in-window window "Type a command below and press return, or choose one from a menu. HELP ~
+                           lists all commands.~%")
     window))
 
 (defun window-snapshot (window)
@@ -150,11 +148,6 @@ each snapshot."
 (defun repaint-all (window)
   "Paint all of WINDOW."
   (mapc #'repaint (display-panes window)))
-
-(defun forget-pixmaps (window)
-  "Let the X server forget what it keeps of the pictures in WINDOW."
-  (forget-terrain (pane-named window 'world))
-  (mapc #'forget-buffer (cons (window-popup window) (display-panes window))))
 
 ;;; Keeping up to date.
 

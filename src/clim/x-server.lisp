@@ -27,16 +27,10 @@ for, or NIL.")
                                             :transform #'code-char)
                          "")))))
 
-(defun forget-port (port)
-  "Count PORT as gone; true if windows had come to it, though they may have closed since."
-  (with-lock (*windows-lock*)
-    (when (member port *ports*)
-      (setf *ports* (remove port *ports*))
-      t)))
-
 (defun lose-port (port)
-  "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
-  (when (forget-port port)
+  "Close the windows on PORT, whose X server has gone, if any had come to it; end the thread that
+reads its events."
+  (when (with-lock (*windows-lock*) (member port (shiftf *ports* (remove port *ports*))))
     (lose-windows port)
     (ignore-errors (clim:destroy-port port))
     (abort)))
@@ -69,10 +63,6 @@ for, or NIL.")
   (when (eql 0 (search "Received CLX" (princ-to-string condition)))
     (muffle-warning condition)))
 
-(defun of-one-event-p (condition)
-  "True if CONDITION came of a single event, and says nothing of the connection to the X server."
-  (typep condition '(or xlib:request-error xlib:lookup-error type-error)))
-
 ;; CLX keeps an event that led to an error, and would come to it again.
 (defgeneric drop-event (port)
   (:documentation "Forget the event that PORT is reading.")
@@ -86,7 +76,9 @@ for, or NIL.")
   "Call FUNCTION, which reads an event of PORT; if that makes trouble, drop it, or lose PORT."
   (handler-bind ((warning #'muffle-warning)
                  (error (lambda (condition)
-                          (cond ((of-one-event-p condition)
+                          ;; What comes of one event says nothing of the connection.
+                          (cond ((typep condition '(or xlib:request-error xlib:lookup-error
+                                                    type-error))
                                  (drop-event port)
                                  ;; It may have been the word that something is to be painted.
                                  (mapc #'request-repaint (windows-on port))
@@ -106,16 +98,11 @@ for, or NIL.")
     (when (member port *ports*) (pushnew port *unread-ports*)))
   (mapc #'request-refresh (windows-on port)))
 
-(defun read-events (port)
-  (loop (clim:process-next-event port)))
-
 (defun read-events-again (port)
   "See to it that the events of PORT are read, if that has ended."
   (when (with-lock (*windows-lock*)
-          (when (member port *unread-ports*)
-            (setf *unread-ports* (remove port *unread-ports*))
-            t))
-    (start-thread (lambda () (read-events port)) "events of windows")))
+          (member port (shiftf *unread-ports* (remove port *unread-ports*))))
+    (start-thread (lambda () (loop (clim:process-next-event port))) "events of windows")))
 
 (defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
   (let ((ended-p t))
