@@ -336,12 +336,12 @@
                  (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
                  (:file "splitters") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
-                 (:file "plan-mouse") (:file "detail-mouse") (:file "world-mouse") (:file "keys")
+                 (:file "plan-mouse") (:file "world-mouse") (:file "keys")
                  (:file "keyboard")
                  (:file "help")
-                 (:file "window") (:file "line-menus") (:file "commands")
-                 (:file "menus") (:file "menu-keys") (:file "habits")
-                 (:file "connecting") (:file "opening") (:file "x-server") (:file "replies")
+                 (:file "window") (:file "commands")
+                 (:file "menus") (:file "habits")
+                 (:file "opening") (:file "x-server")
                  (:file "following")))))
 
 (defsystem "ars-magna/fiveam"

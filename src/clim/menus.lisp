@@ -1,9 +1,44 @@
-;;;; menus.lisp -- the bar of menus at the top of the window.
+;;;; menus.lisp -- the bar of menus at the top of the window, and keys in a menu.
 
 (in-package :ars-magna.clim)
 
 ;;; A menu is shown by the window's popup, so it is never beyond the window, and scrolls if it is
 ;;; higher; nothing waits for it. A menu of menus shows one of these in its place.
+
+;;; The menus of the prompt's lines, by the families under which HELP lists them.
+
+;;; A line without arguments is given at once; another is put where the user can type its arguments.
+
+(defparameter *line-groups*
+  '((:moving "Moving") (:camera "Cameras") (:hand "Hands") (:storage-bin "Storage bins")
+    (:manipulating "Manipulating") (:seeing "Seeing") (:planning "Plans") (:running "Running")
+    (:general "Prompt"))
+  "Lists (family menu), in the order in which the menus are shown.")
+
+(defun line-group (line)
+  "Return the menu that holds LINE; that of the prompt for a family that has none."
+  (second (or (assoc (ars-magna.cli:line-family line) *line-groups*)
+              (assoc :general *line-groups*))))
+
+(defun line-items (group)
+  "Return the items of the menu GROUP."
+  (loop for line in (sort (copy-list (ars-magna.cli:all-lines)) #'string<
+                          :key #'ars-magna.cli:line-name)
+        when (string= group (line-group line))
+          collect (line-item (ars-magna.cli:line-name line))))
+
+(defun line-item (name)
+  (list name (lambda () (choose-line clim:*application-frame* name))))
+
+(defun choose-line (window name)
+  "Give the prompt the line command called NAME, or let the user add its arguments."
+  (let ((conversation (window-conversation window)) (text (string-downcase name)))
+    (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line name))
+           (begin-line-with conversation (format nil "~A " text))
+           (type-into (pane-named window 'interactor)))
+          (t (give-line conversation text)))))
+
+;;; Menus.
 
 (defstruct (menu (:constructor make-menu (title items)) (:copier nil))
   "A menu called TITLE. ITEMS, a list or a function that returns one, are (title command), menus,
@@ -114,3 +149,60 @@ and NIL for a gap."
 
 (defmethod press-past-popup ((pane menu-pane) button x y opener)
   (unless (eq opener (menu-at pane x y)) (click pane button x y)))
+
+;;; Keys in the menu or list that is on top of the window, and one that opens it.
+
+;;; They work wherever the keys go just then: the list is nearer than a line that is typed below it.
+
+(defun show-row (popup row)
+  "Scroll POPUP so that ROW is in view."
+  (let* ((top (* +row-height+ (position row (pane-rows popup))))
+         (height (nth-value 1 (pane-size popup)))
+         (offset (pane-offset popup)))
+    (scroll-to popup (clamp offset (- (+ top 6 +row-height+) height) top))))
+
+(defun point-further (popup step)
+  "Let the row of POPUP be pointed at that is STEP further than the one which is, or the first or
+last. True if there is one."
+  (let* ((rows (remove nil (pane-rows popup) :key #'row-action))
+         (place (position (pane-pointed popup) rows))
+         (row (nth (cond (place (mod (+ place step) (length rows)))
+                         ((plusp step) 0)
+                         (t (max 0 (1- (length rows)))))
+                   rows)))
+    (when row
+      (setf (pane-pointed popup) row)
+      (show-row popup row)
+      t)))
+
+(defun turn-menu (window step)
+  "If a menu of the bar is open in WINDOW, open the one STEP further there. True if so."
+  (let ((place (position (open-opener window) *menus*)))
+    (when place
+      (open-menu-of-bar (pane-named window 'menus)
+                        (nth (mod (+ place step) (length *menus*)) *menus*))
+      t)))
+
+(defun choose-pointed (popup)
+  "Do what the row says that is pointed at in POPUP. True if there is one."
+  (let ((row (pane-pointed popup)))
+    (when (and row (row-action row))
+      (choose-row popup row)
+      t)))
+
+(defun press-in-popup (window name)
+  "Do what the key called NAME does in the menu or list on top of WINDOW. True if anything."
+  (let ((popup (window-popup window)))
+    (when (popup-open-p window)
+      (case name
+        (:down (point-further popup 1))
+        (:up (point-further popup -1))
+        (:right (turn-menu window 1))
+        (:left (turn-menu window -1))
+        ((:return :kp-enter) (choose-pointed popup))))))
+
+(defun open-first-menu (window)
+  "Open the first menu of the bar of WINDOW, or close the one that is open."
+  (unless (menu-p (close-popup window))
+    (open-menu-of-bar (pane-named window 'menus) (first *menus*))
+    (point-further (window-popup window) 1)))

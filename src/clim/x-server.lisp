@@ -1,4 +1,4 @@
-;;;; x-server.lisp -- what goes wrong with the X server, and which of that ends windows.
+;;;; x-server.lisp -- the X server: reaching it, what goes wrong with it, and what ends windows.
 
 (in-package :ars-magna.clim)
 
@@ -109,3 +109,77 @@ reads its events."
     (unwind-protect (multiple-value-prog1 (call-dropping-trouble port #'call-next-method)
                       (setf ended-p nil))
       (when ended-p (note-unread port)))))
+
+;;; Connecting, and what is said if that fails.
+
+;;; If the X server cannot be reached, another value of DISPLAY may help. If it answers and a
+;;; library fails then, only another library does.
+
+(deftype program-fault ()
+  "Errors of a program, not of what it is connected to."
+  '(or type-error cell-error program-error control-error arithmetic-error))
+
+(defun clx-fails-p ()
+  "True if CLX by itself cannot read a long answer of the X server: which keys are down takes 40
+bytes, and CLX reads 32 of them first."
+  (handler-case (let ((display (xlib:open-default-display)))
+                  (unwind-protect (xlib:query-keymap display)
+                    (xlib:close-display display :abort t))
+                  nil)
+    (program-fault () t)
+    (error () nil)))
+
+(defun words-for-fault (condition clx-fails-p)
+  "Return what is said of CONDITION, with which McCLIM fails on an X server that answers: that CLX
+is at fault if CLX-FAILS-P."
+  (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
+          (ars-magna.clx:library-text (if clx-fails-p "CLX" "McCLIM"))
+          (lisp-implementation-version)
+          (environment-value "DISPLAY")
+          (one-line-text condition)
+          (and clx-fails-p ars-magna.clx:*clx-remedy*)))
+
+(defun words-for-no-port (condition)
+  "Return what is said if CONDITION came up when CLIM's port was opened."
+  (typecase condition
+    (program-fault (words-for-fault condition (clx-fails-p)))
+    (xlib:connection-failure
+     (format nil "No display: the X server ~A, which DISPLAY names, refuses the connection (~A)."
+             (environment-value "DISPLAY") (one-line-text condition)))
+    (t (format nil "No display: the X server ~A, which DISPLAY names, does not answer (~A). ~
+                    Start it, or set DISPLAY to another."
+               (environment-value "DISPLAY") (one-line-text condition)))))
+
+(defun window-port ()
+  "Return CLIM's port to the X server. Signals MISUSE if there is none."
+  (unless (or clim:*default-server-path*
+              (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
+    (reject-use "No display: there is no X server; set the environment variable DISPLAY."))
+  (handler-case (clim:find-port)
+    (error (condition) (reject-use "~A" (words-for-no-port condition)))))
+
+;;; Waiting for what the X server says, in several threads of one connection.
+
+;;; A thread that waits for an answer of the X server, or for an event, first looks whether that has
+;;; come. Then CLX lets it read, as the only thread, and wait until there is something. What came in
+;;; between was read by the thread that had its turn before; then the new reader would wait for the
+;;; next event, perhaps for ever: the picture would stand still until the mouse is moved. So it is
+;;; made to look once more, now that nobody else reads.
+
+(defvar *come-p* (constantly nil)
+  "A function that says whether what the X server is read for, in this thread, has come.")
+
+(defun read-for (read display timeout force-output-p come-p &rest arguments)
+  "Do what READ, CLX's function, does with DISPLAY and the other arguments. What it reads for has
+come when COME-P is true of ARGUMENTS."
+  (let* ((*come-p* (lambda () (apply come-p arguments)))
+         (end (apply read display timeout force-output-p come-p arguments)))
+    (if (eq end :come) nil end)))
+
+(defun wait-unless-come (wait display timeout)
+  "Do what WAIT, CLX's function, does with DISPLAY and TIMEOUT, but return :COME if what is read for
+has come."
+  (if (funcall *come-p*) :come (funcall wait display timeout)))
+
+(wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-for)
+(wrap-function (find-symbol "BUFFER-INPUT-WAIT" "XLIB") #'wait-unless-come)
