@@ -36,7 +36,7 @@
   "The strip's word for how time goes tells of that one."
   (in-window (window robot)
     (let ((session (window::window-session window)) (thread (base:current-thread)))
-      (setf (window::watcher-progress (window:window-watcher window))
+      (setf (window::watcher-progress (window::window-watcher window))
             (window::make-progress :state :broken))
       (leave-broken session (broken "oh" thread))
       (is (= 1 (occurrences "asks how" (window::time-text window))))
@@ -64,9 +64,9 @@
                              (incf calls)
                              (break "look")))
       (world:move-thing (world:find-thing "BOX#1") (robot:robot-hand robot 0))
-      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window::publish (window::window-watcher window) (time:current-simulation))
       (window::without-debugger
-        (window:refresh window)
+        (window::refresh window)
         (window::repaint (pane window 'window::hands)))
       (is (= 1 calls))
       (is (= 1 (count-if (lambda (message)

@@ -82,7 +82,7 @@
         (let* ((run time:*simulation*) (fork (run:fork-simulation)) (cli:*prompt-robot* 'vole))
           (run:call-in-fork fork (lambda () (window::follow-prompt nil run fork)))
           (is (equal (list 'vole fork) (shown-in second)))
-          (setf (window:watcher-robot (window:window-watcher second)) 'mole)
+          (setf (window::watcher-robot (window::window-watcher second)) 'mole)
           (window::follow-prompt nil fork run)
           (is (equal (list 'vole run) (shown-in second)))
           (window::agree-on-robot second)

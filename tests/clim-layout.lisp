@@ -112,7 +112,7 @@
 
 (defun lay-out (window width height)
   (clim:layout-frame window width height)
-  (window:refresh window))
+  (window::refresh window))
 
 (test layout.titles-fold-displays
   (in-window (window robot)
@@ -177,8 +177,8 @@
      (lambda (window)
        (flet ((show (name)
                 (window::show-robot-called window name (time:current-simulation))
-                (window::publish (window:window-watcher window) (time:current-simulation))
-                (window:refresh window)
+                (window::publish (window::window-watcher window) (time:current-simulation))
+                (window::refresh window)
                 (high-as-needed-p window)))
          (lay-out window 1180 900)
          (is (show 'ars-worlds:gofer))
@@ -195,14 +195,14 @@
     (lay-out window 1180 900)
     (is (high-as-needed-p window))
     (world:move-thing (world:find-thing "PEN#2") (robot:robot-storage-bin robot 0))
-    (window::publish (window:window-watcher window) (time:current-simulation))
-    (window:refresh window)
+    (window::publish (window::window-watcher window) (time:current-simulation))
+    (window::refresh window)
     (is (high-as-needed-p window))))
 
 (defun publish-and-refresh (window)
   "Let WINDOW show how its run is now."
-  (window::publish (window:window-watcher window) (time:current-simulation))
-  (window:refresh window))
+  (window::publish (window::window-watcher window) (time:current-simulation))
+  (window::refresh window))
 
 (defun title-tops (window)
   "Return where the titles of the column of WINDOW begin, from the top."
@@ -248,8 +248,8 @@ takes all the room that there is."
 (defun show-many-designators (window robot)
   "Let ROBOT have 40 designators; return the pane of WINDOW that shows them."
   (dotimes (count 40) (robot:add-designator robot :x 2 :y 2))
-  (window::publish (window:window-watcher window) (time:current-simulation))
-  (window:refresh window)
+  (window::publish (window::window-watcher window) (time:current-simulation))
+  (window::refresh window)
   (pane window 'window::designators))
 
 (test layout.displays-that-are-too-high-scroll
@@ -305,6 +305,6 @@ takes all the room that there is."
       (window::scroll pane 300)
       (is (= 300 (window::pane-offset pane)))
       (mapc #'robot:drop-designator (robot:live-designators robot))
-      (window::publish (window:window-watcher window) (time:current-simulation))
-      (window:refresh window)
+      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::refresh window)
       (is (= 0 (window::pane-offset pane))))))

@@ -118,7 +118,7 @@
     (let ((ars-magna.rpl-robot:*trace-plans* t))
       (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
       (run:run-ticks 30)
-      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window::publish (window::window-watcher window) (time:current-simulation))
       (let* ((pane (seen-plans window :timeline))
              (page (window::plan-look-page (window::plan-look-of pane)))
              (x (ars-magna.rpl-pictures::place
@@ -209,7 +209,7 @@
                                   (window::interface-of (time:current-simulation))))
       (run:run-ticks 2)
       (run:rewind 3)
-      (window:watch-simulation (window:window-watcher window) (time:current-simulation))
+      (window::watch-simulation (window::window-watcher window) (time:current-simulation))
       (is (trace-lit-p window)))))
 
 (test plan-switches.are-lines-of-the-prompt
@@ -230,7 +230,7 @@
     (call-with-open-window
      (lambda (window)
        (let ((run (time:current-simulation)) (fork (run:fork-simulation))
-             (watcher (window:window-watcher window)))
+             (watcher (window::window-watcher window)))
          (window::follow-prompt nil nil run)
          (run:call-in-fork
           fork
@@ -240,7 +240,7 @@
             (run:run-ticks 5)
             (window::follow-prompt nil fork fork)
             (is (= (run:simulation-tick fork)
-                   (display:snapshot-tick (window:watcher-snapshot watcher))))))
+                   (display:snapshot-tick (window::watcher-snapshot watcher))))))
          (window::follow-prompt nil fork run)
          (is (eq run (window::watcher-simulation watcher)))))
      robot)))
@@ -251,7 +251,7 @@
     (call-with-open-window
      (lambda (window)
        (let ((run (time:current-simulation)) (fork (run:fork-simulation))
-             (watcher (window:window-watcher window)))
+             (watcher (window::window-watcher window)))
          (setf (run:simulation-journal fork) nil)
          (window::follow-prompt nil nil run)
          (run:call-in-fork
@@ -284,7 +284,7 @@
        (setf (window::conversation-thread (window::window-conversation window)) t)
        (let ((run (time:current-simulation)) (fork (run:fork-simulation)))
          (run:call-in-fork fork (lambda () (window::follow-prompt nil run fork)))
-         (is (eq run (window::watcher-simulation (window:window-watcher window))))))
+         (is (eq run (window::watcher-simulation (window::window-watcher window))))))
      robot)))
 
 (test following.buttons-are-lines-where-the-prompt-lets-ticks-pass

@@ -33,14 +33,14 @@
 (test pointing.the-strip-tells-of-what-is-under-a-resting-mouse-now
   "What was there moves away; the view moves."
   (in-window (window robot)
-    (window:refresh window)
+    (window::refresh window)
     (let ((pane (painted-world window)))
       (flet ((told-p (name) (mentions-p (window::window-hint window) name)))
         (window::hover pane 28 36)
         (is (told-p "BOX#1"))
         (world:move-thing (world:find-thing "BOX#1") (list 15.5 2.5))
-        (window::publish (window:window-watcher window) (time:current-simulation))
-        (window:refresh window)
+        (window::publish (window::window-watcher window) (time:current-simulation))
+        (window::refresh window)
         (is (told-p "Cell 3, 4"))
         (is (not (told-p "BOX#1")))
         (window::zoom pane 2)
@@ -54,7 +54,7 @@
 
 (test strip.what-is-too-long-is-told-by-a-click
   (in-window (window robot)
-    (setf (window::watcher-progress (window:window-watcher window))
+    (setf (window::watcher-progress (window::window-watcher window))
           (window::make-progress :state :busy :more (make-string 300 :initial-element #\x)))
     (window::click (pane window 'window::strip) :left 5 5)
     (is (mentions-p (remove #\Newline (said-in window)) (make-string 300 :initial-element #\x)))))
@@ -62,8 +62,8 @@
 (defun robot-beneath (window thing-spot)
   "Let the robot of WINDOW stand at THING-SPOT; return its display of the world, painted."
   (apply #'robot:place-robot (first (run:simulation-robots)) (append thing-spot '(0)))
-  (window::publish (window:window-watcher window) (time:current-simulation))
-  (window:refresh window)
+  (window::publish (window::window-watcher window) (time:current-simulation))
+  (window::refresh window)
   (painted-world window))
 
 (test pointing.a-drag-at-its-middle-takes-a-robot-that-stands-on-a-thing
@@ -206,7 +206,7 @@ leads to both."
   "A hand grasps only what a local designator denotes."
   (in-window (window robot)
     (robot:place-robot robot 3.1 4.5 0)
-    (window::publish (window:window-watcher window) (time:current-simulation))
+    (window::publish (window::window-watcher window) (time:current-simulation))
     (let ((rows (offered (painted-world window) 28 36)))
       (is (find "obj-desig 0 local ((:color red))" rows :test #'search) "~A" rows)
       (is (not (find "non-local" rows :test #'search))))))
@@ -215,7 +215,7 @@ leads to both."
   "What was painted is an image of a moment that is over; the robot is still the one commanded."
   (in-window (window robot)
     (let ((before (window::window-robot window)))
-      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window::publish (window::window-watcher window) (time:current-simulation))
       (is (not (eq before (window::window-robot window))))
       (is (member '("Stop" "stop") (window::offers before window) :test #'equal))
       (is (equal "pos 3 4" (window::carrying-line before "3" "4" window))))))
@@ -226,7 +226,7 @@ leads to both."
     (let ((number (robot:designator-number
                    (robot:add-designator robot :denotation (world:find-thing "BOX#1")
                                                :x 1 :y 0))))
-      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window::publish (window::window-watcher window) (time:current-simulation))
       (is (find (format nil "cam-track 0 ~D" number) (offered (painted-world window) 28 36)
                 :test #'search)))))
 
@@ -250,7 +250,7 @@ leads to both."
   (in-window (window robot)
     (robot:place-robot robot 3.5 4.5 0)
     (world:make-new-thing 'ars-user::lid (list (robot:robot-world robot) 3.5 4.5) '((:size 1)))
-    (window::publish (window:window-watcher window) (time:current-simulation))
+    (window::publish (window::window-watcher window) (time:current-simulation))
     (let ((pane (painted-world window)))
       (dolist (name '("LID" "BOX#1" "STUDIO-ROBOT" "Cell 3, 4"))
         (is (mentions-p (window::hover-text pane 28 36) name)))

@@ -67,7 +67,7 @@
 (test watcher.tells-of-a-scale-that-was-set
   (in-studio (robot)
     (let* ((count 0)
-           (watcher (window:make-watcher 'studio-robot (lambda () (incf count)))))
+           (watcher (window::make-watcher 'studio-robot (lambda () (incf count)))))
       (window::look-at-scale watcher)
       (is (= 0 count))
       (let ((canvas:graphics-scale* 13))

@@ -361,15 +361,15 @@
   (in-window (window robot)
     (let ((cli:*prompt-robot* 'somebody))
       (window::agree-on-robot window)
-      (is (eq 'somebody (window:watcher-robot (window:window-watcher window))))
+      (is (eq 'somebody (window::watcher-robot (window::window-watcher window))))
       (is (mentions-p (clim:frame-pretty-name window) "SOMEBODY")))))
 
 (test window.says-why-it-closes-when-its-run-is-over
   (let ((reasons '()))
     (in-studio (robot)
-      (let ((watcher (window:make-watcher 'studio-robot (constantly nil)
+      (let ((watcher (window::make-watcher 'studio-robot (constantly nil)
                                           (lambda (reason) (push reason reasons)))))
-        (window:watch-simulation watcher (time:current-simulation))
+        (window::watch-simulation watcher (time:current-simulation))
         (window::look-whether-over watcher)
         (run:end-simulation (time:current-simulation) "enough")
         (window::look-whether-over watcher)

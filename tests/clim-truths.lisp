@@ -15,7 +15,7 @@
     (cli::call-among-sessions session (lambda () (funcall function visit)))))
 
 (defun time-said (window)
-  (window::look-at-progress (window:window-watcher window))
+  (window::look-at-progress (window::window-watcher window))
   (window::time-text window))
 
 (test trials.strip-and-button-say-how-time-passes
@@ -66,7 +66,7 @@
     (let ((fork (run:fork-simulation)))
       (run:keep-forks t fork)
       (run:run-ticks 2 fork)
-      (window::watch-simulation (window:window-watcher window) fork)
+      (window::watch-simulation (window::window-watcher window) fork)
       (window::do-key window nil #\B)
       (is (equal '("rewind 2") (lines-given window))))))
 
@@ -103,7 +103,7 @@
       (setf (cli:drawn-line-shown (cli:console-line console))
             (list "Robot> " (format nil "turn 1~%turn 2~%turn 3~%turn 4") 0))
       (is (= 5 (window::rows-wanted interactor)))
-      (window:refresh window)
+      (window::refresh window)
       (is (= (+ before (* 3 canvas::+line-height+))
              (nth-value 1 (window::pane-size interactor)))))))
 
@@ -156,7 +156,7 @@
 (defun stops-seen (window task ticks)
   "Let TICKS pass while TASK is stepped; return lists of what the display of plans in WINDOW says at
 each stop that the task is at, and of what tick that is, and of the tick."
-  (let ((stops '()) (look (window::watcher-plans (window:window-watcher window))))
+  (let ((stops '()) (look (window::watcher-plans (window::window-watcher window))))
     (ars-magna.rpl.seeing:step-task task)
     (flet ((answer (condition hook)
              (declare (ignore condition hook))
@@ -193,7 +193,7 @@ each stop that the task is at, and of what tick that is, and of the tick."
        (run:run-ticks 3)
        (let* ((simulation (time:current-simulation))
               (interface (window::interface-of simulation))
-              (look (window::watcher-plans (window:window-watcher window))))
+              (look (window::watcher-plans (window::window-watcher window))))
          (ars-magna.rpl-robot::call-holding
           (lambda () (mapc #'funcall cli:*break-hooks*)) interface)
          (is (equal "(wait-time 3)"

@@ -54,7 +54,7 @@
                    (is (<= (window::pane-left pane) (- left)))
                    (is (<= (window::pane-top pane) (- top)))
                    (is (<= bottom (- room low))))))
-      (setf (window:window-layers window) '())
+      (setf (window::window-layers window) '())
       (is (equal '(0 0 0) (window::pane-edges pane))))))
 
 (test view.has-nothing-below-its-numbers
@@ -79,29 +79,29 @@
       (window::zoom pane 4)
       (window::com-follow)
       (robot:place-robot robot 17.5 8.5 0)
-      (window::publish (window:window-watcher window) (time:current-simulation))
-      (window:refresh window)
+      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::refresh window)
       (is (not (window::off-centre-p pane)))
       (window::com-follow)
       (robot:place-robot robot 2.5 2.5 0)
-      (window::publish (window:window-watcher window) (time:current-simulation))
-      (window:refresh window)
+      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::refresh window)
       (is (window::off-centre-p pane)))))
 
 (test view.shows-the-scale-that-the-user-sets
   (in-window (window robot)
     (lay-out window 800 600)
     (let ((canvas:graphics-scale* 11))
-      (window:refresh window)
+      (window::refresh window)
       (is (= 11 (window::pane-scale (pane window 'window::world)))))))
 
 (test view.outlives-a-scale-that-is-none
   (in-window (window robot)
     (lay-out window 800 600)
-    (window:refresh window)
+    (window::refresh window)
     (let ((before (window::pane-scale (pane window 'window::world))))
       (dolist (canvas:graphics-scale* '(0 -3 "x" nil 1000))
-        (window:refresh window)
+        (window::refresh window)
         (is (= before (window::pane-scale (pane window 'window::world))))))))
 
 (test canvas.outlines-of-arcs-stay-in-their-box
@@ -111,7 +111,7 @@
 
 (test canvas.has-the-dashes-that-are-asked-for
   (flet ((dashes-of (magnification &rest options)
-           (let ((canvas (make-instance 'window:clim-canvas :medium nil
+           (let ((canvas (make-instance 'window::clim-canvas :medium nil
                                                             :magnification magnification)))
              (apply #'canvas::call-with-gcontext
                     (lambda () (window::dashes canvas canvas:draw-gcontext*))

@@ -10,15 +10,15 @@
 
 (defun call-with-window (function robot)
   "Call FUNCTION with a window of ROBOT, adopted by the null port but not running."
-  (let* ((watcher (window:make-watcher (robot:robot-name robot) (constantly nil)))
+  (let* ((watcher (window::make-watcher (robot:robot-name robot) (constantly nil)))
          (port (clim:find-port :server-path '(:null)))
          (manager (clim:find-frame-manager :port port)))
-    (window:watch-simulation watcher (run:robot-simulation robot))
-    (let ((window (window:make-robot-window watcher :frame-manager manager)))
+    (window::watch-simulation watcher (run:robot-simulation robot))
+    (let ((window (window::make-robot-window watcher :frame-manager manager)))
       (clim:adopt-frame manager window)
       (unwind-protect
            (let ((clim:*application-frame* window)) (funcall function window))
-        (window:stop-watching watcher)
+        (window::stop-watching watcher)
         (clim:disown-frame manager window)))))
 
 (defmacro in-window ((window robot) &body body)
@@ -52,7 +52,7 @@
           (window::pane-scale pane) 8
           (window::pane-left pane) 0
           (window::pane-top pane) 0
-          (window:window-layers window) (set-difference (window:window-layers window)
+          (window::window-layers window) (set-difference (window::window-layers window)
                                                         '(:coordinates :scale-bar)))
     (window::repaint pane)
     pane))
@@ -61,7 +61,7 @@
   (in-window (window robot)
     (let ((subjects (window::pane-subjects (painted-world window))))
       (flet ((title-at (x y)
-               (let ((subject (window:subject-at subjects x y)))
+               (let ((subject (window::subject-at subjects x y)))
                  (and subject (canvas:subject-title subject)))))
         (is (equal "BOX#1" (title-at 28 36)))
         (is (equal "PEN#2" (title-at 44 36)))
@@ -88,8 +88,8 @@
   (in-window (window robot)
     (dotimes (count 40) (robot:add-designator robot :x 2 :y 2))
     (let ((pane (pane window 'window::designators)))
-      (window::publish (window:window-watcher window) (time:current-simulation))
-      (window:refresh window)
+      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::refresh window)
       (is (= 0 (window::pane-offset pane)))
       (press pane clim:+pointer-left-button+)
       (press pane clim:+pointer-left-button+)
@@ -128,15 +128,15 @@
 
 (test window.paints-only-what-has-changed
   (in-window (window robot)
-    (window:refresh window)
-    (window:refresh window)
+    (window::refresh window)
+    (window::refresh window)
     (let ((before (painted-contents window)))
-      (window::publish (window:window-watcher window) (time:current-simulation))
-      (window:refresh window)
+      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::refresh window)
       (is (null (panes-changed before (painted-contents window))))
       (robot:place-robot robot 7.5 6.5 0)
-      (window::publish (window:window-watcher window) (time:current-simulation))
-      (window:refresh window)
+      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::refresh window)
       (is (equal '(window::world window::state)
                  (panes-changed before (painted-contents window)))))))
 
@@ -145,17 +145,17 @@
 (test watcher.makes-snapshots-only-when-one-is-wanted
   (in-studio (robot)
     (let* ((count 0)
-           (watcher (window:make-watcher 'studio-robot (lambda () (incf count)))))
-      (window:watch-simulation watcher (time:current-simulation))
+           (watcher (window::make-watcher 'studio-robot (lambda () (incf count)))))
+      (window::watch-simulation watcher (time:current-simulation))
       (is (= 1 count))
       (run:run-ticks 10)
       (is (= 1 count))
-      (is (= 0 (display:snapshot-tick (window:watcher-snapshot watcher))))
+      (is (= 0 (display:snapshot-tick (window::watcher-snapshot watcher))))
       (setf (window::watcher-wanted-p watcher) t)
       (run:run-ticks 10)
       (is (= 2 count))
-      (is (= 11 (display:snapshot-tick (window:watcher-snapshot watcher))))
-      (window:stop-watching watcher)
+      (is (= 11 (display:snapshot-tick (window::watcher-snapshot watcher))))
+      (window::stop-watching watcher)
       (setf (window::watcher-wanted-p watcher) t)
       (run:run-ticks 1)
       (is (= 2 count)))))
@@ -165,22 +165,22 @@
   (in-studio (robot)
     (let* ((simulation (time:current-simulation))
            (news (base:make-semaphore "news"))
-           (watcher (window:make-watcher 'studio-robot
+           (watcher (window::make-watcher 'studio-robot
                                          (lambda () (base:signal-semaphore news)))))
       (run:start-clock simulation)
       (unwind-protect
            (progn
-             (window:start-watching watcher simulation)
+             (window::start-watching watcher simulation)
              (is (base:wait-on-semaphore news 20))
-             (window:painted watcher)
+             (window::painted watcher)
              (robot:place-robot robot 2.5 2.5 0)
              ;; Other news, such as that time stands still, may come before.
              (is (loop while (base:wait-on-semaphore news 20)
                        thereis (= 2.5d0 (display:robot-image-x
                                          (display:snapshot-robot
-                                          (window:watcher-snapshot watcher)
+                                          (window::watcher-snapshot watcher)
                                           'studio-robot))))))
-        (window:stop-watching watcher)
+        (window::stop-watching watcher)
         (run:stop-clock simulation)))))
 
 ;;; The transcript.
@@ -215,15 +215,15 @@
 (test window.layers-and-colours-can-be-switched
   "The panel has a row for each layer that there is."
   (in-window (window robot)
-    (let ((layers (window:window-layers window)))
+    (let ((layers (window::window-layers window)))
       (loop for layer in (remove :legend (remove :title (display:picture-layers)))
             for row in (window::layer-rows window)
             do (let ((ticked-p (window::row-ticked-p row)))
-                 (is (eq ticked-p (and (member layer (window:window-layers window)) t)))
+                 (is (eq ticked-p (and (member layer (window::window-layers window)) t)))
                  (funcall (window::row-action row))
                  (is (not (eq ticked-p (window::row-ticked-p row))))
                  (funcall (window::row-action row))))
-      (is (null (set-exclusive-or layers (window:window-layers window))))
+      (is (null (set-exclusive-or layers (window::window-layers window))))
       (window::com-color)
       (is (not (window::window-color-p window))))))
 
@@ -257,17 +257,17 @@
            (clim:*default-server-path* '(:null)))
       (run:start-clock simulation :rate :free)
       (unwind-protect
-           (let ((window (window:open-window robot)))
-             (is (eq window (window:open-window robot)))
-             (is (eq window (window:find-window 'studio-robot)))
-             (window:close-window window)
+           (let ((window (window::open-window robot)))
+             (is (eq window (window::open-window robot)))
+             (is (eq window (window::find-window 'studio-robot)))
+             (window::close-window window)
              (base:join-thread (window::window-thread window))
              (base:join-thread (window::conversation-thread
                                 (window::window-conversation window)))
              ;; The next tick takes the observers of both away.
              (command:robot-turn robot 1 nil)
              (run:await-idle simulation 20)
-             (is (null (window:find-window 'studio-robot)))
+             (is (null (window::find-window 'studio-robot)))
              (is (eq :disowned (clim:frame-state window)))
              (is (time:live-p simulation))
              ;; The history goes on.
@@ -279,14 +279,14 @@
   (in-studio (robot)
     (let ((old (time:current-simulation))
           (new (run:fork-simulation))
-          (watcher (window:make-watcher 'studio-robot (constantly nil)))
+          (watcher (window::make-watcher 'studio-robot (constantly nil)))
           (meanwhile '()))
-      (window:watch-simulation watcher old)
+      (window::watch-simulation watcher old)
       (host:wrap-function 'window::leave-simulation
                           (lambda (leave &rest arguments)
                             (push (window::watcher-simulation watcher) meanwhile)
                             (apply leave arguments))
                           'test)
-      (unwind-protect (window:watch-simulation watcher new)
+      (unwind-protect (window::watch-simulation watcher new)
         (host:unwrap-function 'window::leave-simulation 'test))
       (is (equal (list new) meanwhile)))))

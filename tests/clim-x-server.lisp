@@ -37,7 +37,7 @@
        (skip "Xvfb is not installed: what is on the window's screen is not tested.")))
 
 (defun end-window (window)
-  (window:close-window window)
+  (window::close-window window)
   (base:join-thread (window::window-thread window)))
 
 (defmacro in-x-window ((window robot) &body body)
@@ -46,7 +46,7 @@
      (in-studio (,robot)
        (run:start-clock (time:current-simulation) :rate :free)
        (unwind-protect
-            (let ((,window (window:open-window ,robot)))
+            (let ((,window (window::open-window ,robot)))
               (unwind-protect (progn (await-window ,window) ,@body)
                 (end-window ,window)))
          (run:stop-clock (time:current-simulation))))))
@@ -74,7 +74,7 @@
   "Return the pixels of the pane of WINDOW called NAME, four bytes each, and its width."
   (let ((pane (pane window name)) (size nil) (corner nil))
     (inside (window)
-      (window:refresh window)
+      (window::refresh window)
       (setf size (multiple-value-list (window::pane-size pane))
             corner (multiple-value-list (client:corner-of pane)))
       (clim:medium-finish-output (clim:sheet-medium pane)))
@@ -98,7 +98,7 @@
     (inside (window) (lay-out window 1180 820))
     (flet ((look ()
              (time:asking (robot)
-               (window::publish (window:window-watcher window) (time:current-simulation)))
+               (window::publish (window::window-watcher window) (time:current-simulation)))
              (shown-on-screen window 'window::designators)))
       (let ((before (look)))
         (time:asking (robot) (dotimes (count 40) (robot:add-designator robot :x 2 :y 2)))
@@ -188,7 +188,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
   "It may be an icon, or lie below others."
   (in-x-window (window robot)
     (hide-from-outside window)
-    (is (eq window (window:open-window robot)))
+    (is (eq window (window::open-window robot)))
     (inside (window) (clim:medium-finish-output (clim:sheet-medium (pane window 'window::world))))
     (is (eq :viewable (call-as-other-client #'xlib:window-map-state window)))))
 
@@ -227,13 +227,13 @@ server blackens what is resized, and has it painted by what it sends to the wind
           (mapc #'turn-over-and-over (run:simulation-robots simulation))
           (unwind-protect
                (destructuring-bind (one other) (run:simulation-robots simulation)
-                 (setf window (window:open-window one))
+                 (setf window (window::open-window one))
                  (await-window window)
                  (dotimes (count 12)
-                   (let ((second (window:open-window other)))
+                   (let ((second (window::open-window other)))
                      (await-window second)
                      (end-window second)))
-                 (is (eq window (window:find-window (robot:robot-name one)))))
+                 (is (eq window (window::find-window (robot:robot-name one)))))
             (end-window window)
             (run:stop-clock simulation)))))))
 
@@ -247,10 +247,10 @@ server blackens what is resized, and has it painted by what it sends to the wind
            (dotimes (count 10)
              (let (window)
                (with-x-server ()
-                 (setf window (window:open-window robot))
+                 (setf window (window::open-window robot))
                  (await-window window))
                (base:join-thread (window::window-thread window))
-               (is (null (window:find-window 'studio-robot)))
+               (is (null (window::find-window 'studio-robot)))
                (is (time:live-p simulation))
                (is (< tick (setf tick (run:simulation-tick simulation))))))
         (run:stop-clock simulation)))))
@@ -264,7 +264,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
       (unwind-protect
            (progn
              (with-x-server ()
-               (setf window (window:open-window robot))
+               (setf window (window::open-window robot))
                (await-window window)
                (window::give-line (window::window-conversation window)
                                   (format nil "(progn (ars-magna.base:signal-semaphore ~
@@ -352,7 +352,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
     (resize-from-outside window 700 500)
     (is (equal '(700 500) (inside (window) (window-size window))))))
 
-;;; Two threads wait for the X server on one connection; see replies.lisp.
+;;; Two threads wait for the X server on one connection; see x-server.lisp.
 
 (test replies.who-may-read-does-not-wait-for-what-has-come-meanwhile
   "Another thread reads the answer after we have looked for it and before we may read."

@@ -2,13 +2,12 @@
 
 (in-package :ars-magna.clim)
 
-(export '(clim-canvas canvas-subjects subject-at))
-
 ;;; It remembers in which boxes the subjects were drawn, so that a click finds them. Arcs that are
 ;;; not whole are drawn as lines, because CLIM counts angles in its own way.
 
 (defclass clim-canvas (canvas)
   ((medium :initarg :medium :reader canvas-medium)
+   ;; What was drawn where, as far as it is seen: lists (subject left top right bottom).
    (subjects :initform '() :accessor canvas-subjects)
    ;; The box drawn in so far, or NIL outside of subjects.
    (reach :initform nil :accessor canvas-reach)
@@ -21,9 +20,6 @@
    (dx :initform 0 :accessor canvas-dx)
    (dy :initform 0 :accessor canvas-dy))
   (:documentation "A canvas that paints on a medium of CLIM."))
-
-(setf (documentation 'canvas-subjects 'function)
-      "Return what was drawn where, as far as it is seen: a list (subject left top right bottom).")
 
 (defvar *inks* (make-hash-table :synchronized t) "From colours to CLIM's, as far as used.")
 

@@ -2,17 +2,12 @@
 
 (in-package :ars-magna.clim)
 
-(export '(robot-window window-watcher window-layers))
-
-(defmacro define-window-command ((name title) (window) documentation &body body)
-  "Define a command without arguments that the menus call TITLE. Trouble in BODY is reported."
-  `(progn
-     (clim:define-command (,name :command-table robot-window :name ,title) ()
-       ,documentation
-       (let ((,window clim:*application-frame*))
-         (declare (ignorable ,window))
-         (with-guarded-command (,window ,title) ,@body)))
-     (setf (documentation ',name 'function) ,documentation)))
+(defmacro define-window-command ((name title) (window) &body body)
+  "Define NAME, a function without arguments, as what the menus call TITLE. Trouble in BODY is said
+in the window."
+  `(defun ,name ()
+     (let ((,window clim:*application-frame*))
+       (with-guarded-command (,window ,title) ,@body))))
 
 ;;; Running. In a fork or trial, which is not live, it is the prompt that lets ticks pass.
 
@@ -24,30 +19,25 @@
         (give-line (window-conversation window) line))))
 
 (define-window-command (com-pause "Pause") (window)
-    "Let time stand still."
   (steer window #'pause "pause"))
 
 (define-window-command (com-resume "Resume") (window)
-    "Let time go on."
   (steer window #'resume "resume"))
 
 (define-window-command (com-pause-or-resume "Pause or go on") (window)
-    "Let time stand still, or go on."
   (if (paused-here-p (window-simulation window)) (com-resume) (com-pause)))
 
 (define-constant +back+ 10 :documentation "How many ticks a step back is.")
 
+;; It goes back some ticks, as the prompt's REWIND does, or to the first that there is.
 ;; Ticks that pass would undo it at once, so they do not, as after a step.
 (define-window-command (com-back "Go back") (window)
-    "Pause, and go back some ticks, as the prompt's REWIND does, or to the first that there is to go
-back to."
   (let ((simulation (window-simulation window)))
     (when (live-p simulation) (pause simulation))
     (let ((passed (- (simulation-tick simulation) (or (earliest-tick simulation) 0))))
       (give-line (window-conversation window) (format nil "rewind ~D" (min +back+ passed))))))
 
 (define-window-command (com-step "Step") (window)
-    "Pass one tick and pause; none while the tick that is under way has broken."
   (if (ars-magna.cli:simulator-broken-p (window-session window))
       (tell-to-answer (window-conversation window) "Step")
       (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
@@ -72,45 +62,35 @@ back to."
         (let-rate-be window (clamp (* (or rate 1) factor) 1/8 100000)))))
 
 (define-window-command (com-faster "Twice as fast") (window)
-    "Double the rate of ticks."
   (change-rate window 2))
 
 (define-window-command (com-slower "Half as fast") (window)
-    "Halve the rate of ticks."
   (change-rate window 1/2))
 
 (define-window-command (com-default-rate "Default rate") (window)
-    "Set the rate of ticks to the default."
   (let-rate-be window *default-rate*))
 
 (define-window-command (com-free "As fast as possible") (window)
-    "Let ticks pass as fast as they can."
   (let-rate-be window :free))
 
 (define-window-command (com-interrupt "Interrupt") (window)
-    "End the line that is under way, as control-C does."
   (interrupt-conversation (window-conversation window)))
 
 (define-window-command (com-copy "Copy") (window)
-    "Copy what is selected in the transcript, or all of it."
   (copy-text window))
 
 (define-window-command (com-paste "Paste") (window)
-    "Paste what has been copied where one types."
   (paste-text window :clipboard))
 
 (define-window-command (com-close "Close window") (window)
-    "Close the window. The simulator goes on."
   (clim:frame-exit window))
 
 ;;; The view.
 
 (define-window-command (com-zoom-in "Zoom in") (window)
-    "Show the world twice as large."
   (zoom-window window 2))
 
 (define-window-command (com-zoom-out "Zoom out") (window)
-    "Show the world half as large."
   (zoom-window window 1/2))
 
 (defun zoom-window (window factor)
@@ -119,15 +99,12 @@ back to."
       (zoom pane factor (floor width 2) (floor height 2)))))
 
 (define-window-command (com-fit "Whole map") (window)
-    "Zoom so that the whole map is in view."
   (fit (pane-named window 'world)))
 
 (define-window-command (com-find "Go to the robot") (window)
-    "Bring the robot into the middle of the view."
   (show-robot (pane-named window 'world)))
 
 (define-window-command (com-follow "Follow the robot") (window)
-    "Keep the robot in view, or no longer."
   (let ((pane (pane-named window 'world)))
     (setf (pane-following-p pane) (not (pane-following-p pane)))
     (when (and (pane-following-p pane) (pane-fitting-p pane))
@@ -135,15 +112,12 @@ back to."
     (refresh window)))
 
 (define-window-command (com-larger "All larger") (window)
-    "Show all in the window larger, letters and lines, too."
   (magnify window (1+ (window-magnification window))))
 
 (define-window-command (com-smaller "All smaller") (window)
-    "Show all in the window smaller."
   (magnify window (1- (window-magnification window))))
 
 (define-window-command (com-color "Colours on or off") (window)
-    "Switch between colours and black and white."
   (switch-color window))
 
 (defun button-left (window command)
@@ -157,15 +131,12 @@ does."
   (open-popup window rows (button-left window opener) (+ +menus-height+ +bar-height+ 2) opener))
 
 (define-window-command (com-layers "Layers") (window)
-    "Choose what the display of the world shows."
   (open-below-bar window (layer-rows window) 'com-layers))
 
 (define-window-command (com-robots "Which robot") (window)
-    "Choose whose details to show and whom to command."
   (open-below-bar window (robot-rows window) 'com-robots))
 
 (define-window-command (com-help "Keys and mouse") (window)
-    "Tell what keys and mouse do."
   (open-below-bar window (help-rows) 'com-help))
 
 ;;; Pictures.
@@ -184,9 +155,7 @@ does."
     (say-in-window window "Saved ~A~%" (native-name file))))
 
 (define-window-command (com-save-svg "Save as SVG") (window)
-    "Save a picture of the displays as SVG."
   (save-window window "svg"))
 
 (define-window-command (com-save-png "Save as PNG") (window)
-    "Save a picture of the displays as PNG."
   (save-window window "png"))

@@ -2,8 +2,6 @@
 
 (in-package :ars-magna.clim)
 
-(export '(open-window close-window find-window))
-
 ;;; Each window has a thread of its own. Whatever goes wrong in it, the loss of the X server
 ;;; included, closes the window with a warning, and nothing else.
 

@@ -2,9 +2,6 @@
 
 (in-package :ars-magna.clim)
 
-(export '(watcher make-watcher start-watching stop-watching watch-simulation watcher-snapshot
-          watcher-robot painted))
-
 ;;; Three threads meet here. The one that runs the ticks calls the observer, which makes a snapshot
 ;;; if one is wanted and else only notes that the last one is stale. The one that paints is told
 ;;; of each snapshot, and says when it has PAINTED. The pacer, in between, wants the next snapshot
@@ -48,11 +45,6 @@ is watched has been over for a while."
   (plans (make-plan-look) :type plan-look :read-only t)
   ;; What GRAPHICS-SCALE* was when that was looked at last.
   (scale graphics-scale*))
-(setf (documentation 'watcher-robot 'function) "Return the name of the robot that is watched."
-      (documentation 'watcher-snapshot 'function) "Return the last snapshot, or NIL."
-      (documentation 'make-watcher 'function)
-      "Return a watcher of the robot called ROBOT that calls NEWS, a function of no arguments, for
-each new snapshot, and GONE, of a string, when what it watches is over, and why.")
 
 (defun traces-of-change (simulation)
   "Return a number that changes whenever a program changes SIMULATION between ticks."

@@ -2,17 +2,14 @@
 
 (in-package :ars-magna.clim)
 
-(export '(make-robot-window refresh))
-
 ;;; A new snapshot, or a new line of the transcript, queues one event, however many come before it
 ;;; is handled; handling it paints the panes that have changed, as one picture. Everything in the
 ;;; window happens in its own thread.
 
 (clim:define-application-frame robot-window ()
-  ((watcher :initarg :watcher :accessor window-watcher
-            :documentation "The watcher that supplies the window's snapshots.")
-   (layers :initarg :layers :initform *picture-layers* :accessor window-layers
-           :documentation "Which layers the window's display of the world shows.")
+  ((watcher :initarg :watcher :accessor window-watcher)
+   ;; Which layers its display of the world shows.
+   (layers :initarg :layers :initform *picture-layers* :accessor window-layers)
    (color-p :initarg :color-p :initform t :accessor window-color-p)
    ;; How many of the screen's pixels one of its own is across, if its user wants nothing else.
    (usual-magnification :initarg :usual-magnification :initform 1
@@ -47,7 +44,6 @@
    (painted :initform nil :accessor window-painted)
    (thread :initform nil :accessor window-thread))
   (:menu-bar nil)
-  (:command-table (robot-window))
   (:panes
    (menus (clim:make-pane 'menu-pane :name 'menus))
    (bar (clim:make-pane 'bar-pane :name 'bar))
@@ -77,11 +73,6 @@
                                                    collect (clim:make-pane 'splitter-pane
                                                                            :name name)))))))
   (:documentation "The displays of a robot in a window."))
-
-(setf (documentation 'window-layers 'function)
-      "Return which layers the window's display of the world shows. Can be set."
-      (documentation 'window-watcher 'function)
-      "Return the watcher that supplies the window's snapshots.")
 
 (defun window-title (robot-name &optional place)
   "Return the title of a window that shows the robot ROBOT-NAME, in PLACE if that is given."
@@ -159,7 +150,7 @@ each snapshot."
   (funcall (function-to-call event) (clim:pane-frame sheet)))
 
 (defun call-in-window (function window)
-  "Let the thread of WINDOW call FUNCTION with it, if it is on the screen. Any thread may ask. Return
+  "Let WINDOW's thread call FUNCTION with it, if it is on the screen. Any thread may ask. Return
 nothing."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (when sheet

@@ -75,7 +75,7 @@ numbers of the rows cover them."
 
 (defun paint-frames (count window movers paint)
   "Paint COUNT frames in WINDOW with the function PAINT; wait for the X server to have done so."
-  (let ((watcher (window:window-watcher window)) (pane (world-pane window)))
+  (let ((watcher (window::window-watcher window)) (pane (world-pane window)))
     (loop repeat count
           do (step-movers movers)
              (window::publish watcher (window::window-simulation window))
@@ -187,10 +187,10 @@ them are painted, and how busy processors are."
 
 (defun call-with-shown (function robot)
   "Call FUNCTION with a window that shows ROBOT."
-  (let ((window (window:open-window robot)))
+  (let ((window (window::open-window robot)))
     (place-window window)
     (unwind-protect (funcall function window)
-      (window:close-window window)
+      (window::close-window window)
       (base:join-thread (window::window-thread window)))))
 
 (defun say-painting (window movers)
