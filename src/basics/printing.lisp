@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(call-printing-plainly printing-plainly printing-words))
+(export '(call-printing-plainly printing-plainly printing-words print-named))
 
 ;;; *PRINT-BASE* and its kin are the user's, and for what he reads at his REPL. Whoever writes data,
 ;;; a table, a picture, JSON, is not to follow them.
@@ -21,6 +21,12 @@ Return its values."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
      (call-printing-plainly #'body)))
+
+(defun print-named (object stream name &optional (whole name))
+  "Print OBJECT to STREAM: for PRINC as NAME, a symbol or string, else unreadably as WHOLE."
+  (if (or *print-escape* *print-readably*)
+      (print-unreadable-object (object stream) (princ whole stream))
+      (princ name stream)))
 
 ;;; So does what the simulator says to people: its numbers are decimal, its lists whole.
 

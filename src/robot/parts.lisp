@@ -255,11 +255,6 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 ;;; Parts are called by their numbers (manual E).
 
-(defun print-named (object stream name)
-  (if (or *print-escape* *print-readably*)
-      (print-unreadable-object (object stream) (write-string name stream))
-      (write-string name stream)))
-
 (defmethod print-object ((robot robot) stream)
   (print-named robot stream (symbol-name (robot-name robot))))
 

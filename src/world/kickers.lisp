@@ -37,9 +37,7 @@ after a true one" :writable)
   (list :attachment (thing-serial (attachment-thing attachment)) (attachment-name attachment)))
 
 (defmethod print-object ((kicker kicker) stream)
-  (if (or *print-escape* *print-readably*)
-      (print-unreadable-object (kicker stream) (format stream "KICKER ~A" (kicker-name kicker)))
-      (princ (kicker-name kicker) stream)))
+  (print-named kicker stream (kicker-name kicker) (format nil "KICKER ~A" (kicker-name kicker))))
 
 (defmethod reference ((kicker kicker))
   (list :kicker (name-string (kicker-name kicker))))
@@ -48,12 +46,9 @@ after a true one" :writable)
   (kicker-name (attachment-kicker attachment)))
 
 (defmethod print-object ((attachment attachment) stream)
-  (flet ((write-name ()
-           (format stream "kicker ~A of ~A" (attachment-name attachment)
-                   (attachment-thing attachment))))
-    (if (or *print-escape* *print-readably*)
-        (print-unreadable-object (attachment stream) (write-name))
-        (write-name))))
+  (print-named attachment stream
+               (format nil "kicker ~A of ~A" (attachment-name attachment)
+                       (attachment-thing attachment))))
 
 (define-registry kicker "kicker" :object-p kicker-p :by-symbol t)
 

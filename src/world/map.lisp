@@ -82,10 +82,8 @@ asked" :writable :export))
           (map-substances map) (make-array size :element-type '(unsigned-byte 16)))))
 
 (defmethod print-object ((map map) stream)
-  (if (or *print-escape* *print-readably*)
-      (print-unreadable-object (map stream)
-        (format stream "MAP ~A ~Dx~D" (map-name map) (map-width map) (map-height map)))
-      (princ (map-name map) stream)))
+  (print-named map stream (map-name map)
+               (format nil "MAP ~A ~Dx~D" (map-name map) (map-width map) (map-height map))))
 
 (defmethod reference ((map map))
   (list :map (name-string (map-name map))))

@@ -25,9 +25,8 @@ be set. X and Y are the upper left corner of the cell in pixels" :writable :addi
   (key 0 integer :writable))
 
 (defmethod print-object ((type place-type) stream)
-  (if (or *print-escape* *print-readably*)
-      (print-unreadable-object (type stream) (format stream "PLACE-TYPE ~A" (place-type-name type)))
-      (princ (place-type-name type) stream)))
+  (print-named type stream (place-type-name type)
+               (format nil "PLACE-TYPE ~A" (place-type-name type))))
 
 (define-registry place-type "place type" :object-p place-type-p)
 

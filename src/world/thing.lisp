@@ -42,12 +42,9 @@
   (and (thing-world thing) (list :thing (thing-serial thing))))
 
 (defmethod print-object ((thing thing) stream)
-  (let ((name (symbol-name (thing-name thing)))
-        (serial (and (plusp (thing-serial thing)) (thing-serial thing))))
-    (if (or *print-escape* *print-readably*)
-        (print-unreadable-object (thing stream)
-          (format stream "THING ~A~@[#~D~]" name serial))
-        (format stream "~A~@[#~D~]" name serial))))
+  (let ((name (format nil "~A~@[#~D~]" (symbol-name (thing-name thing))
+                      (and (plusp (thing-serial thing)) (thing-serial thing)))))
+    (print-named thing stream name (concatenate 'string "THING " name))))
 
 ;;; Attributes.
 
