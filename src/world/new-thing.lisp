@@ -14,8 +14,8 @@
 (defun resolve-neighbour (thing)
   "Return the world, location and perhaps coordinates where THING is."
   (unless (and (thing-p thing) (thing-location thing))
-    (reject-value 'new-thing "location" (list :with thing)
-                  "(:with thing), a thing that is somewhere"))
+    (reject-argument 'new-thing "location" (list :with thing)
+                     "(:with thing), a thing that is somewhere"))
   (values (thing-world thing) (thing-location thing) (thing-x thing) (thing-y thing)))
 
 (defun resolve-location (location)
@@ -27,8 +27,8 @@ but evaluated, stands for."
         ((and (proper-list-p location) (= 3 (length location)))
          (resolve-position location))
         ((consp location)
-         (reject-value 'new-thing "location" location
-                       "NIL, what holds things, (:with thing) or (map x y)"))
+         (reject-argument 'new-thing "location" location
+                          "NIL, what holds things, (:with thing) or (map x y)"))
         (t (values (check-holder 'new-thing nil location) location))))
 
 (defun check-not-full (location)
@@ -71,7 +71,7 @@ hand that holds something."
 (defun make-thing-again (name location descriptor &rest more)
   "Do as MAKE-NEW-THING does, in the world at hand and in no other."
   (unless (eq *world* (resolve-location location))
-    (reject-value 'make-new-thing "location" location "a location in the world of this run"))
+    (reject-argument 'make-new-thing "location" location "a location in the world of this run"))
   (apply #'call-with-data #'make-new-thing name location descriptor more))
 
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)

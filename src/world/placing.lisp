@@ -112,9 +112,9 @@ WHAT in a run is shown if nobody reads it."
 
 (defun check-inside (operator map x y)
   (unless (and (within-reason-p x) (within-reason-p y) (map-index map x y))
-    (reject-value operator "position" (list x y)
-                  (format nil "a point of ~A, which is ~D by ~D metres"
-                          map (map-width map) (map-height map)))))
+    (reject-argument operator "position" (list x y)
+                     (format nil "a point of ~A, which is ~D by ~D metres"
+                             map (map-width map) (map-height map)))))
 
 (declaim (inline note-move))
 (defun note-move (thing old-location new-location)
@@ -131,8 +131,8 @@ WHAT in a run is shown if nobody reads it."
 (defun check-holder (operator thing holder)
   "Signal unless HOLDER can hold THING (NIL: a new thing); return its world."
   (unless (holder-p holder)
-    (reject-value operator "location" holder
-                  "a container, hand or storage bin, or a position"))
+    (reject-argument operator "location" holder
+                     "a container, hand or storage bin, or a position"))
   (when (and (thing-p holder) (not (thing-alive-p holder)))
     (reject-use "~A has been destroyed." holder))
   (when thing
@@ -145,7 +145,7 @@ WHAT in a run is shown if nobody reads it."
   (location-world holder))
 
 (defun check-movable (operator thing)
-  (unless (thing-p thing) (reject-value operator "thing" thing (argument-type-text 'thing thing)))
+  (check-of-type operator "thing" thing 'thing)
   (unless (thing-world thing)
     (reject-use "~A is a prototype; make things from it with (new-thing ... :prototype)." thing))
   (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing)))

@@ -32,9 +32,9 @@
 (defun write-recipe (operator name descriptor &key prototype contents kickers x y)
   "Return the recipe of a thing NAME: the attributes of the thing PROTOTYPE, if any, overridden by
 DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMENT. See reading 58."
-  (unless (and name (symbolp name)) (reject-value operator "name" name "a symbol"))
+  (unless (and name (symbolp name)) (reject-argument operator "name" name "a symbol"))
   (unless (or (null prototype) (thing-p prototype))
-    (reject-value operator "prototype" prototype "a thing, made by NEW-THING"))
+    (reject-argument operator "prototype" prototype "a thing, made by NEW-THING"))
   (let ((own (normal-descriptor operator descriptor)))
     (make-recipe name
                  (merge-descriptors own (and prototype (thing-attributes prototype)))

@@ -20,8 +20,8 @@
 (defun normal-descriptor (operator descriptor)
   "Return the object descriptor DESCRIPTOR with keywords as names, a copy. Signals WRONG-ARGUMENT."
   (unless (descriptor-p descriptor)
-    (reject-value operator "descriptor" descriptor
-                  "a list of lists (attribute value), each attribute once"))
+    (reject-argument operator "descriptor" descriptor
+                     "a list of lists (attribute value), each attribute once"))
   (loop for (name value) in (given operator "descriptor" descriptor)
         collect (checked-entry operator name value)))
 

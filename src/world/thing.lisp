@@ -48,9 +48,6 @@
 
 ;;; Attributes.
 
-(defun reject-value (operator name value expected)
-  (error 'wrong-argument :operator operator :name name :value value :expected expected))
-
 (defun value-like (value domain)
   "Return the symbol in DOMAIN that VALUE may be a slip for, or NIL."
   (and (symbolp value)
@@ -63,9 +60,9 @@
   "Signal WRONG-ARGUMENT unless a thing's attribute KEY can be VALUE. NIL, for unspecified or
 false, always can."
   (when (quoted-p value)
-    (reject-value operator key value "a value that is not quoted, as it is not evaluated"))
+    (reject-argument operator key value "a value that is not quoted, as it is not evaluated"))
   (let ((attribute (attribute-of key)))
-    (flet ((reject (expected) (reject-value operator key value expected)))
+    (flet ((reject (expected) (reject-argument operator key value expected)))
       (cond ((and (floatp value) (not (finite-p value))) (reject (argument-type-text 'quantity)))
             ((eq key :draw-function)
              (unless (draw-function-p value) (reject (draw-function-words value))))
