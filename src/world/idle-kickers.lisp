@@ -7,11 +7,11 @@
 ;;; All threads that run worlds share kickers. The slots CHECKED-P and TEST-OUTCOME change in one
 ;;; direction only, by single writes, so a race can at most repeat a warning.
 
-(defun in-recipe-p (kicker recipes)
-  "True if RECIPES, or those in them, put KICKER on things."
-  (loop for recipe in recipes
-        thereis (or (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil)))
-                    (in-recipe-p kicker (recipe-contents recipe)))))
+(defun on-map-p (kicker map)
+  "True if MAP puts KICKER on things."
+  (find-recipe (lambda (recipe)
+                 (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil))))
+               (map-things map)))
 
 (defun code-names-p (name package)
   "True if the code of a function whose name is in PACKAGE, or of another kicker, has NAME, that of
@@ -44,7 +44,7 @@ will by any map."
   (let ((kicker (entry-object entry)))
     (unless (or (shiftf (kicker-checked-p kicker) t)
                 (perhaps-used-p entry world)
-                (some (lambda (map) (in-recipe-p kicker (map-things map))) (all-maps)))
+                (some (lambda (map) (on-map-p kicker map)) (all-maps)))
       (warn-once (list :kicker (kicker-name kicker)) world
                  (format nil "No thing has the kicker ~(~A~), so it never ran. Attach it: ~
                               (obj (NAME :kickers (~:*~(~A~))) ...) in the map, or ~

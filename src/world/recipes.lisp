@@ -69,6 +69,14 @@ NIL (reading 63)."
     (dolist (kicker (recipe-kickers recipe)) (attach-by-recipe thing kicker))
     thing))
 
+(defun find-recipe (test recipes)
+  "Return the first of RECIPES, or of those in them, of which TEST returns true; and what it returns."
+  (dolist (recipe recipes)
+    (let ((value (funcall test recipe)))
+      (when value (return (values recipe value))))
+    (multiple-value-bind (inside value) (find-recipe test (recipe-contents recipe))
+      (when inside (return (values inside value))))))
+
 (defun attribute-names (recipes)
   "Return the names, keywords, of all attributes that things made by RECIPES say something of."
   (remove-duplicates

@@ -66,15 +66,11 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
   (and (resembles-p name other)
        (not (string-equal (without-digits name) (without-digits other)))))
 
-(defun name-on-map-p (name recipes)
-  "True if one of RECIPES, or of those in them, is for a thing called NAME, which may be gone."
-  (loop for recipe in recipes
-        thereis (or (same-name-p name (recipe-name recipe))
-                    (name-on-map-p name (recipe-contents recipe)))))
-
 (defun thing-like (name world)
-  "Return the name of a thing of WORLD for which NAME, of none, may be a slip, or NIL."
-  (unless (name-on-map-p name (map-things (world-map world)))
+  "Return the name of a thing of WORLD for which NAME, of none, may be a slip, or NIL, also if one
+that is gone was called so."
+  (unless (find-recipe (lambda (recipe) (same-name-p name (recipe-name recipe)))
+                       (map-things (world-map world)))
     (do-things (thing world)
       (when (may-be-slip-p name (thing-name thing))
         (return-from thing-like (thing-name thing))))))

@@ -84,12 +84,9 @@ map's."
 (defun unfit-recipe (recipes key)
   "Return the first of RECIPES, or of those in them, whose things have a value that KEY cannot have;
 and what is wrong with it."
-  (dolist (recipe recipes)
-    (let* ((value (second (assoc key (recipe-attributes recipe) :test #'eq)))
-           (trouble (value-trouble key value)))
-      (when trouble (return (values recipe trouble))))
-    (multiple-value-bind (inside trouble) (unfit-recipe (recipe-contents recipe) key)
-      (when inside (return (values inside trouble))))))
+  (find-recipe (lambda (recipe)
+                 (value-trouble key (second (assoc key (recipe-attributes recipe) :test #'eq))))
+               recipes))
 
 (defmethod attribute-redefined :before (old new)
   (declare (ignore old new))
