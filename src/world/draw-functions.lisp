@@ -69,14 +69,9 @@ none, a second value says why, and what to do."
 
 ;;; In definitions a descriptor is not evaluated, but for this: (lambda ...), #'name and name.
 
-(defun lambda-form-p (form)
-  (and (proper-list-p form) (symbolp (first form)) (same-name-p (first form) 'lambda)))
-
-(defun function-form-argument (form)
-  "Return NAME or (lambda ...) if FORM is (function NAME) or (function (lambda ...)), or NIL."
-  (and (proper-list-p form) (= 2 (length form)) (symbolp (first form))
-       (same-name-p (first form) 'function)
-       (second form)))
+(defun call-of-p (name form)
+  "True if FORM is a list that begins with a symbol called NAME."
+  (and (proper-list-p form) (symbolp (first form)) (same-name-p (first form) name)))
 
 (defun name-for-lambda (thing-name form)
   "Return a symbol to call the function that FORM makes for things called THING-NAME."
@@ -102,8 +97,8 @@ something, so that it is not the only one of its text, or cannot draw."
 
 (defun draw-function-form (thing-name value)
   "Return a form for VALUE of :draw-function in a definition of the thing THING-NAME."
-  (let ((meant (or (function-form-argument value) value)))
-    (cond ((lambda-form-p meant)
+  (let ((meant (if (and (call-of-p 'function value) (= 2 (length value))) (second value) value)))
+    (cond ((call-of-p 'lambda meant)
            `(draw-function-called ',(name-for-lambda thing-name meant)
                                  (function ,(with-ignorable-arguments meant))))
           ((symbolp meant) `',meant)
@@ -113,12 +108,9 @@ something, so that it is not the only one of its text, or cannot draw."
   "True if VALUE, of the attribute KEY, has code that is to be evaluated."
   (and (consp value) (same-name-p key :draw-function)))
 
-(defun entry-form (thing-name entry)
-  (destructuring-bind (key value) entry
-    (if (code-p key value)
-        `(list ',key ,(draw-function-form thing-name value))
-        `',entry)))
-
 (defun descriptor-form (thing-name descriptor)
   "Return a form for DESCRIPTOR in a definition of the thing THING-NAME."
-  `(list ,@(loop for entry in descriptor collect (entry-form thing-name entry))))
+  `(list ,@(loop for (key value) in descriptor
+                 collect `(list ',key ,(if (code-p key value)
+                                           (draw-function-form thing-name value)
+                                           `',value)))))

@@ -22,12 +22,11 @@
 
 (deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch+)))
 
-(defun make-gaps () (make-array +batch+ :element-type '(unsigned-byte 62) :initial-element 0))
-
 (defstruct (outlook (:constructor make-outlook ()) (:copier nil))
   "What dice will be rolled to next: COUNT of the GAPS. That with the number NEXT is what comes of
 dice in STATE."
-  (gaps (make-gaps) :type gaps :read-only t)
+  (gaps (make-array +batch+ :element-type '(unsigned-byte 62) :initial-element 0)
+   :type gaps :read-only t)
   (count 0 :type batch-count)
   (next 0 :type batch-count)
   (state 0 :type (unsigned-byte 64)))

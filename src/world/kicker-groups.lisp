@@ -285,5 +285,6 @@ See reading 170."
   (check-argument seed-world seed (integerp seed) "an integer")
   (dolist (group (world-kicker-groups world)) (setf (group-quantum group) 0))
   (setf (world-seed world) seed
-        (world-dice-set world) (make-dice-set seed))
+        (world-dice-set world) (cl:map 'simple-vector (lambda (purpose) (make-dice seed purpose))
+                                       +dice-purposes+))
   world)

@@ -162,11 +162,6 @@ or damaged, or that cannot be told."
       (warning-set "The cache " (native-name path) " of map " (map-name map)
                    " cannot be written: " (text-of-condition condition)))))
 
-(defun keepable-p (map)
-  "True if MAP is to be kept, and its places depend on no user code."
-  (and (map-cache map)
-       (notany #'place-type-checker (registry-objects *place-types*))))
-
 (defun cache-path (name)
   "Return the pathname of the cache called NAME, a string or pathname: as seen from the file that
 the definition at hand stands in, or from the current directory if that was typed."
@@ -180,7 +175,9 @@ the definition at hand stands in, or from the current directory if that was type
 
 (defun usable-cache-path (map)
   "Return the file that MAP is to be kept in, if any; not one that holds something else."
-  (let ((path (and (keepable-p map) (map-cache map))))
+  ;; Checkers are users' code, on which places would depend.
+  (let ((path (and (notany #'place-type-checker (registry-objects *place-types*))
+                   (map-cache map))))
     (cond ((null path) nil)
           ((foreign-p path)
            (warning-set "The file " (native-name path)

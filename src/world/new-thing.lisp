@@ -31,12 +31,6 @@ but evaluated, stands for."
                           "NIL, what holds things, (:with thing) or (map x y)"))
         (t (values (check-holder 'new-thing nil location) location))))
 
-(defun check-not-full (location)
-  "Signal MISUSE if nothing can be made in LOCATION."
-  (when (location-full-p location)
-    (reject-use "new-thing: ~A holds ~{~A~^, ~} and nothing else. Let go of that first."
-                (location-name location) (location-contents location))))
-
 ;; What is noted does not depend on what becomes of a prototype, or of a map's name.
 (defun noted-location (location world)
   "Return LOCATION, in WORLD, for MAKE-THING-AGAIN."
@@ -55,7 +49,9 @@ hand that holds something."
   (let ((recipe (write-recipe 'new-thing name descriptor :prototype prototype
                                                          :contents contents :kickers kickers)))
     (multiple-value-bind (world place x y) (resolve-location location)
-      (check-not-full place)
+      (when (location-full-p place)
+        (reject-use "new-thing: ~A holds ~{~A~^, ~} and nothing else. Let go of that first."
+                    (location-name place) (location-contents place)))
       (if world
           (note-slips name descriptor world)
           (warn-of-slips "new-thing" name descriptor))

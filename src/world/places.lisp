@@ -88,16 +88,12 @@ outside (reading 71)."
         (make-defining (and entry (entry-source entry))
                        (list operator (place-type-name type))))))
 
-(defun option-clause (option)
-  "Return the clause for OPTION in the definition at hand, or that alone if it is not known."
-  (let ((rest (member option (defining-form *definition*))))
-    (if rest (subseq rest 0 2) option)))
-
-(defun blame-type (type clause expected)
-  "Signal MALFORMED-DEFINITION about CLAUSE, or an option, of the definition of TYPE."
-  (let ((*definition* (definition-of type)))
-    (reject-clause (format nil "def-place-type ~(~A~)" (place-type-name type))
-                   (if (keywordp clause) (option-clause clause) clause)
+(defun blame-type (type option expected)
+  "Signal MALFORMED-DEFINITION about OPTION of the definition of TYPE."
+  (let* ((*definition* (definition-of type))
+         (rest (member option (defining-form *definition*))))
+    (reject-clause (title "def-place-type" (place-type-name type))
+                   (if rest (subseq rest 0 2) option)
                    expected)))
 
 (defun call-blaming-type (function cell type option)

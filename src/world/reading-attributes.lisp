@@ -64,10 +64,6 @@ run."
                 collect (or (assoc (first entry) new :test #'eq) entry))
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
 
-(defun physical-p (key)
-  "True if a cached slot of things goes by the attribute KEY; see REFRESH-PHYSICS."
-  (member key '(:obsmove :obsview :closed :size :weight :capacity :substance) :test #'eq))
-
 (defun refresh-physics (thing)
   "Make the cached slots of THING agree with its attributes."
   (flet ((number-of (key)

@@ -60,17 +60,20 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
 NIL (reading 63)."
   (let* ((contents (loop for inside in (recipe-contents recipe)
                          collect (follow-recipe inside world)))
-         (thing (%make-thing (recipe-name recipe) (if world (take-serial world) 0) world)))
+         (thing (%make-thing (recipe-name recipe) (if world (world-next-serial world) 0) world)))
     (setf (thing-contents thing) contents
           (thing-attributes thing) (recipe-attributes recipe))
     (dolist (inside contents) (setf (thing-location inside) thing))
     (refresh-physics thing)
-    (when world (add-thing thing world))
+    (when world
+      (incf (world-next-serial world))
+      (incf (world-live-count world))
+      (add-to-stock thing (world-stock world)))
     (dolist (kicker (recipe-kickers recipe)) (attach-by-recipe thing kicker))
     thing))
 
 (defun find-recipe (test recipes)
-  "Return the first of RECIPES, or of those in them, of which TEST returns true; and what it returns."
+  "Return the first of RECIPES, or of those in them, of which TEST is true; and its value."
   (dolist (recipe recipes)
     (let ((value (funcall test recipe)))
       (when value (return (values recipe value))))

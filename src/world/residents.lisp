@@ -58,13 +58,12 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
 ;;; A name that nothing has may be a slip. Names that differ in their digits are of several things,
 ;;; as are those with the number of a thing, such as "PEN#2".
 
-(defun without-digits (name)
-  (remove-if (lambda (char) (or (digit-char-p char) (char= char #\#))) (string name)))
-
 (defun may-be-slip-p (name other)
   "True if NAME, of nothing, may be a slip for OTHER, that of a thing."
-  (and (resembles-p name other)
-       (not (string-equal (without-digits name) (without-digits other)))))
+  (flet ((without-digits (name)
+           (remove-if (lambda (char) (or (digit-char-p char) (char= char #\#))) (string name))))
+    (and (resembles-p name other)
+         (not (string-equal (without-digits name) (without-digits other))))))
 
 (defun thing-like (name world)
   "Return the name of a thing of WORLD for which NAME, of none, may be a slip, or NIL, also if one

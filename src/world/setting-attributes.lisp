@@ -5,7 +5,9 @@
 (defun change-attributes (thing descriptor)
   "Give THING the attributes in DESCRIPTOR and make caches and flags agree."
   (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
-  (when (some #'physical-p (mapcar #'first descriptor))
+  ;; What REFRESH-PHYSICS reads.
+  (when (intersection '(:obsmove :obsview :closed :size :weight :capacity :substance)
+                      (mapcar #'first descriptor))
     (refresh-physics thing)
     (when (eq (thing-location thing) :floor)
       (set-mark thing (world-stock (thing-world thing)))

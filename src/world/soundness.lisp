@@ -33,11 +33,6 @@ in MET, which they are added to, stand for."
                   (every #'null (subseq (stock-things stock) (stock-count stock))))
              "its vector of things cannot grow"))
 
-(defun check-descriptor (thing)
-  (must-hold (proper-list-of-p (lambda (entry) (typep entry '(cons keyword (cons t null))))
-                               (thing-attributes thing))
-             "the attributes of ~A make no sense" thing))
-
 (defun check-thing (thing rank world)
   "Signal CONTRADICTION unless THING makes sense as the one with RANK in WORLD."
   (must-hold (and (thing-p thing)
@@ -46,7 +41,9 @@ in MET, which they are added to, stand for."
                   (= rank (thing-rank thing))
                   (< 0 (thing-serial thing) (world-next-serial world)))
              "what is number ~D of its things is none of them" rank)
-  (check-descriptor thing)
+  (must-hold (proper-list-of-p (lambda (entry) (typep entry '(cons keyword (cons t null))))
+                               (thing-attributes thing))
+             "the attributes of ~A make no sense" thing)
   (must-hold (proper-list-of-p (lambda (inside)
                                  (and (thing-p inside) (eq thing (thing-location inside))))
                                (thing-contents thing))

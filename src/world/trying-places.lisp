@@ -32,10 +32,6 @@
     (clear-places map)
     map))
 
-(defun sample-map ()
-  (small-map (length (first *sample*)) (length *sample*)
-             (lambda (x y) (char= #\# (char (nth y *sample*) x)))))
-
 (defun rule-map (rule)
   "Return a map with the walls of RULE and room for the place beside them."
   (multiple-value-bind (width height) (form-size (rule-form rule))
@@ -57,6 +53,7 @@
   (handler-case
       (mapc (lambda (map) (try-on type map))
             (if (place-type-checker type)
-                (list (sample-map))
+                (list (small-map (length (first *sample*)) (length *sample*)
+                                 (lambda (x y) (char= #\# (char (nth y *sample*) x)))))
                 (mapcar #'rule-map (place-type-rules type))))
     ((or undefined-function unbound-variable) () nil)))

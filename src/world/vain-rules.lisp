@@ -74,6 +74,6 @@
 
 (defun warn-of-vain-rules (definition type)
   "Warn of what in TYPE, which has been registered, can never make a place."
-  (dolist (rule (place-type-rules type))
-    (when (walled-p rule) (warn-of-walled definition rule)))
+  (mapc (lambda (rule) (warn-of-walled definition rule))
+        (remove-if-not #'walled-p (place-type-rules type)))
   (warn-of-taken definition type))

@@ -53,9 +53,6 @@ grip" :export)))
 (defmethod digest-state ((dice dice) digest)
   (digest-add digest (dice-state dice)))
 
-(defun make-dice-set (seed)
-  (cl:map 'simple-vector (lambda (purpose) (make-dice seed purpose)) +dice-purposes+))
-
 (declaim (inline world-dice))
 (addition world-dice)
 (defun world-dice (world purpose)
@@ -107,10 +104,6 @@ meanwhile are left out."
   "Return the index of the cell that THING, on the floor, lies in."
   (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
 
-(defun add-thing (thing world)
-  (add-to-stock thing (world-stock world))
-  (incf (world-live-count world)))
-
 (defun remove-thing (thing world)
   "Forget THING; now and then, close the gaps that the destroyed have left."
   (let ((stock (world-stock world)))
@@ -119,10 +112,6 @@ meanwhile are left out."
     (when (> (stock-count stock) (+ 64 (* 2 (world-live-count world))))
       (close-gaps stock (lambda (other)
                           (and (eq :floor (thing-location other)) (thing-index other)))))))
-
-(defun take-serial (world)
-  (prog1 (world-next-serial world)
-    (incf (world-next-serial world))))
 
 (defmacro do-cell ((thing index world) &body body)
   "Run BODY with THING bound to each thing on the floor of the cell INDEX of WORLD, in order of
