@@ -69,10 +69,6 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
   "Return the first of the events in the ring of LAST, or NIL, and cut the ring before it."
   (and last (shiftf (event-next last) nil)))
 
-(defun far-wheel (agenda)
-  (or (agenda-far agenda)
-      (setf (agenda-far agenda) (make-wheel))))
-
 (defun shelve (agenda event)
   "Put EVENT into the bucket of its time."
   (declare #.*hot* (type agenda agenda) (type event event))
@@ -82,7 +78,8 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
     (cond ((= page current)
            (append-event (svref (agenda-near agenda) (logand time +page-mask+)) event))
           ((= (ash page (- +page-bits+)) (ash current (- +page-bits+)))
-           (append-event (svref (far-wheel agenda) (logand page +page-mask+)) event))
+           (let ((far (or (agenda-far agenda) (setf (agenda-far agenda) (make-wheel)))))
+             (append-event (svref far (logand page +page-mask+)) event)))
           (t (append-event (agenda-beyond agenda) event)))))
 
 (defun shelve-all (agenda event)
@@ -187,11 +184,6 @@ interrupted."
   (setf (event-queued-p event) nil)
   (when (event-pending-p event) (run-event agenda event)))
 
-(defun bucket-by-priority (event)
-  "Return a list of EVENT and those that follow it, higher priorities first."
-  (stable-sort (loop for e = event then (event-next e) while e collect e)
-               #'> :key #'event-priority))
-
 (defun run-in-order (agenda event)
   "Run EVENT and those that follow it, the rest also if one is left."
   (declare #.*hot* (type agenda agenda))
@@ -207,7 +199,9 @@ interrupted."
     (cond ((eq first last) (run-if-pending agenda first))
           ((zerop (agenda-unequal agenda)) (run-in-order agenda first))
           (t (call-each (lambda (event) (run-if-pending agenda event))
-                        (bucket-by-priority first))))))
+                        (stable-sort (loop for event = first then (event-next event)
+                                           while event collect event)
+                                     #'> :key #'event-priority))))))
 
 (defun advance-agenda (agenda)
   "Go on to the next tick and run the events due in it."

@@ -10,11 +10,11 @@
 
 ;;; Resting.
 
-(defun sleep-until-woken (custody seconds)
-  "Sleep for SECONDS, but not while somebody wants something."
+(defun sleep-until-woken (custody seconds &optional (may-p (constantly t)))
+  "Sleep for SECONDS if the function MAY-P says so, but not while somebody wants something."
   (setf (custody-asleep-p custody) t)
   (memory-barrier)
-  (unless (custody-questions custody)
+  (when (and (funcall may-p) (null (custody-questions custody)))
     (wait-on-semaphore (custody-wake-up custody) seconds))
   (setf (custody-asleep-p custody) nil))
 
@@ -38,14 +38,10 @@
 
 (defun rest-thread (custody pacing)
   "Sleep for as long as there is nothing to do (reading 88)."
-  (setf (custody-asleep-p custody) t)
-  (memory-barrier)
-  (when (and (nothing-to-do-p pacing)
-             (null (custody-questions custody))
-             (not (pacing-stopping-p pacing)))
-    ;; The timeout covers tests that come true without anybody posting.
-    (wait-on-semaphore (custody-wake-up custody) 1))
-  (setf (custody-asleep-p custody) nil))
+  ;; The timeout covers tests that come true without anybody posting.
+  (sleep-until-woken custody 1 (lambda ()
+                                 (and (nothing-to-do-p pacing)
+                                      (not (pacing-stopping-p pacing))))))
 
 (defun keep-pace (custody pacing due)
   "Sleep until the time DUE, in seconds; return when the next tick is due."

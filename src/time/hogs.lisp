@@ -7,11 +7,6 @@
 ;;; A thread beside that of the simulation looks twice in *HOG-SECONDS* where that is. What it sees
 ;;; three times on end has been there for so long.
 
-(defun warn-of-hog (origin)
-  (warn-at-once (format nil "~A has kept the simulator waiting for ~,1F s and goes on; ~
-                             (stop-simulator) interrupts it"
-                        (text-of-origin origin) (hog-seconds))))
-
 (defun watch-for-hogs (pacing)
   "Warn of what users' code the thread of PACING does not get out of, until that ends."
   (loop with calls = (pacing-calls pacing) and seen = nil and looks = 0
@@ -21,7 +16,9 @@
                     (setf seen (and origin count) looks 1))
                    ((= 3 (incf looks))
                     (setf (pacing-hog pacing) count)
-                    (warn-of-hog origin))))))
+                    (warn-at-once (format nil "~A has kept the simulator waiting for ~,1F s and ~
+                                               goes on; (stop-simulator) interrupts it"
+                                          (text-of-origin origin) (hog-seconds))))))))
 
 (defun users-code-under-way (simulation)
   "Return in words whose code the thread of the live SIMULATION is in, and how many calls of such

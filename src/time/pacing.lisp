@@ -99,36 +99,38 @@ what users' code the thread is in."
   "Signal WRONG-ARGUMENT unless RATE can be the pace of a clock."
   (check-of-type 'set-rate 'rate rate 'rate))
 
-(defun steer (simulation &key (rate nil rate-p) (paused-p nil paused-p-p) steps)
-  "Change how SIMULATION is paced, and wake it. Without effect if it never ran live."
+(defun steer (simulation paused-p steps)
+  "Let SIMULATION be paused if PAUSED-P, but pass STEPS ticks, and wake it. Without effect if it
+never ran live."
   (let ((pacing (timeline-pacing (timeline-of simulation))))
     (when pacing
-      (when steps (setf (pacing-steps pacing) steps))
-      (when paused-p-p
-        (setf (pacing-paused-p pacing) paused-p
-              (pacing-trouble pacing) nil))
-      (when rate-p (setf (pacing-rate pacing) rate))
+      (setf (pacing-steps pacing) steps
+            (pacing-paused-p pacing) paused-p
+            (pacing-trouble pacing) nil)
       (wake pacing))
     (values)))
 
 (addition pause)
 (defun pause (&optional (simulation (current-simulation)))
   "Let the live SIMULATION stand still after its current tick, until RESUME. Returns nothing."
-  (steer simulation :steps 0 :paused-p t))
+  (steer simulation t 0))
 
 (addition resume)
 (defun resume (&optional (simulation (current-simulation)))
   "Let the live SIMULATION go on after PAUSE. Returns nothing."
-  (steer simulation :steps 0 :paused-p nil))
+  (steer simulation nil 0))
 
 (defun let-pass (count simulation)
   "Let COUNT ticks of the live SIMULATION pass, at its pace, and then pause. Returns nothing."
-  (steer simulation :steps count :paused-p t))
+  (steer simulation t count))
 
 (addition set-rate)
 (defun set-rate (rate &optional (simulation (current-simulation)))
   "Set the pace of SIMULATION to RATE, from 0.001 to 1000000 ticks per second, or :FREE. Returns
 RATE. Signals WRONG-ARGUMENT."
   (check-rate rate)
-  (steer simulation :rate rate)
-  rate)
+  (let ((pacing (timeline-pacing (timeline-of simulation))))
+    (when pacing
+      (setf (pacing-rate pacing) rate)
+      (wake pacing))
+    rate))

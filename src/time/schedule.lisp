@@ -97,11 +97,10 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
         (scheduled-on-interrupt event) (scheduled-test event) (scheduled-timeout event)
         (scheduled-timer event)))
 
-(defun schedule-again (function resource priority interrupt when timeout timer)
-  (call-scheduled function resource :priority priority :interrupt interrupt :when when
-                                    :timeout timeout :timer timer))
-
-(define-operator 'schedule '(function datum integer datum datum datum integer) #'schedule-again)
+(define-operator 'schedule '(function datum integer datum datum datum integer)
+  (lambda (function resource priority interrupt when timeout timer)
+    (call-scheduled function resource :priority priority :interrupt interrupt :when when
+                                      :timeout timeout :timer timer)))
 
 (defun doubtful-delay (head body)
   "Return the number in HEAD or BODY, of a call of SCHEDULE, that is meant as a delay, or NIL."

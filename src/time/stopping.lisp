@@ -25,11 +25,6 @@
       (interrupt-thread (pacing-thread pacing) (lambda () (abort-user-code count)))
       t)))
 
-(defun hog-of (pacing)
-  "Return a text that names the users' code that the thread of PACING is in, or NIL."
-  (let ((origin (user-calls-origin (pacing-calls pacing))))
-    (and origin (text-of-origin origin))))
-
 (defun await-end (pacing)
   "Wait for the thread of PACING to end. Users' code that keeps it from that is interrupted, and
 again if it does not go. Signals MISUSE if that does not help either."
@@ -37,10 +32,11 @@ again if it does not go. Signals MISUSE if that does not help either."
         when (ended-p pacing (hog-seconds))
           return t
         do (interrupt-hog pacing)
-        finally (reject-use "The simulator of ~A does not stop~@[: ~A does not let itself be ~
-                             interrupted~]."
-                            (timeline-name (pacing-timeline pacing))
-                            (hog-of pacing))))
+        finally (let ((origin (user-calls-origin (pacing-calls pacing))))
+                  (reject-use "The simulator of ~A does not stop~@[: ~A does not let itself be ~
+                               interrupted~]."
+                              (timeline-name (pacing-timeline pacing))
+                              (and origin (text-of-origin origin))))))
 
 (defun stop (pacing)
   "End the thread of PACING after its current tick, and wait for that if it is another than this."

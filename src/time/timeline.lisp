@@ -84,9 +84,7 @@ part of one. A timeline is its own. Signals WRONG-ARGUMENT for what has none.")
   "The simulation that code runs for: the one of WITH-SIMULATION, of the thread, or the one last
 given to SIMULATOR.")
 
-(defun run-that-reports () *simulation*)
-
-(setf *run-that-reports* 'run-that-reports)
+(setf *run-that-reports* (lambda () *simulation*))
 
 (addition current-simulation)
 (defun current-simulation ()
