@@ -64,7 +64,7 @@
                  (:file "map-things") (:file "defmap")
                  (:file "soundness") (:file "facts")))
    (:module "src/time" :serial t
-    :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
+    :components ((:file "package") (:file "request") (:file "agenda")
                  (:file "interruptions") (:file "custody") (:file "phases") (:file "timeline")
                  (:file "thinking")
                  (:file "asking") (:file "pacing") (:file "stopping") (:file "hogs")

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(request request-entry perform))
+(export '(request request-entry perform resource note-asked))
 
 ;;; A request names an operator and has its arguments. It waits in a timeline (see timeline.lisp)
 ;;; until a tick begins; then it is performed, in the order of asking. Layers above include the
@@ -32,3 +32,19 @@ and what it is asked with.")
 
 (defmethod digest-state :after ((request request) digest)
   (digest-add digest (request-entry request)))
+
+;;; Resources: parts that do one thing at a time (manual 3.1.2).
+
+(define-kind (resource :constructor nil)
+    "What commands and events compete for: a robot or one of its parts. Anything else may serve as
+a resource of SCHEDULE too; these carry their pending event themselves, which is faster."
+  (:state
+   (event nil t "the event or command that is pending on the resource, or NIL" :export))
+  (:memory
+   (interruption nil t "what was interrupted last on the resource, or NIL" :export)
+   (asked 0 atomic-count "how often the resource was asked for: whoever gives it one command after
+the other can tell by that whether somebody else came between" :export)))
+
+(defun note-asked (resource)
+  "Note that RESOURCE is asked for, if it is one that can tell."
+  (when (resource-p resource) (atomic-incf (resource-asked resource))))
