@@ -1,4 +1,4 @@
-;;;; reading-ahead.lisp -- what many moves will need of memory, read at once before them.
+;;;; reading-ahead.lisp -- what the next trials and moves will need, found at once before them.
 
 (in-package :ars-magna.world)
 
@@ -37,3 +37,67 @@ overwritten. Return a number without a meaning, for which all has to be read ind
         (declare (type cell-index index))
         (setf sum (logxor sum (aref flags index) (aref firsts index)))))
     sum))
+
+;;; Which trials succeed: how many fail before the next that does, drawn and foreseen.
+
+(defun gap-scale (probability)
+  "Return the factor that turns the logarithm of a roll into a gap, see DRAW-GAP."
+  (cond ((>= probability 1d0) 0d0)
+        ((< probability 1d-12) (- (/ (max probability 1d-300))))
+        (t (/ (logarithm (- 1d0 probability))))))
+
+(declaim (inline draw-gap))
+(defun draw-gap (scale dice)
+  "Return how many trials fail before the next success; SCALE is 1 / log(1 - p), 0 for p = 1."
+  (declare (type double-float scale))
+  (let ((u (- 1d0 (roll dice))))
+    (declare (type (double-float (0d0) 1d0) u))
+    (truncate (the (double-float 0d0 #.(double (expt 2 40)))
+                   (min #.(double (expt 2 40)) (* scale (%logarithm u)))))))
+
+;;; To know which trials will succeed, dice are rolled before their time. What they come to depends
+;;; on their state alone: so whoever finds them in that state need not reckon it again.
+
+(deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch+)))
+
+(defstruct (outlook (:constructor make-outlook ()) (:copier nil))
+  "What dice will be rolled to next: COUNT of the GAPS. That with the number NEXT is what comes of
+dice in STATE."
+  (gaps (make-array +batch+ :element-type '(unsigned-byte 62) :initial-element 0)
+   :type gaps :read-only t)
+  (count 0 :type batch-count)
+  (next 0 :type batch-count)
+  (state 0 :type (unsigned-byte 64)))
+(declaim-final outlook)
+
+;; Inline, so that SCALE is not boxed.
+(declaim (inline foresee))
+(defun foresee (outlook index end scale dice)
+  "Let OUTLOOK know what DRAW-GAP will return next for SCALE and DICE, as far as trials before END
+are concerned if the next that succeeds has INDEX. Return the index of the first after them."
+  (declare (type outlook outlook) (type (unsigned-byte 50) index end)
+           (type double-float scale) (type dice dice))
+  (let ((dice (copy-dice dice)) (gaps (outlook-gaps outlook)) (count 0))
+    (declare (dynamic-extent dice) (type batch-count count))
+    (setf (outlook-state outlook) (dice-state dice))
+    (loop while (and (< index end) (< count +batch+))
+          do (let ((gap (draw-gap scale dice)))
+               (setf (aref gaps count) gap)
+               (incf count)
+               (incf index (1+ gap))))
+    (setf (outlook-next outlook) 0
+          (outlook-count outlook) count)
+    index))
+
+(declaim (inline draw-foreseen-gap))
+(defun draw-foreseen-gap (outlook scale dice)
+  "Return what DRAW-GAP does for SCALE, of which OUTLOOK, if there is one, may know, and DICE."
+  (let ((next (if outlook (outlook-next outlook) 0)))
+    (cond ((and outlook
+                (< next (outlook-count outlook))
+                (= (dice-state dice) (outlook-state outlook)))
+           (roll dice)
+           (setf (outlook-next outlook) (1+ next)
+                 (outlook-state outlook) (dice-state dice))
+           (aref (outlook-gaps outlook) next))
+          (t (draw-gap scale dice)))))
