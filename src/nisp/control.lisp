@@ -19,17 +19,9 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun loop-keyword (forms)
-    "Return :UNTIL or :WHILE if FORMS are a Nisp loop: that word, a test, and then no loop
-keyword but compound forms or nothing."
-    (and (rest forms)
-         (symbolp (first forms))
-         (or (null (cddr forms)) (consp (third forms)))
+    "Return :UNTIL or :WHILE if FORMS, of a loop, begin with that word."
+    (and (symbolp (first forms))
          (find (first forms) '(:until :while) :test #'string=))))
-
-(eval-when (:compile-toplevel :load-toplevel :execute)
-  (defun test-first-p (forms)
-    "True if FORMS, of a loop, begin with UNTIL or WHILE."
-    (and (symbolp (first forms)) (member (first forms) '(:until :while) :test #'string=))))
 
 (public loop)
 (defmacro loop (&rest forms)
@@ -37,8 +29,9 @@ keyword but compound forms or nothing."
 before a round, (loop WHILE test body...) while it is. Other FORMS mean what they mean to CL:LOOP
 (manual, Figure D.3)."
   (cl:let ((keyword (loop-keyword forms)))
-    (when (test-first-p forms) (doubt-test 'loop (second forms)))
-    (if (and keyword (cddr forms))
+    (when keyword (doubt-test 'loop (second forms)))
+    ;; What follows the test is no keyword of Lisp's LOOP.
+    (if (and keyword (consp (third forms)))
         `(cl:loop ,keyword ,(second forms) :do (progn ,@(cddr forms)))
         `(cl:loop ,@forms))))
 

@@ -90,7 +90,7 @@ MALFORMED-DEFINITION if that is nothing whole."
           ((eql head #\>) (path-form tail))
           (t (token-object (concatenate 'string "!" token))))))
 
-;;; ? and the booleans.
+;;; ? and what follows it.
 
 (defun read-anonymous-matchvar (stream)
   (let ((form (read stream t nil t)))
@@ -111,14 +111,6 @@ MALFORMED-DEFINITION if that is nothing whole."
                  (reject-syntax name "a symbol after ?"))
                (make-matchvar name))))))
 
-(defun read-true (stream char argument)
-  (declare (ignore stream char argument))
-  t)
-
-(defun read-false (stream char argument)
-  (declare (ignore stream char argument))
-  nil)
-
 ;;; The named readtable :NISP; (in-readtable :nisp) puts it to use.
 
 (defun ensure-nisp-readtable ()
@@ -128,8 +120,8 @@ mark, which some editors begin a file with, is as good as a space."
                        (make-readtable :nisp :merge '(:standard)))))
     (set-macro-character #\! 'read-bang t readtable)
     (set-macro-character #\? 'read-query t readtable)
-    (set-dispatch-macro-character #\# #\t 'read-true readtable)
-    (set-dispatch-macro-character #\# #\f 'read-false readtable)
+    (set-dispatch-macro-character #\# #\t (constantly t) readtable)
+    (set-dispatch-macro-character #\# #\f (constantly nil) readtable)
     (set-syntax-from-char (code-char #xFEFF) #\Space readtable)
     readtable))
 

@@ -30,16 +30,12 @@
 
 ;;; Which slots there are.
 
-(defun class-nisp-type (class)
-  "Return the type registered for CLASS itself, or NIL."
-  (let ((type (find-nisp-type (class-name class))))
-    (and type (eq (nisp-type-class type) (class-name class)) type)))
-
 (defun class-slots (class)
   "Return an alist from names to readers of the slots of CLASS, inherited ones last."
   (loop for class in (class-ancestors class)
-        for type = (class-nisp-type class)
-        when type append (nisp-type-slots type)))
+        for type = (find-nisp-type (class-name class))
+        when (and type (eq (nisp-type-class type) (class-name class)))
+          append (nisp-type-slots type)))
 
 (defun users-class-p (class)
   "True if CLASS is neither ours nor Lisp's: then its slots are open to programs."
@@ -100,9 +96,6 @@ SETF if it can be set; the accessor for all types if TYPE has none of its own."
     (or (and class (cdr (assoc (string slot) (class-slots class) :test #'string=)))
         (ensure-slot-accessor slot))))
 
-(defun setf-of-p (writer reader)
-  (and (consp writer) (eq (first writer) 'setf) (eq (second writer) reader)))
-
 (defun slot-setter-form (writer)
   "Return the form by which WRITER stores VALUE into OBJECT."
   (if (typep writer '(cons (eql setf)))
@@ -116,7 +109,7 @@ name of a function of the value and the object."
   (let ((accessor (slot-accessor-name name))
         (direct (and (symbolp reader)
                      (if writer
-                         (setf-of-p writer reader)
+                         (equal writer `(setf ,reader))
                          (not (fboundp `(setf ,reader)))))))
     `(progn
        (eval-when (:compile-toplevel :load-toplevel :execute)

@@ -14,9 +14,6 @@
 (defun lambda-keyword-p (form)
   (member form lambda-list-keywords))
 
-(defun reject-hyphen (operator list)
-  (reject-clause operator list "each hyphen between a variable and its type"))
-
 (defun type-like (type)
   "Return the name of a known type for which TYPE, which is unknown, may be a slip; or NIL."
   (and type
@@ -40,7 +37,7 @@ the error if a hyphen has no variable before it or no type behind it."
         for element = (pop tail)
         if (hyphen-p element)
           do (when (or typed (atom tail) (hyphen-p (first tail)))
-               (reject-hyphen operator list))
+               (reject-clause operator list "each hyphen between a variable and its type"))
              (doubt-type operator (pop tail))
              (setf typed t)
         else

@@ -30,11 +30,6 @@
   "The type of what a robot command takes as its continuation, NIL for none (manual 3.1.1)."
   '(or function symbol))
 
-(defun makeable-types ()
-  (sort (loop for type being the hash-values of *nisp-types*
-              when (nisp-type-maker type) collect (nisp-type-name type))
-        #'string<))
-
 ;;; Making objects.
 
 (defun register-maker (name parameters maker)
@@ -68,7 +63,10 @@ unknown TYPE and a wrong number of ARGUMENTS are errors."
   (let* ((known (find-nisp-type type))
          (maker (and known (nisp-type-maker known))))
     (unless maker
-      (reject-name "type that MAKE can make" type (makeable-types)))
+      (reject-name "type that MAKE can make" type
+                   (sort (loop for type being the hash-values of *nisp-types*
+                               when (nisp-type-maker type) collect (nisp-type-name type))
+                         #'string<)))
     (unless (takes-p (nisp-type-parameters known) (length arguments))
       (reject-use "(make ~A~{ ~S~}): a ~A is made by (make ~A~{ ~(~A~)~})."
                   type arguments (nisp-type-name known)
