@@ -39,7 +39,7 @@
   (y 0d0 :type double-float))
 (declaim-final pt)
 
-(declaim (inline make-pt pt-x pt-y (setf pt-x) (setf pt-y) set-pt!))
+(declaim (inline make-pt set-pt!))
 
 (addition make-pt)
 (defun make-pt (x y)
@@ -49,25 +49,23 @@ way. Written (make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
   (check-finite make-pt y)
   (%make-pt (double x) (double y)))
 
-(addition pt-x)
-(settable pt-x)
-(defun pt-x (pt)
-  "Return the horizontal coordinate of PT, in metres. Can be set."
-  (%pt-x pt))
+(defmacro define-number-accessor (name (raw value object) check documentation)
+  "Define NAME, which reads what RAW does of OBJECT, and sets it to a VALUE for which the form CHECK
+signals nothing."
+  `(progn
+     (addition ,name)
+     (settable ,name)
+     (declaim (inline ,name (setf ,name)))
+     (defun ,name (,object) ,documentation (,raw ,object))
+     (defun (setf ,name) (,value ,object)
+       ,check
+       (setf (,raw ,object) (double ,value)))))
 
-(defun (setf pt-x) (x pt)
-  (check-finite pt-x x)
-  (setf (%pt-x pt) (double x)))
+(define-number-accessor pt-x (%pt-x x pt) (check-finite pt-x x)
+  "Return the horizontal coordinate of PT, in metres. Can be set.")
 
-(addition pt-y)
-(settable pt-y)
-(defun pt-y (pt)
-  "Return the vertical coordinate of PT, in metres, growing downward. Can be set."
-  (%pt-y pt))
-
-(defun (setf pt-y) (y pt)
-  (check-finite pt-y y)
-  (setf (%pt-y pt) (double y)))
+(define-number-accessor pt-y (%pt-y y pt) (check-finite pt-y y)
+  "Return the vertical coordinate of PT, in metres, growing downward. Can be set.")
 
 (defun set-pt! (pt x y)
   "Move PT to (X, Y) and return it."
@@ -85,7 +83,7 @@ way. Written (make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
   (max 0d0 :type double-float))
 (declaim-final interval)
 
-(declaim (inline %set-interval! interval-min interval-max))
+(declaim (inline %set-interval!))
 
 (defun %set-interval! (interval min max)
   (setf (%interval-min interval) min
@@ -101,27 +99,15 @@ error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
   (check-argument make-interval min (<= min max) "a number that is not above the max")
   (%make-interval (double min) (double max)))
 
-(addition interval-min)
-(settable interval-min)
-(defun interval-min (interval)
-  "Return the lower bound of INTERVAL. Can be set, not above the upper bound."
-  (%interval-min interval))
+(define-number-accessor interval-min (%interval-min min interval)
+    (check-argument interval-min min (and (finite-p min) (<= min (%interval-max interval)))
+                    "a number that is not above the max; set the max first")
+  "Return the lower bound of INTERVAL. Can be set, not above the upper bound.")
 
-(defun (setf interval-min) (min interval)
-  (check-argument interval-min min (and (finite-p min) (<= min (%interval-max interval)))
-                  "a number that is not above the max; set the max first")
-  (setf (%interval-min interval) (double min)))
-
-(addition interval-max)
-(settable interval-max)
-(defun interval-max (interval)
-  "Return the upper bound of INTERVAL. Can be set, not below the lower bound."
-  (%interval-max interval))
-
-(defun (setf interval-max) (max interval)
-  (check-argument interval-max max (and (finite-p max) (>= max (%interval-min interval)))
-                  "a number that is not below the min; set the min first")
-  (setf (%interval-max interval) (double max)))
+(define-number-accessor interval-max (%interval-max max interval)
+    (check-argument interval-max max (and (finite-p max) (>= max (%interval-min interval)))
+                    "a number that is not below the min; set the min first")
+  "Return the upper bound of INTERVAL. Can be set, not below the lower bound.")
 
 (declaim (inline set-interval!))
 (defun set-interval! (interval min max)
