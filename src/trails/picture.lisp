@@ -17,10 +17,6 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
 (defun ways-of-outcome (outcome ways)
   (remove outcome ways :key #'way-outcome :test-not #'string=))
 
-(defun ways-in-order (ways)
-  "Return WAYS as they are drawn: those that lie above others last."
-  (loop for (outcome) in *outcome-looks* append (ways-of-outcome outcome ways)))
-
 (defun way-opacity (count)
   "Return how much one of COUNT ways of one outcome hides what is below."
   (clamp (/ 8 (max 1 count)) 12/100 6/10))
@@ -122,7 +118,7 @@ be seen in what SNAPSHOT shows."
 (defun draw-bundle (canvas snapshot ways layers)
   "Draw the world of SNAPSHOT, its map faintly where there are colours, and WAYS in it; above robots
 and things where these end."
-  (let ((ways (ways-in-order ways)))
+  (let ((ways (loop for (outcome) in *outcome-looks* append (ways-of-outcome outcome ways))))
     (with-opacity (canvas (map-opacity in-color*))
       (draw-terrain canvas (snapshot-map snapshot) :layers layers))
     (draw-ways canvas ways)

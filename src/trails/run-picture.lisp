@@ -72,22 +72,15 @@ WRONG-ARGUMENT if these are of robots that are not there."
 
 (defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
 
-(defun tiles-of-line (x y next-x next-y tiles)
-  "Enter into the hash table TILES conses (column . row) of the boxes that hide a line."
-  (call-along (lambda (x y) (setf (gethash (cons (floor x +tile+) (floor y +tile+)) tiles) t))
-              x y next-x next-y (/ +tile+ 2)))
-
 (defun boxes-along (points)
   "Return boxes that together hide the line through POINTS, x y ... in pixels."
   (let ((tiles (make-hash-table :test #'equal)))
-    (loop for (x y next-x next-y) on points by #'cddr
-          while next-y do (tiles-of-line x y next-x next-y tiles))
+    (flet ((note (x y) (setf (gethash (cons (floor x +tile+) (floor y +tile+)) tiles) t)))
+      (loop for (x y next-x next-y) on points by #'cddr
+            while next-y do (call-along #'note x y next-x next-y (/ +tile+ 2))))
     (loop for (column . row) being the hash-keys of tiles
           collect (list (* +tile+ column) (* +tile+ row)
                         (* +tile+ (1+ column)) (* +tile+ (1+ row))))))
-
-(defun boxes-of-ways (ways)
-  (loop for (nil . pieces) in ways append (mapcan #'boxes-along (pieces-in-pixels pieces))))
 
 (defun moved-robot-entry (name position)
   "Return an entry for the robot called NAME at POSITION among those of its world, and for its way."
@@ -130,7 +123,8 @@ and SPOTS, has besides that of a map and things."
   (draw-terrain canvas (snapshot-map snapshot) :layers layers)
   (draw-robot-ways canvas ways)
   (draw-movers canvas snapshot (remove :names layers))
-  (let* ((along (boxes-of-ways ways))
+  (let* ((along (loop for (nil . pieces) in ways
+                      append (mapcan #'boxes-along (pieces-in-pixels pieces))))
          (boxes (draw-spots canvas snapshot spots along)))
     (when (member :names layers) (draw-names canvas snapshot layers (append boxes along)))))
 
@@ -146,11 +140,6 @@ where the next would be."
                (draw-words canvas draw-gcontext* (+ left 24) y line :size +note-size+)
                (incf y +note-step+)))
     y))
-
-(defun reach-of-spots (scale)
-  "Return how near to each other, in metres, what happened is at one place, where a cell has SCALE
-pixels: where the rings around two places would be one."
-  (/ (* 2 +ring-radius+) scale))
 
 (defun moments-in (part moments)
   "Return those of MOMENTS that were in PART (left top right bottom) of the map, or nobody knows
@@ -177,7 +166,8 @@ the others."
   (multiple-value-bind (spots notes)
       (spots-and-notes-in (snapshot-part snapshot) (in-brief moments) limit
                           (and (rest ways) t)
-                          (reach-of-spots (drawn-scale scale snapshot layers)))
+                          ;; Where the rings around two places would be one.
+                          (/ (* 2 +ring-radius+) (drawn-scale scale snapshot layers)))
     (let ((more (run-entries snapshot ways spots)))
       (with-output-to-string (out)
         (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)

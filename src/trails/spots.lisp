@@ -44,17 +44,10 @@ SEVERAL-P: say of which robot each is."
                                          happenings)))))
         (push moment (happening-moments happening))))))
 
-(defun first-tick (happening)
-  (reduce #'min (happening-moments happening) :key #'moment-tick))
-
 (defun matters-more-p (one other)
   (if (= (happening-weight one) (happening-weight other))
       (> (length (happening-moments one)) (length (happening-moments other)))
       (< (happening-weight one) (happening-weight other))))
-
-(defun own-p (happening)
-  "True if HAPPENING is a user's own."
-  (zerop (happening-weight happening)))
 
 (defun number-spots (happenings)
   "Number the spots of HAPPENINGS, in order. Return them."
@@ -97,12 +90,6 @@ than MOST ticks, or all if it is NIL."
                                   when (plusp count)
                                     collect (format nil "~D ~A" count
                                                     (if (= count 1) one several))))))))
-
-(defun left-out-note (happenings)
-  "Return a list of a note that says what HAPPENINGS, which are left out, were; or none."
-  (not-shown-note "Not shown" (mapcan (lambda (happening)
-                                        (copy-list (happening-moments happening)))
-                                      happenings)))
 
 ;;; What the journal says of plans has their code in it. A picture has a line for each, and says why
 ;;; a plan failed where the task in it did that failed first.
@@ -147,13 +134,18 @@ than MOST ticks, or all if it is NIL."
 number or NIL and a text: of all if LIMIT is NIL, else of LIMIT at most, or of more if so many are a
 user's own. See HAPPENINGS-OF."
   (let* ((all (stable-sort (happenings-of moments several-p reach) #'matters-more-p))
-         (own (count-if #'own-p all))
+         ;; These are a user's own.
+         (own (count 0 all :key #'happening-weight))
          (count (if limit (min (max limit own) (length all)) (length all)))
-         (told (stable-sort (subseq all 0 count) #'< :key #'first-tick))
+         (told (stable-sort (subseq all 0 count) #'<
+                            :key (lambda (happening)
+                                   (reduce #'min (happening-moments happening)
+                                           :key #'moment-tick))))
          (spots (number-spots told)))
     (values spots
             (append (mapcar (lambda (happening) (note-of happening (and limit 3))) told)
-                    (left-out-note (nthcdr count all))))))
+                    (not-shown-note "Not shown" (loop for happening in (nthcdr count all)
+                                                      append (happening-moments happening)))))))
 
 ;;; On the map: an open ring where it was, around the thing that lies there, if one does, so that it
 ;;; can be seen; and beside it, where nothing else is, the number.

@@ -16,11 +16,6 @@
   "Return NUMBER as any program reads it, to the last bit."
   (let ((*read-default-float-format* 'double-float)) (princ-to-string number)))
 
-(defun things-held (robot)
-  "Return what the hands of ROBOT hold, as a text; things are apart by blanks."
-  (format nil "~{~A~^ ~}" (loop for hand across (robot-hands robot)
-                                when (hand-holding hand) collect it)))
-
 (defun trajectory-row (robot tick)
   "Return the texts of the row for ROBOT in TICK."
   (printing-plainly ()
@@ -28,7 +23,9 @@
             (mapcar #'number-as-text
                     (list* (robot-x robot) (robot-y robot) (robot-angle robot)
                            (multiple-value-list (odometer-estimate (robot-main-odometer robot)))))
-            (list (things-held robot) (format nil "~@[~(~A~)~]" (robot-last-place robot))))))
+            (list (format nil "~{~A~^ ~}" (loop for hand across (robot-hands robot)
+                                                when (hand-holding hand) collect it))
+                  (format nil "~@[~(~A~)~]" (robot-last-place robot))))))
 
 (defun write-rows (simulation names out)
   "Write to OUT a row for each robot of SIMULATION, or of those that NAMES, a list, mean."

@@ -149,17 +149,14 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
 (defconstant +nodes-kept+ 2000000
   "How many nodes the fields that a terrain keeps may have together; but it keeps two at least.")
 
-(defun fields-to-keep (terrain)
-  (clamp (floor +nodes-kept+ (length (terrain-cells terrain))) 2 50))
-
 (defun known-field (terrain goal)
   (find goal (terrain-fields terrain) :key #'field-goal))
 
 (defun forget-older-fields (terrain)
   "Let TERRAIN keep one field less than it may, so that there is room for another."
-  (let ((fields (terrain-fields terrain)))
-    (setf (terrain-fields terrain)
-          (subseq fields 0 (min (length fields) (1- (fields-to-keep terrain)))))))
+  (let ((fields (terrain-fields terrain))
+        (most (clamp (floor +nodes-kept+ (length (terrain-cells terrain))) 2 50)))
+    (setf (terrain-fields terrain) (subseq fields 0 (min (length fields) (1- most))))))
 
 (defun shared-field (terrain goal)
   "Return the field of TERRAIN with the goal in the node GOAL that all threads share."
@@ -181,15 +178,11 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
     (setf (chart-changed chart) (mapcar #'car (chart-barred chart))
           (chart-field chart) own)))
 
-(defun follow-changes (chart)
-  "Bring the cells of the field of CHART up to date."
-  (dolist (node (shiftf (chart-changed chart) '()))
-    (change-cell (chart-field chart) node (cost-of-node chart node))))
-
 (defun field-to (chart goal)
   "Return the field for CHART as it is now that has its goal in the node GOAL."
   (cond ((null (chart-barred chart)) (shared-field (chart-terrain chart) goal))
         (t (unless (and (chart-field chart) (= goal (field-goal (chart-field chart))))
              (take-over-field chart goal))
-           (follow-changes chart)
+           (dolist (node (shiftf (chart-changed chart) '()))
+             (change-cell (chart-field chart) node (cost-of-node chart node)))
            (chart-field chart))))

@@ -76,12 +76,6 @@ last."
                  nil)))
     (draw-on pencil field x y (min cost true-cost) last)))
 
-(defun node-passes-p (field node test)
-  "True if TEST, a function or NIL, returns true for the column and row of NODE."
-  (and test
-       (multiple-value-bind (row column) (floor (the node node) (field-columns field))
-         (funcall (the function test) (1- column) (1- row)))))
-
 (defun draw-way (pencil descent goal-x goal-y until turns)
   "Draw the way down DESCENT to (GOAL-X,GOAL-Y), or into a cell for which UNTIL is true, or to its
 turn number TURNS."
@@ -92,7 +86,9 @@ turn number TURNS."
                     (not (step-down descent)))
           do (draw-to pencil field (descent-x descent) (descent-y descent) (descent-step descent))
              (let ((next (descent-node descent)))
-               (when (and (/= node next) (node-passes-p field next until)) (return))
+               (when (and until (/= node next))
+                 (multiple-value-bind (row column) (floor (the node next) (field-columns field))
+                   (when (funcall (the function until) (1- column) (1- row)) (return))))
                (setf node next))
           finally (when (= node goal) (draw-to-goal pencil descent goal-x goal-y)))
     (turn-here pencil)))
