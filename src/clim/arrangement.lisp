@@ -49,7 +49,6 @@ the screen."
   (magnification nil :type (or null (integer 1))))
 
 (defun title-name (section)
-  "Return the name of the title of SECTION."
   (ecase section
     (world 'world-title) (state 'state-title) (designators 'designators-title)
     (cameras 'cameras-title) (hands 'hands-title) (bins 'bins-title) (plan 'plan-title)
@@ -60,7 +59,6 @@ the screen."
   (and (>= width +wide+) (not (member 'plan (wishes-folded wishes)))))
 
 (defun column-sections (wishes width)
-  "Return the sections in the column of a window WIDTH pixels wide, from top to bottom."
   (if (plan-column-p wishes width) (remove 'plan +sections+) +sections+))
 
 (defun usual-details-width (wishes width)

@@ -17,7 +17,6 @@ whether the button is on."
   (lit-p (constantly nil) :read-only t))
 
 (defun key-text (key)
-  "Return what the key that types the character KEY is called."
   (if (char= key #\Space) "space" (string key)))
 
 (defmethod subject-title ((button button))

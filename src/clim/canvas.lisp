@@ -24,7 +24,6 @@
 (defvar *inks* (make-hash-table :synchronized t) "From colours to CLIM's, as far as used.")
 
 (defun ink (color)
-  "Return CLIM's colour for COLOR."
   (or (gethash color *inks*)
       (setf (gethash color *inks*)
             (flet ((part (position) (/ (ldb (byte 8 position) color) 255)))

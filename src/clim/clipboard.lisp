@@ -14,7 +14,6 @@
   :documentation "How long to wait for what another program hands over next, in seconds.")
 
 (defun connect (port)
-  "Return a new connection to the X server of PORT."
   (destructuring-bind (&key host display-id protocol &allow-other-keys)
       (rest (clim:port-server-path port))
     (xlib:open-display host :display display-id :protocol protocol)))
@@ -181,7 +180,6 @@ those that still fetch it are content, or have given up."
     (ignore-errors (xlib:close-display display :abort t))))
 
 (defun hold (held display selections)
-  "Let HELD be what SELECTIONS hold."
   (let ((mailbox (make-mailbox display)))
     (dolist (selection selections)
       (xlib:set-selection-owner display selection mailbox nil)

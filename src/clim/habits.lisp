@@ -22,7 +22,6 @@ prompt did not tell of plans' commands."
   "An alist from the names of robots to the legacy of the last window that has shown each.")
 
 (defun legacy-of (window)
-  "Return what WINDOW, which closes, leaves."
   (let ((session (conversation-session (window-conversation window))))
     (make-legacy :lines (transcript-lines (window-transcript window))
                  :typed (being-typed (window-conversation window))
@@ -30,7 +29,6 @@ prompt did not tell of plans' commands."
                  :quiet-p (ars-magna.cli:session-quiet-p session))))
 
 (defun take-legacy (window legacy)
-  "Let WINDOW, which is new, go on from LEGACY, of another one."
   (let ((conversation (window-conversation window)) (transcript (window-transcript window)))
     (setf (ars-magna.cli:session-quiet-p (conversation-session conversation))
           (legacy-quiet-p legacy))
@@ -41,7 +39,6 @@ prompt did not tell of plans' commands."
     (when (legacy-typed legacy) (give-key conversation (legacy-typed legacy)))))
 
 (defun keep-habits (window)
-  "Keep what the user has chosen in WINDOW, which closes, and what it says."
   (let ((habits (list (window-layers window) (window-color-p window) (window-wishes window)))
         (legacy (legacy-of window)))
     (with-lock (*habits-lock*)

@@ -13,7 +13,6 @@
   "What the help panel says of the mouse.")
 
 (defun help-rows ()
-  "Return the rows of the help panel."
   (mapcar #'make-row
           (append (list "Keys, after a click on a display")
                   (loop for button in *buttons*
@@ -27,7 +26,6 @@
 ;;; Layers.
 
 (defun switch-layer (window layer)
-  "Show LAYER in WINDOW, or no longer."
   (let ((layers (window-layers window)))
     (setf (window-layers window)
           (if (member layer layers) (remove layer layers) (cons layer layers)))
@@ -60,7 +58,6 @@ are, so there are none for these."
   (watcher-robot (window-watcher window)))
 
 (defun window-robots (window)
-  "Return the names of the robots of the run that WINDOW shows."
   (let ((snapshot (window-snapshot window)))
     (and snapshot (mapcar #'robot-image-name (snapshot-robots snapshot)))))
 

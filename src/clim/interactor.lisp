@@ -110,7 +110,6 @@
   (logtest modifier (clim:event-modifier-state event)))
 
 (defun named-key (name control-p meta-p)
-  "Return the key that CLIM calls NAME, perhaps with control or meta, or NIL."
   (let ((key (second (assoc name *keys-by-name*))))
     (case key
       (:left (if (or control-p meta-p) :meta-b key))
@@ -122,7 +121,6 @@
   (make-keyword (format nil "~A-~:@(~C~)" prefix char)))
 
 (defun key-of (event)
-  "Return the key of EVENT as the prompt's editor calls it, or NIL."
   (let ((char (clim:keyboard-event-character event))
         (control-p (pressed-with-p event clim:+control-key+))
         (meta-p (pressed-with-p event clim:+meta-key+)))
@@ -148,7 +146,6 @@
       (give-key (window-conversation window) (list :paste text)))))
 
 (defun own-action (event)
-  "Return a function of a window that EVENT stands for, or NIL."
   (let* ((name (clim:keyboard-event-key-name event))
          (typed (clim:keyboard-event-character event))
          ;; CLIM tells of shift by the capital alone.
@@ -183,7 +180,6 @@
 ;;; CLIM has one place for the keys of all windows; they are to go to the window that has them.
 
 (defun robot-window-of (sheet)
-  "Return the robot's window that SHEET belongs to, or NIL."
   (let ((frame (and (typep sheet '(or clim:pane clime:top-level-sheet-mixin))
                     (clim:pane-frame sheet))))
     (and (typep frame 'robot-window) frame)))
@@ -192,12 +188,10 @@
 ;;; thread, which may come to them late, only says which of its panes they go to.
 
 (defun window-with-keys (port)
-  "Return the window that keys of PORT go to, or NIL."
   (let ((sheet (clim:port-keyboard-input-focus port)))
     (and sheet (robot-window-of sheet))))
 
 (defun give-keys-to-window (port window)
-  "Let keys of PORT go to WINDOW."
   (let ((before (window-with-keys port)))
     (unless (eq window before)
       (setf (clim:port-keyboard-input-focus port)
@@ -227,14 +221,12 @@
   (unless (robot-window-of sheet) (call-next-method)))
 
 (defun focus-on (pane)
-  "Let what is typed in the window of PANE go to PANE."
   (let ((window (window-of pane)) (port (clim:port pane)))
     (setf (window-focus window) pane)
     (when (member (window-with-keys port) (list window nil))
       (setf (clim:port-keyboard-input-focus port) pane))))
 
 (defun type-into (pane)
-  "Let what is typed go to PANE."
   (focus-on pane)
   (repaint-if-changed pane))
 

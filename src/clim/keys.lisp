@@ -30,7 +30,6 @@
   (give-keys-to-prompt window))
 
 (defun half-typed-p (window)
-  "True if a line is being typed in WINDOW, and has something in it."
   (let ((shown (line-shown (window-conversation window))))
     (and shown (string/= "" (second shown)))))
 
@@ -70,7 +69,6 @@
              t)))))
 
 (defun modified-p (event)
-  "True if EVENT is of a key pressed with control or meta."
   (or (pressed-with-p event clim:+control-key+) (pressed-with-p event clim:+meta-key+)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:key-press-event))

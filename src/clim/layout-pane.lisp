@@ -3,7 +3,6 @@
 (in-package :ars-magna.clim)
 
 (defun pane-named (window name)
-  "Return the part of WINDOW called NAME, or NIL."
   (let ((pane (gethash name (window-panes window))))
     ;; CLIM may have made the panes of the layout anew.
     (if (and pane (clim:sheet-ancestor-p pane (clim:frame-top-level-sheet window)))
@@ -106,7 +105,6 @@ what they need now if only so there is enough for all."
   (arranged layout (setf (pane-needed layout) (settled-needs layout))))
 
 (defun put-parts (layout places)
-  "Put all parts of the window of LAYOUT where PLACES say."
   (let ((window (clim:pane-frame layout)))
     (point-nowhere window)
     (setf (pane-places layout) places)
@@ -154,7 +152,6 @@ WIDTH pixels wide.")
         (first-need section))))
 
 (defun window-layout (window)
-  "Return the pane that holds all parts of WINDOW."
   (pane-named window 'layout))
 
 (defun rearrange (window)

@@ -44,7 +44,6 @@
       (values (+ x (floor left magnification)) (+ y (floor top magnification))))))
 
 (defun event-place (pane event)
-  "Return where on PANE EVENT, of the mouse, has happened."
   (let ((magnification (magnification pane)))
     (values (floor (clim:pointer-event-x event) magnification)
             (floor (clim:pointer-event-y event) magnification))))
@@ -57,7 +56,6 @@
 ;;; How many that is.
 
 (defun graft-size (graft)
-  "Return the width and height of the screen GRAFT, or NIL and NIL if that is NIL."
   (if graft
       (values (clim:graft-width graft) (clim:graft-height graft))
       (values nil nil)))

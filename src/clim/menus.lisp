@@ -21,7 +21,6 @@
               (assoc :general *line-groups*))))
 
 (defun line-items (group)
-  "Return the items of the menu GROUP."
   (loop for line in (sort (copy-list (ars-magna.cli:all-lines)) #'string<
                           :key #'ars-magna.cli:line-name)
         when (string= group (line-group line))
@@ -49,7 +48,6 @@ and NIL for a gap."
 (defmethod subject-title ((menu menu)) (format nil "Menu ~A" (menu-title menu)))
 
 (defun line-menus ()
-  "Return the menus of the prompt's lines that there are now."
   (loop for (nil group) in *line-groups*
         for items = (line-items group)
         when items collect (make-menu group items)))
@@ -83,7 +81,6 @@ and NIL for a gap."
 ;;; As rows of the popup.
 
 (defun item-row (window item menu x y)
-  "Return the row of ITEM of MENU, which is at X, Y of WINDOW."
   (cond ((null item) (make-row ""))
         ((menu-p item)
          (make-row (format nil "~A >" (menu-title item))
@@ -92,7 +89,6 @@ and NIL for a gap."
              (make-row title :action (lambda () (funcall command)))))))
 
 (defun way-back (window outer x y)
-  "Return in a list the row that leads back to OUTER, the menu at X, Y of WINDOW, if there is one."
   (and outer
        (list (make-row (format nil "< ~A" (menu-title outer))
                        :action (lambda () (open-menu window outer x y))))))
@@ -133,7 +129,6 @@ and NIL for a gap."
           do (setf x (draw-menu-title canvas menu x (eq menu opener))))))
 
 (defun menu-left (pane menu)
-  "Return where the title of MENU begins in PANE."
   (second (assoc menu (pane-subjects pane))))
 
 (defun open-menu-of-bar (pane menu)
@@ -155,7 +150,6 @@ and NIL for a gap."
 ;;; They work wherever the keys go just then: the list is nearer than a line that is typed below it.
 
 (defun show-row (popup row)
-  "Scroll POPUP so that ROW is in view."
   (let* ((top (* +row-height+ (position row (pane-rows popup))))
          (height (nth-value 1 (pane-size popup)))
          (offset (pane-offset popup)))
@@ -184,7 +178,6 @@ last. True if there is one."
       t)))
 
 (defun choose-pointed (popup)
-  "Do what the row says that is pointed at in POPUP. True if there is one."
   (let ((row (pane-pointed popup)))
     (when (and row (row-action row))
       (choose-row popup row)

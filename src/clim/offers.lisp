@@ -41,7 +41,6 @@ if there is one."
   (format nil "(find-thing ~S)" (subject-title image)))
 
 (defun designators-of (image window)
-  "Return the numbers of the designators that denote the thing of IMAGE."
   (loop for designator in (robot-image-designators (window-robot window))
         when (equal (subject-key image) (subject-key (designator-image-denotation designator)))
           collect (designator-image-number designator)))
@@ -85,7 +84,6 @@ it that do not yet."
                                      (format nil "cam-track ~D ~D" index number)))))
 
 (defun reaching-offers (camera window)
-  "Return how to come to what CAMERA, a number, tracks, and to grasp it."
   (cons (list (format nil "Approach it by camera ~D" camera) (format nil "goto-desig ~D" camera))
         (loop for hand in (robot-image-hands (window-robot window))
               for index = (hand-image-index hand)
@@ -121,7 +119,6 @@ HELD-P by the robot itself that is less."
                                              (bin-image-index bin))))))
 
 (defun letting-go-offers (hand window)
-  "Return what can be done with what HAND, an image, holds."
   (let ((index (hand-image-index hand)))
     (append (list (list (format nil "Let go of it with hand ~D" index)
                         (format nil "hand-ungrasp ~D" index)))
@@ -225,7 +222,6 @@ bin."
       (subject-title subject)))
 
 (defun offer-rows (window subject)
-  "Return the menu of what can be done with SUBJECT."
   (append (list (make-row (subject-heading subject))
                 (make-row "Tell what it is"
                           :action (lambda () (describe-to window subject))))

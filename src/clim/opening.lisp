@@ -10,7 +10,6 @@
 (defvar *ports* '() "CLIM's ports that windows have come to.")
 
 (defun find-window (name)
-  "Return the open window of the robot called NAME, or NIL."
   (with-lock (*windows-lock*)
     (find name *windows* :key (lambda (window) (watcher-robot (window-watcher window)))
                          :test #'same-name-p)))
@@ -38,7 +37,6 @@
       t)))
 
 (defun window-session (window)
-  "Return the session of the prompt of WINDOW."
   (conversation-session (window-conversation window)))
 
 (defun take-work-left (window)
@@ -88,7 +86,6 @@ goes on, if it does, and how it is seen again."
 ;;; Which robot a window shows.
 
 (defun note-shown (window name)
-  "Let the robot called NAME be the one that WINDOW shows."
   (setf (watcher-robot (window-watcher window)) name)
   (pushnew name (window-robots-shown window)))
 
@@ -102,7 +99,6 @@ goes on, if it does, and how it is seen again."
   (request-refresh window))
 
 (defun shows-p (window name simulation)
-  "True if WINDOW shows the robot called NAME of SIMULATION."
   (and (eq name (watcher-robot (window-watcher window)))
        (eq simulation (window-simulation window))))
 
@@ -162,7 +158,6 @@ else, if its user has chosen another one of the same run, that that is shown."
                             (simulation-name simulation)))))))
 
 (defun discard (window)
-  "Let the X server forget WINDOW, which has closed, and its pixmaps."
   (forget-terrain (pane-named window 'world))
   (mapc #'forget-buffer (cons (window-popup window) (display-panes window)))
   (clim:disown-frame (clim:frame-manager window) window))
@@ -235,7 +230,6 @@ means that this has gone."
     window))
 
 (defun own-window ()
-  "Return the window whose prompt this thread is, or NIL."
   (find (current-thread) (open-windows)
         :key (lambda (window) (conversation-thread (window-conversation window)))))
 
@@ -250,7 +244,6 @@ is in a trial or fork."
                        (open-windows)))))
 
 (defun over-p (window)
-  "True if the run that WINDOW shows is over."
   (let ((simulation (window-simulation window)))
     (and simulation (simulation-over simulation) t)))
 
@@ -281,7 +274,6 @@ MISUSE where there is no X server."
              window))))
 
 (defun await-windows ()
-  "Wait until no window is open."
   (loop for window = (first (with-lock (*windows-lock*) *windows*))
         while window
         do (join-thread (window-thread window))))
@@ -290,7 +282,6 @@ MISUSE where there is no X server."
       *displays-waiter* #'await-windows)
 
 (defun watch-rewound (old new)
-  "Let the windows that show OLD show NEW, which is to go on in its place."
   (dolist (window (open-windows))
     (let ((watcher (window-watcher window)))
       (when (eq old (watcher-simulation watcher))

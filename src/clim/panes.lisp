@@ -68,11 +68,9 @@ would be cut; remember what was painted where."
   (repaint pane))
 
 (defun shown-p (pane)
-  "True if PANE is to be seen."
   (and (clim:sheet-grafted-p pane) (clim:sheet-enabled-p pane)))
 
 (defun repaint (pane)
-  "Paint PANE, all at once."
   (when (shown-p pane)
     (setf (pane-painted pane) (pane-content pane))
     (call-buffered (lambda ()

@@ -147,7 +147,6 @@ as for SEE-PLANS."
                            (remove look *plan-looks*)))))
 
 (defun ending-text (task)
-  "Return in words how TASK, a plan, ended."
   (format nil "~A ~A at tick ~A~@[: ~A~]" (task-label task)
           (case (task-state task)
             (:succeeded "succeeded") (:failed "failed") (t "was ended"))

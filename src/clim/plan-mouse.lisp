@@ -61,7 +61,6 @@
 ;;; Where the mouse is.
 
 (defun tick-under (pane x y)
-  "Return the tick of the timeline that is at X, Y of PANE, or NIL."
   (let* ((look (plan-look-of pane)) (page (plan-look-page look)))
     (and (eq :timeline (plan-look-view look))
          page

@@ -35,7 +35,6 @@
   (look-again pane))
 
 (defun fold-task (pane serial)
-  "Fold the parts of the task SERIAL away in PANE, or show them again."
   (let ((look (plan-look-of pane)))
     (setf (plan-look-folded look)
           (if (member serial (plan-look-folded look))
@@ -50,7 +49,6 @@
                lit-p))
 
 (defun plan-switches (pane)
-  "Return the switches of PANE, from left to right."
   (let* ((look (plan-look-of pane))
          (view (plan-look-view look))
          (traced-p (plan-look-traced-p look)))
@@ -70,7 +68,6 @@
                  (+ 10 (* +character-width+ (length label))) 17)))
 
 (defun draw-plan-head (canvas pane)
-  "Draw the switches of PANE, and whose plans it shows."
   (let ((x 4) (robot (plan-look-robot (plan-look-of pane))))
     (dolist (switch (plan-switches pane)) (setf x (+ 5 (draw-switch canvas switch x 3))))
     (when robot

@@ -5,7 +5,6 @@
 ;;; Hovering.
 
 (defun hint (window text)
-  "Let the status strip of WINDOW say TEXT."
   (setf (window-hint window) text)
   (repaint-if-changed (pane-named window 'strip)))
 
@@ -62,14 +61,12 @@ or was being dragged, has gone."
 ;;; Picking and offering.
 
 (defun describe-to (window subject)
-  "Say in WINDOW what SUBJECT is, if it is anything."
   (when subject
     (let ((stream (make-instance 'transcript-stream :transcript (window-transcript window))))
       (fresh-line stream)
       (describe-subject subject stream))))
 
 (defun pick (window subject)
-  "Let SUBJECT be what is picked in WINDOW, and say what it is."
   (select window subject)
   (describe-to window subject))
 
@@ -163,7 +160,6 @@ OPENER had opened.")
 
 ;; While something is dragged, the strip tells of that, wherever the mouse is.
 (defun dragging-pane (window)
-  "Return the pane of WINDOW from which something is dragged, or NIL."
   (find-if #'pane-drag (display-panes window)))
 
 ;; What comes up under the mouse, or goes from there, makes events of a mouse that rests.

@@ -47,7 +47,6 @@ away then unless STAYS-P. TICK, a function, says whether the row is ticked; NIL 
       (draw-lines canvas draw-gcontext* (list 7 (+ y 8) 10 (+ y 12) 16 (+ y 3))))))
 
 (defun draw-row (canvas row y width pointed-p)
-  "Draw ROW from Y on, WIDTH pixels wide."
   (when (and pointed-p (row-action row))
     (with-gcontext (draw-gcontext* :foreground (svref lightblue* 10))
       (draw-rectangle canvas draw-gcontext* 1 y (- width 2) +row-height+ t)))
@@ -64,7 +63,6 @@ away then unless STAYS-P. TICK, a function, says whether the row is ticked; NIL 
     (clim:draw-rectangle* pane 0 0 (1- width) (1- height) :filled nil :ink clim:+gray30+)))
 
 (defun places-meet-p (one other)
-  "True if the panes ONE and OTHER, of one parent, overlap."
   (clim:region-intersects-region-p
    (clim:transform-region (clim:sheet-transformation one) (clim:sheet-region one))
    (clim:transform-region (clim:sheet-transformation other) (clim:sheet-region other))))
@@ -103,7 +101,6 @@ so, a symbol, or the menu, or T."
     (repaint popup)))
 
 (defun open-opener (window)
-  "Return what has opened the popup that is on top of WINDOW, or NIL if there is none."
   (and (popup-open-p window) (pane-opener (window-popup window))))
 
 (defun close-popup (window)
@@ -121,7 +118,6 @@ so, a symbol, or the menu, or T."
   (nth (max 0 (floor (+ y -3 (pane-offset pane)) +row-height+)) (pane-rows pane)))
 
 (defun choose-row (pane row)
-  "Do what ROW of PANE says."
   (let ((window (window-of pane)))
     (unless (and row (row-stays-p row)) (close-popup window))
     (when (and row (row-action row))

@@ -20,7 +20,6 @@ had been; the tick and second from which on the rate is being measured, and that
   (reached nil :type (or null real)))
 
 (defun begin-pulse (simulation)
-  "Return the pulse of SIMULATION, of which nothing was seen before."
   (let ((tick (simulation-tick simulation)))
     (make-pulse :last-tick tick :tick tick :seconds (seconds-now))))
 
@@ -43,7 +42,6 @@ had been; the tick and second from which on the rate is being measured, and that
         (rate (format nil "~A/s" (number-text rate)))))
 
 (defun progress-text (progress)
-  "Return what the status strip says of PROGRESS."
   (format nil "~@[~A~]~@[ (~A reached)~]  ~A~@[ ~A~]"
           (rate-text (progress-rate progress))
           (rate-text (progress-reached progress))
@@ -61,7 +59,6 @@ had been; the tick and second from which on the rate is being measured, and that
 
 ;; In a trial or fork, which is not live, the prompt lets ticks pass.
 (defun state-at-prompt (simulation)
-  "Return the state of SIMULATION, which is not live."
   (cond ((values (ars-magna.cli:pace-of simulation)))
         ((headless-p simulation) :still)
         (t :stopped)))

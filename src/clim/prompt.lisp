@@ -94,7 +94,6 @@ this thread."
   (funcall (conversation-over conversation)))
 
 (defun start-conversation (conversation simulation robot-name)
-  "Let the prompt begin, to command the robot ROBOT-NAME of SIMULATION."
   (setf (conversation-lost-p conversation) nil
         (conversation-thread conversation)
         (start-thread (lambda () (converse conversation simulation robot-name))
@@ -120,7 +119,6 @@ this thread."
   (say (console-transcript (conversation-console conversation)) (apply #'format nil arguments)))
 
 (defun tell-to-answer (conversation what)
-  "Say that WHAT, a text, has to come after the answer that the prompt waits for."
   (say-in conversation "~A: first say how what has broken goes on, by one of ~A.~%"
           what (ars-magna.cli:ways-awaited (conversation-session conversation))))
 
@@ -139,7 +137,6 @@ this thread."
     (tell-news (conversation-console conversation))))
 
 (defun give-key (conversation key)
-  "Let the prompt have KEY, as in cli/editing/keys.lisp."
   (ars-magna.cli:press-key (ars-magna.cli:session-input (conversation-session conversation)) key)
   ;; Where nobody reads it yet, it is to be seen all the same.
   (tell-news (conversation-console conversation)))
@@ -176,6 +173,5 @@ them: its text, and where in it the cursor is."
   (ars-magna.cli:typed-ahead (ars-magna.cli:session-input (conversation-session conversation))))
 
 (defun end-conversation (conversation)
-  "Let the prompt end, whatever it is at. Return nothing."
   (ars-magna.cli:end-session (conversation-session conversation))
   (values))

@@ -18,7 +18,6 @@ much there is, all in the same unit.")
     (repaint-if-changed pane)))
 
 (defun scrollable-p (pane)
-  "True if there is more to see in PANE than fits."
   (multiple-value-bind (position page total) (scroll-state pane)
     (declare (ignore position))
     (> total page)))
@@ -51,7 +50,6 @@ much there is, all in the same unit.")
       (values top (+ top length)))))
 
 (defun paint-scroll-bar (pane)
-  "Paint the scroll bar of PANE, if there is more than fits."
   (when (scrollable-p pane)
     (multiple-value-bind (width height) (pane-size pane)
       (multiple-value-bind (top bottom) (thumb pane)

@@ -12,7 +12,6 @@ of what cannot be picked.")
   (:method ((cell cell)) (list :cell (cell-x cell) (cell-y cell))))
 
 (defun same-subject-p (one other)
-  "True if ONE and OTHER are images of the same."
   (or (eq one other)
       (let ((key (subject-key one))) (and key (equal key (subject-key other))))))
 
@@ -45,6 +44,5 @@ of what cannot be picked.")
     (loop for box in (selected-boxes pane) do (apply #'mark-box pane box))))
 
 (defun select (window subject)
-  "Let SUBJECT, an image or a cell, be what is picked in WINDOW; NIL for nothing."
   (setf (window-selection window) (subject-key subject))
   (refresh window))

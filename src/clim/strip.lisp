@@ -25,14 +25,12 @@
       (format nil "the prompt asks how ~:[~R programs go~;a program goes~] on" (= count 1) count))))
 
 (defun time-text (window)
-  "Return the upper line of the status strip of WINDOW."
   (format nil "~A  ~A~:[~;; a program waits for your answer~]~@[; ~A~]" (tick-text window)
           (progress-text (watcher-progress (window-watcher window)))
           (asked-by (window-conversation window))
           (answers-text window)))
 
 (defun strip-lines (window)
-  "Return what the status strip of WINDOW says, line by line."
   (list (time-text window) (window-hint window)))
 
 (defmethod pane-content ((pane strip-pane))

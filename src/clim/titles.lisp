@@ -20,7 +20,6 @@ trial."
             (length (window-robots window)))))
 
 (defun section-title (window section)
-  "Return the title of SECTION of WINDOW."
   (case section
     (world (world-title window))
     (transcript "Commands")

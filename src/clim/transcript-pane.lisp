@@ -43,7 +43,6 @@ the line."
           (if (and blank (< (+ start (floor columns 2)) blank)) (1+ blank) end)))))
 
 (defun rows-of-line (number line columns)
-  "Return the rows of LINE, at least one."
   (loop with text = (ars-magna.cli:unpainted-text line)
         with spans = (ars-magna.cli:painted-spans line)
         for start = 0 then end
@@ -52,7 +51,6 @@ the line."
         until (= end (length text))))
 
 (defun columns-and-rows (pane)
-  "Return for how many columns and rows of text PANE has room."
   (let ((height (nth-value 1 (pane-size pane))))
     (values (max 10 (floor (- (content-width pane) 8) +character-width+))
             (max 1 (floor (- height 4) +line-height+)))))
@@ -105,7 +103,6 @@ that is the newest: no line that is no longer kept, and a whole page of them."
 (defun column-x (column) (+ 4 (* column +character-width+)))
 
 (defun paint-words (canvas text column y ink)
-  "Paint TEXT, from COLUMN of the row at Y on, in INK."
   (with-gcontext (draw-gcontext* :foreground (or (second (assoc ink *ink-colors*)) black*))
     (draw-glyphs canvas draw-gcontext* (column-x column) y text)))
 

@@ -41,7 +41,6 @@ where something is counted."
     (extend-line transcript (subseq part (if return (1+ return) 0)))))
 
 (defun add-text (transcript text)
-  "Add TEXT, which may consist of several lines, to TRANSCRIPT."
   (loop for start = 0 then (1+ end)
         for end = (position #\Newline text :start start)
         do (add-part transcript (subseq text start end))
@@ -65,7 +64,6 @@ where something is counted."
   (funcall (transcript-news transcript)))
 
 (defun say (transcript text)
-  "Add TEXT to TRANSCRIPT."
   (call-changing-transcript transcript (lambda () (add-text transcript text))))
 
 (defun say-in-window (window &rest arguments)

@@ -86,7 +86,6 @@
     (clamp (* step (floor scale step)) +least-scale+ 64)))
 
 (defun fit-view (pane)
-  "Let the whole map be in view in the middle of PANE."
   (destructuring-bind (left top right bottom) (view-box pane)
     (let* ((width (max 1 (- right left))) (height (max 1 (- bottom top))) (map (view-map pane))
            (scale (fitting-scale map width height)))
@@ -111,7 +110,6 @@
                  (- (* scale (robot-image-y robot)) (pane-top pane))))))
 
 (defun centre-robot (pane)
-  "Let the window's robot be in the middle of the view of PANE."
   (multiple-value-bind (x y) (robot-place pane)
     (when x
       (destructuring-bind (left top right bottom) (view-box pane)
@@ -126,7 +124,6 @@
         (and x (or (off-p x left right) (off-p y top bottom)))))))
 
 (defun show-robot (pane)
-  "Move the view of PANE so that the window's robot is in its middle."
   (fit-no-longer pane)
   (centre-robot pane)
   (repaint-if-changed pane))

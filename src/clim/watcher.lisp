@@ -111,12 +111,10 @@ itself: it will come with the next tick."
           (funcall (watcher-news watcher)))))))
 
 (defun look-at-scale (watcher)
-  "Tell if the user has set GRAPHICS-SCALE*."
   (unless (eql graphics-scale* (shiftf (watcher-scale watcher) graphics-scale*))
     (funcall (watcher-news watcher))))
 
 (defun look-for-plans (watcher)
-  "Look at the plans, and tell if they have gone on."
   (when (look-at-plans (watcher-plans watcher))
     (funcall (watcher-news watcher))))
 
@@ -182,13 +180,11 @@ itself: it will come with the next tick."
   (when (shiftf (watcher-unpaced-p watcher) nil) (start-pacer watcher)))
 
 (defun start-watching (watcher simulation)
-  "Let WATCHER begin its work, on SIMULATION. Return WATCHER."
   (watch-simulation watcher simulation)
   (start-pacer watcher)
   watcher)
 
 (defun stop-watching (watcher)
-  "Let WATCHER end its work. Return nothing."
   (setf (watcher-over-p watcher) t)
   (signal-semaphore (watcher-over watcher))
   (signal-semaphore (watcher-painted watcher))

@@ -75,11 +75,9 @@
   (:documentation "The displays of a robot in a window."))
 
 (defun window-title (robot-name &optional place)
-  "Return the title of a window that shows the robot ROBOT-NAME, in PLACE if that is given."
   (format nil "ARS MAGNA: ~A~@[, ~A~]" robot-name place))
 
 (defun retitle (window)
-  "Let the title of WINDOW say which robot it shows, and in which trial or fork."
   (let ((simulation (window-simulation window)))
     ;; Not all of CLIM's ports can do that.
     (ignore-errors
@@ -107,11 +105,9 @@
     window))
 
 (defun window-snapshot (window)
-  "Return the snapshot that WINDOW shows."
   (watcher-snapshot (window-watcher window)))
 
 (defun window-robot (window)
-  "Return the image of the robot whose details WINDOW shows, or NIL."
   (let ((snapshot (window-snapshot window)))
     (and snapshot (snapshot-robot snapshot (shown-robot window)))))
 
@@ -131,13 +127,11 @@ each snapshot."
   "The names of the parts of the window that we paint.")
 
 (defun display-panes (window)
-  "Return a list of the panes of WINDOW that are painted."
   (loop for name in *painted-parts*
         for pane = (pane-named window name)
         when pane collect pane))
 
 (defun repaint-all (window)
-  "Paint all of WINDOW."
   (mapc #'repaint (display-panes window)))
 
 ;;; Keeping up to date.

@@ -16,7 +16,6 @@
     (values (/ (+ x (pane-left pane)) scale) (/ (+ y (pane-top pane)) scale))))
 
 (defun cell-at (pane x y)
-  "Return the cell of the map that is painted at X, Y of PANE, or NIL."
   (when (in-view-p pane x y)
     (let ((map (view-map pane)))
       (multiple-value-bind (x y) (point-at pane x y)
@@ -94,7 +93,6 @@ robot at its middle, whatever it stands on, or what is smallest there."
     (repaint-if-changed pane)))
 
 (defun paint-ghost (pane)
-  "Paint where in PANE what is dragged would be."
   (when (pane-ghost pane)
     (destructuring-bind (x y) (pane-ghost pane)
       (let ((radius (max 5 (* 1/2 (pane-scale pane)))))
@@ -113,7 +111,6 @@ robot at its middle, whatever it stands on, or what is smallest there."
                 (text-as-typed (robot-image-name image)) x y (robot-image-angle image)))))
 
 (defun drop-subject (pane subject x y)
-  "Ask the prompt to put SUBJECT at X, Y of PANE."
   (let ((window (window-of pane)))
     (setf (pane-ghost pane) nil)
     (if (cell-at pane x y)

@@ -30,12 +30,10 @@
           (place-graphics map))))
 
 (defun place-graphics (map)
-  "Return a list of the functions that draw the places of MAP."
   (loop for type across (map-place-types map)
         collect (and type (not (place-type-invisible-p type)) (place-type-graphics type))))
 
 (defun call-in-view (function pane medium)
-  "Call FUNCTION with a canvas that paints on MEDIUM what is in view in PANE."
   (let ((canvas (make-instance 'clim-canvas :medium medium :magnification (magnification pane)
                                             :color-p (window-color-p (window-of pane)))))
     (with-canvas (canvas :scale (pane-scale pane))
@@ -44,7 +42,6 @@
     canvas))
 
 (defun paint-terrain (pane medium width height)
-  "Paint on MEDIUM the terrain that is in view in PANE."
   (let* ((scale (pane-scale pane)) (window (window-of pane)) (map (window-map window)))
     (flet ((cell (pixels) (floor pixels scale)))
       (clim:draw-rectangle* medium 0 0 width height :ink clim:+gray92+)

@@ -137,11 +137,9 @@ interval as FACTOR gives the interval or point interval of all products (manual,
         (scaled-length x y most))))
 
 (defun least-size (interval)
-  "Return the least absolute value in INTERVAL."
   (max 0d0 (%interval-min interval) (- (%interval-max interval))))
 
 (defun greatest-size (interval)
-  "Return the greatest absolute value in INTERVAL."
   (max (abs (%interval-min interval)) (abs (%interval-max interval))))
 
 (public norm)

@@ -18,11 +18,9 @@ SLOTS an alist from slot names to reader functions' names; MAKER a function or N
   "All registered types by name.")
 
 (defun find-nisp-type (name)
-  "Return the type called NAME, or NIL."
   (values (gethash (string name) *nisp-types*)))
 
 (defun ensure-nisp-type (name)
-  "Return the type called NAME, new if need be."
   (or (find-nisp-type name)
       (setf (gethash (string name) *nisp-types*) (make-nisp-type (string name)))))
 

@@ -33,7 +33,6 @@ neither (manual A; reading 41)."
 there are libraries of which one file adds to the syntax of the next.")
 
 (defun nisp-syntax-p (readtable)
-  "True if READTABLE is :NISP, or a copy of it."
   (eq (get-macro-character #\! (find-readtable :nisp)) (get-macro-character #\! readtable)))
 
 (defmethod asdf:perform :around ((operation asdf:operation) (component asdf:cl-source-file))

@@ -59,7 +59,6 @@
         #'string<))
 
 (defun reject-slot (object slot setter)
-  "Signal that OBJECT has no SLOT, a string, or none that can be set."
   (let ((known (slot-names object)))
     (when (and setter (member slot known :test #'string=))
       (reject-use "Slot ~A of a ~A cannot be set." slot (type-of object)))
@@ -97,7 +96,6 @@ SETF if it can be set; the accessor for all types if TYPE has none of its own."
         (ensure-slot-accessor slot))))
 
 (defun slot-setter-form (writer)
-  "Return the form by which WRITER stores VALUE into OBJECT."
   (if (typep writer '(cons (eql setf)))
       `(setf (,(second writer) object) value)
       `(,writer value object)))

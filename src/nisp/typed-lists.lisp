@@ -23,7 +23,6 @@
        (find-if (lambda (name) (resembles-p type name)) (known-types))))
 
 (defun doubt-type (operator type)
-  "Warn if TYPE, which OPERATOR, a string, declares, may be a slip for a known type."
   (when (type-like type)
     (doubt-definition "~A: there is no type ~(~A~). Did you mean ~(~A~)?"
                       operator type (type-like type))))
@@ -59,7 +58,6 @@ OPERATOR, a string, is named in errors (manual 3.1)."
   (without-types operator bindings))
 
 (defun parameter-variables (parameter)
-  "Return the variables that PARAMETER, an element of an ordinary lambda list, binds."
   (if (atom parameter)
       (list parameter)
       (destructuring-bind (name &optional default (supplied nil supplied-p)) parameter

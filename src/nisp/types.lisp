@@ -49,7 +49,6 @@ arguments, or call it with them if it is written #'function. DOCUMENTATION is fo
                         `(lambda ,lambda-list ,constructor))))
 
 (defun takes-p (parameters count)
-  "True if COUNT arguments go with the lambda list PARAMETERS."
   (let* ((keyword (position-if #'lambda-keyword-p parameters))
          (required (or keyword (length parameters)))
          (optional (member '&optional parameters)))

@@ -70,7 +70,6 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
   (and last (shiftf (event-next last) nil)))
 
 (defun shelve (agenda event)
-  "Put EVENT into the bucket of its time."
   (declare #.*hot* (type agenda agenda) (type event event))
   (let* ((time (event-time event))
          (page (ash time (- +page-bits+)))
@@ -193,7 +192,6 @@ interrupted."
     (when event (run-in-order agenda event))))
 
 (defun run-bucket (agenda last)
-  "Run the events of the bucket that held LAST."
   (declare #.*hot* (type agenda agenda))
   (let ((first (first-of last)))
     (cond ((eq first last) (run-if-pending agenda first))

@@ -30,7 +30,6 @@ world, and if FUNCTION is aborted."
   (given-up-p nil :type t))
 
 (defun note-trouble (question condition)
-  "Let QUESTION have come to CONDITION instead of an answer."
   (setf (question-trouble question)
         (if (typep condition 'serious-condition) condition :aborted)))
 
@@ -65,7 +64,6 @@ world, and if FUNCTION is aborted."
       (signal-semaphore (question-answered question)))))
 
 (defun result-of (question)
-  "Return or signal what has come of QUESTION."
   (let ((trouble (question-trouble question)))
     (cond ((null trouble) (values-list (question-values question)))
           ((eq trouble :aborted)

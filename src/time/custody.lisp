@@ -65,7 +65,6 @@ interrupted if this thread could before."
               (call-opening open-p otherwise))))))
 
 (defun hand-over (custody thread)
-  "Let THREAD have CUSTODY, which this thread has."
   (setf (custody-thread custody) thread))
 
 ;;; Waiting.

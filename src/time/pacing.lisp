@@ -48,7 +48,6 @@ what users' code the thread is in."
   (timeline-custody (pacing-timeline pacing)))
 
 (defun wake (pacing)
-  "Wake the thread of PACING."
   (signal-semaphore (custody-wake-up (pacing-custody pacing))))
 
 (defun seconds-now ()

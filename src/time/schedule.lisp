@@ -60,7 +60,6 @@
           ((plusp left) (queue-again (scheduled-agenda event) event 1)))))
 
 (defun enter (event agenda)
-  "Let EVENT wait in AGENDA for its tick."
   (setf (scheduled-agenda event) agenda
         (scheduled-deadline event) (and (scheduled-test event) (scheduled-timeout event)
                                         (+ (agenda-tick agenda) (scheduled-timeout event))))

@@ -83,7 +83,6 @@ which says so itself."
     (dolist (way ways) (draw #'draw-way way))))
 
 (defun bundle-entry (look opacity text)
-  "Return an entry of the legend with TEXT for ways with LOOK and OPACITY."
   (sample-of (canvas x y) text
     (with-opacity (canvas opacity)
       (draw-line-of-way canvas (list (- x 8) y (+ x 8) y) look))

@@ -125,7 +125,6 @@ than MOST ticks, or all if it is NIL."
       (mapcar #'brief moments))))
 
 (defun with-text (moment text)
-  "Return MOMENT with TEXT as what is told of it."
   (make-moment (moment-tick moment) (moment-kind moment) text (moment-x moment) (moment-y moment)
                (moment-robot moment) (moment-code moment)))
 

@@ -31,7 +31,6 @@
     (when begun-p (note-point trail (robot-put-x robot) (robot-put-y robot)))))
 
 (defun note-place (trail)
-  "Let TRAIL know where its robot is."
   (let ((robot (trail-robot trail)))
     (unless (eql (trail-placements trail) (robot-placements robot)) (note-placement trail))
     (note-point trail (robot-x robot) (robot-y robot))))
@@ -43,7 +42,6 @@
                     (first (push (make-trail robot) trails))))))
 
 (defun pieces-along (trail)
-  "Return the pieces of TRAIL in order."
   (reverse (mapcar #'reverse (trail-pieces trail))))
 
 (defun ways-along (trails trial outcome)

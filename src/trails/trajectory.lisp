@@ -17,7 +17,6 @@
   (let ((*read-default-float-format* 'double-float)) (princ-to-string number)))
 
 (defun trajectory-row (robot tick)
-  "Return the texts of the row for ROBOT in TICK."
   (printing-plainly ()
     (append (list (number-as-text tick) (string-downcase (robot-name robot)))
             (mapcar #'number-as-text

@@ -41,7 +41,6 @@
               costs)))
 
 (defun map-of (operator map)
-  "Return the map that MAP, an argument of OPERATOR, means: itself, or its name."
   (cond ((map-p map) map)
         ((or (stringp map) (and map (symbolp map))) (find-map map))
         (t (reject-argument operator 'map map "a map, or the name of one"))))

@@ -21,7 +21,6 @@
 
 (declaim (inline descent-node))
 (defun descent-node (descent)
-  "Return the number of the cell in which DESCENT is."
   (+ 1 (truncate (the (double-float 0d0 32768d0) (descent-x descent)))
      (* (field-columns (descent-field descent))
         (1+ (truncate (the (double-float 0d0 32768d0) (descent-y descent)))))))

@@ -101,7 +101,6 @@ the terrain's: totals are found in it, but no cell changes."
       (queue-push (field-queue field) node (min draft total)))))
 
 (defun redraft (field node)
-  "Make the draft of NODE anew."
   (declare #.*hot* (type field field) (type node node))
   (when (< (aref (field-cells field) node) +barred+)
     (let ((draft (best-draft field node)))

@@ -34,7 +34,6 @@ if it is not free, or costs more than LIMIT. LEAVING is true if it may begin nea
 
 (declaim (inline first-line-p))
 (defun first-line-p (pencil)
-  "True if the way of PENCIL has not turned yet."
   (null (pencil-points pencil)))
 
 (declaim (inline go-straight-p draw-on))

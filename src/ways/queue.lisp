@@ -30,7 +30,6 @@
 
 (declaim (inline queue-push))
 (defun queue-push (queue node key)
-  "Add NODE with KEY."
   (declare (type node node) (type double-float key))
   (when (= (queue-count queue) (length (queue-keys queue))) (enlarge-queue queue))
   (let ((keys (queue-keys queue)) (nodes (queue-nodes queue)) (place (queue-count queue)))
@@ -64,7 +63,6 @@
     nil))
 
 (defun copy-into-queue (queue other)
-  "Let QUEUE be as OTHER is."
   (setf (queue-keys queue) (copy-seq (queue-keys other))
         (queue-nodes queue) (copy-seq (queue-nodes other))
         (queue-count queue) (queue-count other))

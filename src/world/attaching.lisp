@@ -15,7 +15,6 @@
     attachment))
 
 (defun detach-kicker (thing name)
-  "Take the kicker called NAME, if any, from THING."
   (let ((attachment (find-attachment thing name)))
     (when attachment
       (setf (thing-kickers thing) (remove attachment (thing-kickers thing)))

@@ -47,7 +47,6 @@ which expected EXPECTED there."
                              (namesake (missing-name condition)))))))
 
 (defun public-variable-p (symbol)
-  "True if SYMBOL is a variable with a value that its package exports."
   (let ((package (symbol-package symbol)))
     (and package
          (boundp symbol)

@@ -19,7 +19,6 @@
     (reject-clause definition options "either :check-matchers or :checker, one of them")))
 
 (defun checked-direction (definition matcher direction)
-  "Return DIRECTION, which MATCHER says, as a double-float. Signals MALFORMED-DEFINITION."
   (unless (within-reason-p direction)
     (reject-clause definition matcher (argument-type-text 'angle)))
   (when (perhaps-degrees-p direction)
@@ -29,7 +28,6 @@
   (double direction))
 
 (defun matcher-form (matcher definition)
-  "Return a form that makes the rule for MATCHER, an element of :check-matchers."
   (unless (and (proper-list-p matcher) (<= 2 (length matcher) 4)
                (loop for step in (cddr matcher) always (typep step '(signed-byte 16))))
     (reject-clause definition matcher
@@ -47,7 +45,6 @@
     `(lambda ,(first graphics) (declare (ignorable ,@(first graphics))) ,@(rest graphics))))
 
 (defun place-type-forms (name lambda-list options)
-  "Return the forms that DEF-PLACE-TYPE expands to."
   (let ((definition (title "def-place-type" name)))
     (check-place-type-options definition name lambda-list options)
     (destructuring-bind (&key confusion check-matchers checker directions invisible graphics before
@@ -88,7 +85,6 @@ REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
                      (lambda () (place-type-forms name lambda-list options))))
 
 (defun type-to-precede (definition before)
-  "Return the place type that BEFORE, the option of a definition, means, or NIL."
   (cond ((null before) nil)
         ((eq before t) (first (registry-objects *place-types*)))
         ((find-place-type before nil))

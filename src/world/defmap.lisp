@@ -33,11 +33,9 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
 ;;; What is doubtful.
 
 (defun doubt-clause (map clause control &rest arguments)
-  "Warn of CLAUSE, or a name in one, of MAP with a text made of CONTROL and ARGUMENTS."
   (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-place clause) control arguments))
 
 (defun warn-of-walls (map clause walls)
-  "Warn of what is doubtful in WALLS, which CLAUSE of MAP stands for."
   (when (loop for wall in walls
                 thereis (loop for (x y) in (clause-value :corners map wall)
                                 thereis (not (and (<= 0 x (map-width map))
@@ -118,7 +116,6 @@ CODE-FORM makes it. PACKAGE is the one that the author writes in. Return the map
   (check-frame definition (getf (cddr size) :frame '(1 0 0 0))))
 
 (defun map-forms (name size clauses)
-  "Return the forms that DEFMAP expands to."
   (check-size (title "defmap" name) name size)
   (destructuring-bind (width height &key cache (frame '(1 0 0 0))) size
     (let ((map (%make-map :name name :width width :height height)))

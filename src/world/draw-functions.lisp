@@ -20,12 +20,10 @@
   (let ((*said-by-code-p* nil)) (apply function arguments)))
 
 (defun names-function-p (value)
-  "True if VALUE is a symbol that names a function, no macro."
   (and value (symbolp value) (fboundp value)
        (not (macro-function value)) (not (special-operator-p value))))
 
 (defun draw-function-p (value)
-  "True if VALUE can be that of :draw-function."
   (typecase value
     (null t)
     (function (callable-with-p value 6))
@@ -109,7 +107,6 @@ something, so that it is not the only one of its text, or cannot draw."
   (and (consp value) (same-name-p key :draw-function)))
 
 (defun descriptor-form (thing-name descriptor)
-  "Return a form for DESCRIPTOR in a definition of the thing THING-NAME."
   `(list ,@(loop for (key value) in descriptor
                  collect `(list ',key ,(if (code-p key value)
                                            (draw-function-form thing-name value)

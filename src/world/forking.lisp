@@ -126,7 +126,6 @@ is in, and what is in it, is yet to be copied."
     (dolist (thing others) (complete-thing thing old new copier))))
 
 (defun copy-things (world copy copier)
-  "Let COPY, a copy of WORLD, have copies of its things and kickers."
   (let* ((stock (world-stock world)) (things (stock-things stock))
          (new (make-array (length things) :initial-element nil)))
     (copy-each-thing things new (stock-count stock) copy copier)

@@ -8,7 +8,6 @@
 ;;; direction only, by single writes, so a race can at most repeat a warning.
 
 (defun on-map-p (kicker map)
-  "True if MAP puts KICKER on things."
   (find-recipe (lambda (recipe)
                  (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil))))
                (map-things map)))
@@ -73,7 +72,6 @@ cannot."
 ;;; What can be done about a kicker that fails again and again.
 
 (defun where-to-mend (attachment)
-  "Return in words where the code of the kicker ATTACHMENT is to be mended."
   (let* ((kicker (attachment-kicker attachment))
          (file (function-file (kicker-body kicker))))
     (cond (file (format nil "in ~A, and load that again" file))

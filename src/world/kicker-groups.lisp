@@ -72,7 +72,6 @@
         (seat-member group index attachment)))))
 
 (defun seat-member (group index attachment)
-  "Make ATTACHMENT the member number INDEX of GROUP."
   (let ((row (group-row group)) (place (* 3 index)))
     (setf (attachment-index attachment) index
           (svref row place) attachment
@@ -81,7 +80,6 @@
           (svref row (+ place 2)) (attachment-kicker attachment))))
 
 (defun leave-group (attachment)
-  "Let ATTACHMENT run no more."
   (let ((group (attachment-group attachment)))
     (setf (attachment-alive-p attachment) nil)
     (when group
@@ -219,7 +217,6 @@ large group, memory is read ahead if the first that runs moves its thing."
       t)))
 
 (defun run-due-kicker (attachment world)
-  "Run ATTACHMENT of a thing in WORLD, as RUN-KICKER has asked for."
   (when (attachment-alive-p attachment)
     (setf (attachment-ran attachment) (world-kicker-tick world))
     (call-user-code (lambda () (setf self attachment)

@@ -21,7 +21,6 @@
 
 (declaim (inline open-at-p))
 (defun open-at-p (world x y)
-  "True if the point (X, Y) is in the map of WORLD and in no wall."
   (declare (type double-float x y))
   (let ((index (point-index (world-map world) x y)))
     (and index (not (logtest +wall+ (aref (world-flags world) index))))))
@@ -83,7 +82,6 @@ it begins. NIL if there is none, as all eight are filled."
           t)))))
 
 (defun kick-by-numbers (thing dx dy kick-if-wall)
-  "Do what KICK-THING says."
   (check-argument kick-thing thing (thing-p thing) (argument-type-text 'thing thing))
   (check-argument kick-thing dx (within-reason-p dx) (argument-type-text 'number dx))
   (check-argument kick-thing dy (within-reason-p dy) (argument-type-text 'number dy))

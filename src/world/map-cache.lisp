@@ -38,7 +38,6 @@
 ;;; Writing.
 
 (defun map-words (map key)
-  "Return the words that stand for the grid of MAP."
   (let* ((walls (count-if #'plusp (map-flags map))) (places (count-if #'plusp (map-places map)))
          (words (make-array (+ +cache-header+ (* 2 (+ walls places)))
                             :element-type '(unsigned-byte 64)))

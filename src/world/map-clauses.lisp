@@ -37,7 +37,6 @@ the form for the option"))
                             "a clause without a dot before its last element")))))
 
 (defun check-clause (map clause kind)
-  "Signal MALFORMED-DEFINITION unless CLAUSE of MAP fits KIND."
   (unless (handler-case (clause-value :check map clause kind)
             (malformed-definition (condition) (error condition))
             (error () nil))

@@ -76,7 +76,6 @@ MALFORMED-DEFINITION if contents are wrong."
 ;;; Recipes.
 
 (defun clause-recipe (definition clause name descriptor &rest options)
-  "Return the recipe for CLAUSE; trouble is the definition's."
   (warn-of-slips definition name descriptor :clause clause)
   (handler-case (apply #'write-recipe 'defmap name descriptor options)
     ((or wrong-argument unknown-name) (condition)

@@ -75,7 +75,6 @@ asked" :writable :export))
 (defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
 
 (defun clear-grid (map)
-  "Empty all cells of MAP."
   (let ((size (* (map-width map) (map-height map))))
     (setf (map-flags map) (make-octets size)
           (map-parameters map) (make-doubles size)

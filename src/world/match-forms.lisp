@@ -40,7 +40,6 @@
           (reject "entries NIL or - (empty), T or * (wall), x or ?() (either)"))))))
 
 (defun form-size (form)
-  "Return width and height of the match form FORM."
   (values (length (first form)) (length form)))
 
 (defun small-form-p (form)

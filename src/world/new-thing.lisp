@@ -12,7 +12,6 @@
       (values world :floor x y))))
 
 (defun resolve-neighbour (thing)
-  "Return the world, location and perhaps coordinates where THING is."
   (unless (and (thing-p thing) (thing-location thing))
     (reject-argument 'new-thing "location" (list :with thing)
                      "(:with thing), a thing that is somewhere"))

@@ -61,7 +61,6 @@ last, without consing."
 
 (declaim (inline move-on-floor))
 (defun move-on-floor (thing x y)
-  "Move THING, which is on the floor, to X, Y."
   (declare (type double-float x y))
   (let ((from (thing-index thing)))
     (setf (thing-x thing) x (thing-y thing) y)
@@ -118,14 +117,12 @@ WHAT in a run is shown if nobody reads it."
 
 (declaim (inline note-move))
 (defun note-move (thing old-location new-location)
-  "Tell the watchers of THING's world."
   (dolist (watcher (world-move-watchers (thing-world thing)))
     (funcall (the function watcher) thing old-location new-location)))
 
 ;;; Moving.
 
 (defun holder-p (object)
-  "True if OBJECT can hold things."
   (and (compute-applicable-methods #'location-contents (list object)) t))
 
 (defun check-holder (operator thing holder)

@@ -59,7 +59,6 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
 ;;; as are those with the number of a thing, such as "PEN#2".
 
 (defun may-be-slip-p (name other)
-  "True if NAME, of nothing, may be a slip for OTHER, that of a thing."
   (flet ((without-digits (name)
            (remove-if (lambda (char) (or (digit-char-p char) (char= char #\#))) (string name))))
     (and (resembles-p name other)

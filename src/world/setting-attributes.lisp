@@ -14,7 +14,6 @@
       (refresh-cell-flags (thing-world thing) (thing-index thing)))))
 
 (defun checked-entry (operator name value)
-  "Return a list (attribute value) with a keyword as the name. Signals WRONG-ARGUMENT."
   (let ((key (attribute-key name)))
     (check-attribute-value operator key value)
     (list key (if (eq key :draw-function) (draw-function-said value) value))))
@@ -28,7 +27,6 @@
         collect (checked-entry operator name value)))
 
 (defun descriptor-p (object)
-  "True if OBJECT has the shape of an object descriptor."
   (and (proper-list-p object)
        (loop for entry in object
              always (and (proper-list-p entry) (= 2 (length entry))

@@ -25,7 +25,6 @@ in MET, which they are added to, stand for."
     (dotimes (index size) (check-cell index stock met))))
 
 (defun check-stock (stock)
-  "Signal CONTRADICTION unless STOCK has room for as many things as it says."
   (must-hold (and (<= 0 (stock-count stock) (length (stock-things stock)))
                   (<= +least-stock+ (length (stock-things stock)))
                   (= (length (stock-things stock)) (length (stock-nexts stock))
@@ -34,7 +33,6 @@ in MET, which they are added to, stand for."
              "its vector of things cannot grow"))
 
 (defun check-thing (thing rank world)
-  "Signal CONTRADICTION unless THING makes sense as the one with RANK in WORLD."
   (must-hold (and (thing-p thing)
                   (eq world (thing-world thing))
                   (thing-alive-p thing)
@@ -104,7 +102,6 @@ in MET, which they are added to, stand for."
     (loop for holder being the hash-keys of holders collect holder)))
 
 (defun check-no-circle (world)
-  "Signal CONTRADICTION if a thing of WORLD is in itself."
   (let ((grounded (make-hash-table :test 'eq)))
     (do-things (thing world)
       (loop for outer = thing then (thing-location outer)
@@ -131,7 +128,6 @@ in MET, which they are added to, stand for."
 ;;; Kickers.
 
 (defun check-seat (group index)
-  "Signal CONTRADICTION unless the member of GROUP with INDEX makes sense."
   (let* ((row (group-row group))
          (attachment (svref row (* 3 index)))
          (thing (svref row (+ 1 (* 3 index)))))

@@ -11,7 +11,6 @@
 (defun row-in (map y) (clamp (floor y) 0 (1- (map-height map))))
 
 (defun substance-number (map type)
-  "Return the number that stands for the substance named TYPE in MAP."
   (position type (map-substance-types map) :start 1 :test #'same-name-p))
 
 (defun fill-cell (map x y substance parameter)
@@ -123,7 +122,6 @@ to 1e15"
                              possible (min 32767 (isqrt possible)))))))
 
 (defun substances-of (map clauses)
-  "Return the names of what CLAUSES of MAP, walls, rects and circles, are made of."
   (remove-duplicates (loop for clause in clauses collect (clause-value :substance map clause))
                      :test #'same-name-p :from-end t))
 
