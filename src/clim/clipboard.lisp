@@ -84,20 +84,17 @@ if it has; :NONE if it cannot; NIL if it says nothing."
                   (reject-paste "That is too long to be pasted"))
                  (t octets))))))
 
-(defun fetch-on (display selection)
-  (let* ((mailbox (make-mailbox display))
-         (octets (fetch-as :utf8_string selection display mailbox)))
-    (if octets
-        (decoded octets)
-        (fetch-as :string selection display mailbox))))
-
 (defgeneric fetch-text (port selection)
   (:documentation "Return the text that SELECTION, :PRIMARY or :CLIPBOARD, holds on the X server of
 PORT, or NIL if there is none. Signals MISUSE if it does not come.")
   (:method (port selection) (declare (ignore port selection)) nil)
   (:method ((port clim-clx:clx-port) selection)
     (let ((display (connect port)))
-      (unwind-protect (fetch-on display selection)
+      (unwind-protect (let* ((mailbox (make-mailbox display))
+                             (octets (fetch-as :utf8_string selection display mailbox)))
+                        (if octets
+                            (decoded octets)
+                            (fetch-as :string selection display mailbox)))
         (xlib:close-display display :abort t)))))
 
 ;;; Holding.

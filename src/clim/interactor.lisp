@@ -13,13 +13,9 @@
 
 ;;; What is to be seen.
 
-(defun line-in-short (line)
-  (if (< 40 (length line)) (format nil "~A..." (subseq line 0 37)) line))
-
 (defun line-text (control line)
   "Return in words, by CONTROL, what the LINE under way does, and how it is ended."
-  (format nil "~@? -- control-C, or Interrupt in the menu Run, ends it." control
-          (line-in-short line)))
+  (format nil "~@? -- control-C, or Interrupt in the menu Run, ends it." control (cut line 40)))
 
 (defun waiting-label (count)
   "Return what stands before what is typed while COUNT lines wait."
@@ -32,13 +28,6 @@
   (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
     (and line (ars-magna.cli:drawn-line-shown line))))
 
-(defun note-on (text)
-  "Return what is said above TEXT, which is being typed, or NIL."
-  (let ((count (1+ (count #\Newline text))))
-    (when (< 1 count)
-      (format nil "~D lines: return enters all, one after the other; control-C drops them."
-              count))))
-
 (defun asked-text (answers)
   "Return what is said above the line that is typed while ANSWERS, texts, are awaited; or NIL."
   (when answers
@@ -48,10 +37,15 @@
 (defun row-above (conversation text)
   "Return what is said above TEXT, which is being typed, and its ink."
   (let ((reading (asked-by conversation))
-        (asked (asked-text (answers-awaited conversation))))
+        (asked (asked-text (answers-awaited conversation)))
+        (lines (1+ (count #\Newline text))))
     (cond (reading (list (line-text "~A waits for your answer" reading) :red))
           (asked (list asked :red))
-          (t (list (note-on text) :grey)))))
+          ((= lines 1) (list nil :grey))
+          (t (list (format nil "~D lines: return enters all, one after the other; control-C ~
+                                drops them."
+                           lines)
+                   :grey)))))
 
 (defun what-is-shown (pane)
   "Return what PANE shows: label, text and point, and the row above and its ink, or NIL."

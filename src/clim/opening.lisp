@@ -9,11 +9,6 @@
 (defvar *windows-lock* (make-lock "windows"))
 (defvar *ports* '() "CLIM's ports that windows have come to.")
 
-(defun find-window (name)
-  (with-lock (*windows-lock*)
-    (find name *windows* :key (lambda (window) (watcher-robot (window-watcher window)))
-                         :test #'same-name-p)))
-
 (defun open-windows ()
   (with-lock (*windows-lock*) (copy-list *windows*)))
 
@@ -177,13 +172,6 @@ else, if its user has chosen another one of the same run, that that is shown."
     (warn-of-closing window "the X server has gone")
     (close-window window)))
 
-(defun close-for (condition window)
-  "Say that CONDITION closes WINDOW, in whose thread it has come up, or all on its X server if it
-means that this has gone."
-  (if (typep condition '(or stream-error xlib:closed-display))
-      (lose-windows (clim:port window))
-      (warn-of-closing window condition)))
-
 (defun run-window (window)
   "Show WINDOW until it is closed, or something goes wrong."
   (let* ((simulation (window-simulation window))
@@ -194,7 +182,9 @@ means that this has gone."
          (handler-case (without-debugger
                          (handler-bind ((warning 'muffle-servers-warning))
                            (clim:run-frame-top-level window)))
-           (error (condition) (close-for condition window))
+           ;; The X server has gone.
+           ((or stream-error xlib:closed-display) () (lose-windows (clim:port window)))
+           (error (condition) (warn-of-closing window condition))
            (:no-error (&rest values) (declare (ignore values)) (forget-window window)))
       (warn-of-closing window "its thread was ended")
       (keep-habits window)

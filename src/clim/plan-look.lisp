@@ -55,54 +55,56 @@ words how the last plan ended."
 
 ;;; Looking.
 
-(defun timeline-page (entries count now)
-  "Return the timeline of what ENTRIES, a function, returns, about COUNT entries, at tick NOW."
-  (if (> count +longest-trace+)
-      :too-long
-      (let ((bars (bars (funcall entries) now)))
-        (and bars (make-page bars +most-rows+)))))
+;; A plan that has broken, or stops as it is stepped, is at work and stands still: only its own
+;; thread can look at it.
+(defun call-at-rest (interface function)
+  "Call FUNCTION while the plans of INTERFACE are at rest, or as they stand if this thread lets them
+react. Return its value; or :BUSY."
+  (if (holding-p interface) (funcall function) (participant-at-rest interface function)))
 
-(defun see-timeline (look interface at-rest)
+(defun see-timeline (look interface)
   "Let LOOK have the timeline of the plans of INTERFACE. NIL if they are at work just now."
   (let* ((runner (interface-runner interface)) (trace (runner-trace runner)))
     (if (null trace)
         (setf (plan-look-page look) :untraced)
-        (let ((seen (funcall at-rest interface
-                             (lambda () (multiple-value-list (trace-so-far trace))))))
+        (let ((seen (call-at-rest interface
+                                  (lambda () (multiple-value-list (trace-so-far trace))))))
           (unless (eq seen :busy)
-            (setf (plan-look-page look)
-                  (timeline-page (first seen) (second seen) (plan-runner-tick runner)))
+            (destructuring-bind (entries count &rest more) seen
+              (declare (ignore more))
+              (setf (plan-look-page look)
+                    (if (> count +longest-trace+)
+                        :too-long
+                        (let ((bars (bars (funcall entries) (plan-runner-tick runner))))
+                          (and bars (make-page bars +most-rows+))))))
             t)))))
 
-(defun see-tree (look interface at-rest)
+(defun see-tree (look interface)
   "Let LOOK have the tree of the tasks of INTERFACE. NIL if they are at work just now."
-  (let ((seen (funcall at-rest interface
-                       (lambda ()
-                         (image-of-tasks (interface-runner interface)
-                                         :folded (plan-look-folded look)
-                                         :most +most-rows+)))))
+  (let ((seen (call-at-rest interface
+                            (lambda ()
+                              (image-of-tasks (interface-runner interface)
+                                              :folded (plan-look-folded look)
+                                              :most +most-rows+)))))
     (unless (eq seen :busy)
       (setf (plan-look-tree look) seen)
       t)))
 
-(defun see-plans (look interface &optional (at-rest #'participant-at-rest))
-  "Let LOOK have what it is to see of the plans of INTERFACE, if any. NIL if they are at work.
-AT-REST is a function of INTERFACE and of one that it calls while the plans are at rest, and whose
-value it returns; or :BUSY."
+(defun see-plans (look interface)
+  "Let LOOK have what it is to see of the plans of INTERFACE, if any. NIL if they are at work."
   (setf (plan-look-robot look) (and interface (interface-robot interface)
                                     (robot-name (interface-robot interface)))
         (plan-look-traced-p look) (traced-p interface))
   (cond ((null interface)
          (setf (plan-look-tree look) nil (plan-look-page look) nil)
          t)
-        ((eq :timeline (plan-look-view look)) (see-timeline look interface at-rest))
-        (t (see-tree look interface at-rest))))
+        ((eq :timeline (plan-look-view look)) (see-timeline look interface))
+        (t (see-tree look interface))))
 
-(defun look-now (look interface mark &optional (at-rest #'participant-at-rest))
-  "Look at the plans of INTERFACE, of which MARK is what changes. True if they were seen. AT-REST is
-as for SEE-PLANS."
+(defun look-now (look interface mark)
+  "Look at the plans of INTERFACE, of which MARK is what changes. True if they were seen."
   (let ((began (seconds-now)))
-    (when (see-plans look interface at-rest)
+    (when (see-plans look interface)
       (setf (plan-look-mark look) mark
             (plan-look-due look) (+ (seconds-now) (* +idleness+ (- (seconds-now) began))))
       t)))
@@ -119,18 +121,13 @@ as for SEE-PLANS."
         (handler-case (look-now look interface mark)
           (misuse () nil))))))
 
-;; A plan that has broken, or stops as it is stepped, is at work and stands still: only its own
-;; thread can look at it.
 (defun look-as-it-stands (look)
   "Look at the plans as they stand, if this thread is letting them react. True if they were seen."
   (let* ((simulation (plan-look-simulation look)) (interface (interface-of simulation)))
     (and interface
          (holding-p interface)
          (funcall (plan-look-shown-p look))
-         (look-now look interface (plans-mark look interface)
-                   (lambda (interface function)
-                     (declare (ignore interface))
-                     (funcall function))))))
+         (look-now look interface (plans-mark look interface)))))
 
 ;;; Which looks there are, and how plans end.
 

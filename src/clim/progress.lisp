@@ -57,12 +57,6 @@ had been; the tick and second from which on the rate is being measured, and that
          (= (simulation-tick simulation) (pulse-last-tick pulse))
          text)))
 
-;; In a trial or fork, which is not live, the prompt lets ticks pass.
-(defun state-at-prompt (simulation)
-  (cond ((values (ars-magna.cli:pace-of simulation)))
-        ((headless-p simulation) :still)
-        (t :stopped)))
-
 (defun rate-set (simulation)
   "Return at what rate ticks pass in SIMULATION, as set; NIL if there is none."
   (if (live-p simulation)
@@ -81,7 +75,9 @@ had been; the tick and second from which on the rate is being measured, and that
     (cond ((and (simulation-over simulation)
                 (not (eq :ended (ars-magna.cli:pace-of simulation))))
            :over)
-          ((not (live-p simulation)) (state-at-prompt simulation))
+          ;; In a trial or fork the prompt lets ticks pass.
+          ((not (live-p simulation))
+           (or (ars-magna.cli:pace-of simulation) (if (headless-p simulation) :still :stopped)))
           ((users-code-broken-p simulation)
            (values :broken (ars-magna.cli:asker-of-break simulation)))
           (busy (values :busy busy))

@@ -63,17 +63,12 @@
 ;;; A place is a free cell, and is of the type that was defined first. So a form in which the place
 ;;; itself is a wall is in vain, and so is a type all of whose forms fit only what is taken.
 
-(defun entry-at (form dx dy)
-  "Return the entry of FORM that is DX, DY from its middle; :ANY if it is outside."
-  (multiple-value-bind (width height) (form-size form)
-    (let ((column (+ dx (floor width 2))) (row (+ dy (floor height 2))))
-      (if (and (< -1 column width) (< -1 row height))
-          (nth column (nth row form))
-          :any))))
-
 (defun walled-p (rule)
   "True if RULE wants a wall where it has the place."
-  (eq t (entry-at (rule-form rule) (rule-dx rule) (rule-dy rule))))
+  (multiple-value-bind (width height) (form-size (rule-form rule))
+    (let ((column (+ (rule-dx rule) (floor width 2))) (row (+ (rule-dy rule) (floor height 2))))
+      (and (< -1 column width) (< -1 row height)
+           (eq t (nth column (nth row (rule-form rule))))))))
 
 (defun form-text (form)
   "Return FORM in the abbreviations of manual 5.1.1."

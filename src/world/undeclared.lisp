@@ -34,19 +34,16 @@ may be slips for the declared name LIKE, or, if that is NIL, are options of thin
   "True if NAME, an attribute's, is that of an option, and no attribute is declared so."
   (and (option-called name) (not (attribute-of (attribute-key name)))))
 
-(defun option-text (thing-name option map-p)
-  "Return in words that the thing has OPTION among its attributes, where it does nothing, and how it
-is written, in a map if MAP-P."
-  (destructuring-bind (in-map on-the-fly) (rest (option-called option))
-    (format nil "~(~A~) has ~(~S~) among its attributes, where it does nothing; write ~@?"
-            thing-name option (if map-p in-map on-the-fly) (string-downcase thing-name))))
-
 (defun text-of-slip (thing-name slip &optional map-p)
-  (destructuring-bind (name like) slip
+  "Return in words what the thing has that is no attribute, and how it is written, in a map if
+MAP-P."
+  (destructuring-bind (name like &aux (option (option-called name))) slip
     (if like
         (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
                 thing-name name like)
-        (option-text thing-name name map-p))))
+        (format nil "~(~A~) has ~(~S~) among its attributes, where it does nothing; write ~@?"
+                thing-name name (if map-p (second option) (third option))
+                (string-downcase thing-name)))))
 
 (defun warn-of-slips (definition name descriptor &key clause)
   "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION, in its CLAUSE if it is a
@@ -61,18 +58,15 @@ map's."
   (dolist (slip (slips-in descriptor))
     (warn-once (first slip) world (text-of-slip name slip))))
 
-(defun strange-name-text (key)
-  "Return in words that nothing has the attribute KEY, and what may be meant."
-  (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~]~:[~;: that ~
-               is what a thing is made with, and no attribute~]"
-          key (declared-name-like key) (option-of-things-p key)))
-
 (defun note-strange-name (key world)
   "Warn, once, if the attribute KEY of a specification is declared by nobody and had by nothing."
   (unless (or (attribute-of key)
               (said-p key world)
               (carried-p key world))
-    (warn-once key world (strange-name-text key))))
+    (warn-once key world
+               (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~
+                            ~]~:[~;: that is what a thing is made with, and no attribute~]"
+                       key (declared-name-like key) (option-of-things-p key)))))
 
 ;;; An attribute that is declared anew may no longer have the values that things have.
 

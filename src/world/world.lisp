@@ -121,17 +121,13 @@ arrival. BODY moves none."
        (declare (inline ,visit))
        (call-with-cell #',visit ,index (world-stock ,world)))))
 
-(defun cell-things (index world)
-  "Return a fresh list of the things on the floor of the cell INDEX of WORLD, in order of arrival."
-  (let ((things '()))
-    (do-cell (thing index world) (push thing things))
-    (nreverse things)))
-
 (addition things-at)
 (defun things-at (world x y)
   "Return a fresh list of the things on the floor of the cell of WORLD that holds the point (X, Y),
 in order of arrival. NIL outside the map. Signals WRONG-ARGUMENT."
   (check-argument things-at world (world-p world) "a world, as (robot-world ROBOT) returns")
   (check-point 'things-at x y)
-  (let ((index (map-index (world-map world) x y)))
-    (and index (cell-things index world))))
+  (let ((index (map-index (world-map world) x y)) (things '()))
+    (when index
+      (do-cell (thing index world) (push thing things)))
+    (nreverse things)))
