@@ -189,7 +189,7 @@
            (is-true (refused-p "room.pgm: it is not the image of " image))
            (is (null (base:existing-path description)))
            (put description (format nil "# mine~%image: other.pgm~%"))
-           (is-true (refused-p "room.yaml: it is not the description of a map" description))
+           (is-true (refused-p "room.yaml: it is not the description of " description))
            (put description (format nil "# mine~%image: room.pgm~%"))
            (is-true (refused-p "room.pgm: it is not a PGM or PNG image" image))
            (dolist (beginning '("" "P2 1 1 255 0" "P5 "))
@@ -200,6 +200,25 @@
            (put description "notes: none")
            (is-true (refused-p "room.yaml: it is not the description of a map" description))))))))
 
+(test export.leaves-the-description-of-another-image
+  "Though nothing is called as the new image: by its name, through a link, and if it names none."
+  (with-own-definitions
+    (eval '(world:defmap plain-room (6 5) (rect (0 0) (5 4) slate 1)))
+    (call-in-directory
+     (lambda (directory)
+       (flet ((file (name) (base:native-name (merge-pathnames name directory)))
+              (put (file text)
+                (base:call-replacing-file (lambda (out) (write-string text out)) file)))
+         (put (file "floor.png") "PNG")
+         (put (file "floor.yaml") "")
+         (sb-posix:symlink (file "floor.yaml") (file "link.yaml"))
+         (dolist (text '("image: floor.png" "image: gone.png" "image: floor.pgm.png" "image:"))
+           (put (file "floor.yaml") text)
+           (dolist (name '("floor.yaml" "link.yaml"))
+             (signals ars:unusable-floor (ars:export-map 'plain-room (file name))))
+           (is (string= text (base:read-file-into-string (file "floor.yaml"))))
+           (is (null (base:existing-path (file "floor.pgm"))))))))))
+
 (test export.through-a-link-writes-the-pair-beside-its-target
   (with-own-definitions
     (eval '(world:defmap plain-room (6 5) (rect (0 0) (5 4) slate 1)))
@@ -209,7 +228,7 @@
               (put (file text)
                 (base:call-replacing-file (lambda (out) (write-string text out)) file)))
          (ensure-directories-exist (file "sub/"))
-         (put (file "sub/real.yaml") "image: q.pgm")
+         (put (file "sub/real.yaml") "image: real.pgm")
          (sb-posix:symlink (file "sub/real.yaml") (file "room.yaml"))
          (is (equal (list (file "sub/real.yaml") (file "sub/real.pgm"))
                     (mapcar #'base:native-name

@@ -80,18 +80,23 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
                :test (lambda (value mode) (and (stringp value) (string-equal value mode)))))
         (t (reject-entry file entry "trinary, scale or raw"))))
 
-(defun image-in (file entry)
-  "Return the pathname of the image that ENTRY names: relative to the directory of FILE."
+(defun image-path (file entry)
+  "Return the pathname of the image that ENTRY names, relative to the directory of FILE. There may
+be no such file."
   (let ((name (entry-value entry)))
     (unless (and (stringp name) (string/= "" name))
       (reject-entry file entry "the name of the image, such as floor.pgm"))
-    (let* ((image (merge-pathnames (file-called name) (uiop:pathname-directory-pathname file)))
-           (trouble (unusable-file-text image)))
-      (when trouble
-        (reject-floor file (entry-line entry) "the image ~A cannot be read: ~A. Put the image ~
-                                               there, or correct the line"
-                      (shown-name image) trouble))
-      image)))
+    (merge-pathnames (file-called name) (uiop:pathname-directory-pathname file))))
+
+(defun image-in (file entry)
+  "Return the pathname of the image that ENTRY of FILE names. Signals UNUSABLE-FLOOR if that cannot
+be read."
+  (let* ((image (image-path file entry)) (trouble (unusable-file-text image)))
+    (when trouble
+      (reject-floor file (entry-line entry) "the image ~A cannot be read: ~A. Put the image ~
+                                             there, or correct the line"
+                    (shown-name image) trouble))
+    image))
 
 (defun check-thresholds (file free occupied entry)
   (when (< occupied free)

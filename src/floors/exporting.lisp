@@ -95,25 +95,33 @@ not possible."
   (or (ignore-errors (existing-path path)) path))
 
 (defun image-named-in (file)
-  "Return the truename of the image that the description FILE names, or NIL if it is none."
+  "Return the path of the image that the description FILE names, the truename if the image is there.
+Return NIL if FILE is no description."
   (ignore-errors
    (check-description-file file)
    (let ((entries (read-entries file (file-text file))))
-     (truename (image-in file (required-entry file "image" entries))))))
+     (linked-file (image-path file (required-entry file "image" entries))))))
+
+(defun unused-name-p (path)
+  "True if there is nothing at PATH but perhaps an empty file."
+  (let ((there (probe-file path)))
+    (or (null there)
+        (ignore-errors (and (plain-file-p there) (zerop (file-size there)))))))
 
 (defun check-pair (path image)
-  "Signal UNUSABLE-FLOOR if there is a file PATH that is no description of a map, or a file IMAGE
-that PATH does not name, or that is no image."
-  (let ((named (image-named-in path)) (there (ignore-errors (existing-path image))))
+  "Signal UNUSABLE-FLOOR if what is at PATH and IMAGE may not be replaced: if there is a file PATH
+that does not describe IMAGE, a file IMAGE that PATH does not describe, or one that is no image."
+  (let ((named (image-named-in path)))
     (flet ((reject (file what)
              (reject-floor file nil "it is not ~A, and is left as it is. Give another name, or ~
                                      remove it" what)))
-      (when (and (null named) (foreign-file-p path :floor))
-        (reject path "the description of a map"))
-      (unless (or (null there) (equal there named) (zerop (file-size there)))
-        (reject image (format nil "the image of ~A" (native-name path))))
-      (when (foreign-file-p image :image)
-        (reject image "a PGM or PNG image")))))
+      (cond ((unused-name-p path)
+             (unless (unused-name-p image)
+               (reject image (format nil "the image of ~A" (native-name path)))))
+            ((null named) (reject path "the description of a map"))
+            ((not (equal named (linked-file image)))
+             (reject path (format nil "the description of ~A" (native-name image))))
+            ((foreign-file-p image :image) (reject image "a PGM or PNG image"))))))
 
 (addition export-map)
 (defun export-map (map file &key unknown)
@@ -123,9 +131,9 @@ is called the same. ~/ is the home directory. A pixel is a cell, as wide as MAP-
 IMPORT-MAP makes the same cells of it. UNKNOWN says, as for IMPORT-MAP, which walls are written as
 what nobody knows: a substance, or a list of that and a parameter, such as (glass 5); NIL and :WALLS
 say none; a substance that MAP has no walls of is for no pixel. Substances and things are not
-written. A description of a map that is there is replaced, and the image that it names. If FILE is a
-link, both are written where it leads to, called as that is. Return the truenames of both. Signals
-UNUSABLE-FLOOR, as where something else has one of these names, and
+written. A description of a map that is there is replaced if it names that image, and with it the
+image. If FILE is a link, both are written where it leads to, called as that is. Return the
+truenames of both. Signals UNUSABLE-FLOOR, as where something else has one of these names, and
 WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they were."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-said-p unknown)
