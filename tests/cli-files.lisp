@@ -115,12 +115,17 @@ name, in Nisp's syntax and with a decimal fraction."
         do (is-true (has-words-p said line "cannot be read" cause) "~A" said)
            (is (not (search "STREAM" said)) "~A" said)))
 
-(defun complaint-of-loading (text)
-  "Return what a line says that loads a file with TEXT."
-  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+(defun complaint-about-file (text control &optional (external-format :utf-8))
+  "Return what the line says that CONTROL makes of the name of a file with TEXT."
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp"
+                             :external-format external-format)
     (write-string text out)
     :close-stream
-    (complaint (format nil "(load ~S)" (uiop:native-namestring path)))))
+    (complaint (format nil control (uiop:native-namestring path)))))
+
+(defun complaint-of-loading (text)
+  "Return what a line says that loads a file with TEXT."
+  (complaint-about-file text "(load ~S)"))
 
 (test files.that-lisp-loads-say-where-they-cannot-be-read
   (loop for (text . words) in '(("(values 1)~%~%(values nowhere:f)" "line 3" "NOWHERE" "misspelt")
@@ -135,6 +140,15 @@ name, in Nisp's syntax and with a decimal fraction."
         for said = (complaint-of-loading (format nil text))
         do (is-true (apply #'has-words-p said "cannot be read" words) "~A" said)
            (is (not (search ".." said)) "~A" said)))
+
+(test files.in-another-encoding-say-so-and-where
+  (loop for (text line) in '(("(print \"ä\")~%" "line 1: ") ("(values 1)~%~%ä~%" "line 3: ")
+                             ("~A(values 1)" "line 1: ") ("(values 1~%ä)" "line 2: "))
+        for said = (complaint-about-file (format nil text (code-char 255)) "(load ~S)" :latin-1)
+        do (is-true (has-words-p said line "cannot be read: it has bytes that are not UTF-8. Save")
+                    "~A" said))
+  (let ((said (complaint-about-file "ä" "(with-open-file (in ~S) (read-line in))" :latin-1)))
+    (is-true (has-words-p said ".lisp cannot be read: it has bytes that are not UTF-8") "~A" said)))
 
 (test worlds.of-a-file-begin-with-its-first-robot
   "However often it is loaded, and whatever had its robots' names before."

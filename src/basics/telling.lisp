@@ -4,7 +4,7 @@
 
 (export '(format-briefly report-briefly own-text our-text report-anyhow of-lines-typed-p
           reading-trouble text-of-condition one-line-text point-in-text hundredths editors-output
-          cause-of-reading-trouble cause-of-reading-trouble))
+          cause-of-reading-trouble))
 
 ;;; A condition may have to report a list without an end, or an object that cannot be printed.
 
@@ -51,14 +51,30 @@ the midst of being printed, and is no circle for that: so it is not printed as a
         ((search "is not external" text)
          "With two colons it can be read, if you mean what is that package's own")))
 
+(defun encoding-trouble (condition)
+  "Return that a file is in another encoding than it is read in, if CONDITION says so; else NIL."
+  (let ((encoding (undecodable-format condition)))
+    (and encoding
+         (format nil "it has bytes that are not ~A. Save the file in ~:*~A" encoding))))
+
+(defun undecodable-text (condition)
+  "Return in a sentence which file is in another encoding than it is read in, if CONDITION says so;
+else NIL."
+  (let ((trouble (encoding-trouble condition)))
+    (and trouble
+         (format nil "~:[This~;~:*~A~] cannot be read: ~A."
+                 (ignore-errors (native-name (pathname (stream-error-stream condition))))
+                 trouble))))
+
 (defun reading-trouble (condition)
   "Return why a text cannot be read, for which CONDITION came up. What Lisp says of that names
 streams that no user knows."
   (let* ((cause (cause-of-reading-trouble condition))
-         (text (if (typep cause 'simple-condition)
-                   (format-briefly nil "~?" (simple-condition-format-control cause)
-                                   (simple-condition-format-arguments cause))
-                   "it ends too early; is a parenthesis or quote missing?")))
+         (text (cond ((encoding-trouble cause))
+                     ((typep cause 'simple-condition)
+                      (format-briefly nil "~?" (simple-condition-format-control cause)
+                                      (simple-condition-format-arguments cause)))
+                     (t "it ends too early; is a parenthesis or quote missing?"))))
     (if (starts-with-subseq "failed to build" text)
         "a number is too large, too small, or divided by 0"
         (format nil "~A~@[. ~A~]" (string-right-trim "." text) (naming-remedy text)))))
@@ -130,6 +146,7 @@ same on every version of SBCL; NIL if we have none."
         ((input-ended-p condition) "The input has ended: there is nothing left to read.")
         ((reader-p condition)
          (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
+        ((undecodable-text condition))
         (t (lisp-error-text condition))))
 
 (defun text-of-condition (condition)

@@ -70,7 +70,8 @@ line the reader gave up, or that on which the form begins if it does not end; NI
 something else. Only while that file is still open."
   (let ((stream (and (typep condition 'reader-error) (stream-error-stream condition))))
     (when (and stream (open-stream-p stream) (form-start stream))
-      (values (native-name (pathname stream))
-              (if (typep (cause-of-reading-trouble condition) 'end-of-file)
-                  (line-of-form-being-read stream)
-                  (line-reached stream))))))
+      (let ((cause (cause-of-reading-trouble condition)))
+        (values (native-name (pathname stream))
+                (cond ((typep cause 'end-of-file) (line-of-form-being-read stream))
+                      ((undecodable-format cause) (line-of-next stream))
+                      (t (line-reached stream))))))))
