@@ -15,7 +15,7 @@
                  (:file "compiler") (:file "compiling") (:file "undefined") (:file "variables")
                  (:file "limits") (:file "reading") (:file "random-state") (:file "debugger")
                  (:file "front-ends") (:file "debuggers") (:file "threads") (:file "finishing")
-                 (:file "elsewhere") (:file "weak") (:file "stacks") (:file "streams")
+                 (:file "elsewhere") (:file "weak") (:file "events") (:file "stacks") (:file "streams")
                  (:file "signals") (:file "terminal")))
    (:module "src/basics" :serial t
     :components ((:file "package") (:file "text") (:file "public") (:file "numbers")

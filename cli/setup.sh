@@ -68,10 +68,19 @@ choose_temporary_cache() {  # DIRECTORY: it cannot be written.
 
 # What must be installed.
 
-libraries() {  # SYSTEM: the libraries that its definition names, one a line.
+dependencies() {  # SYSTEM: what its definition names, one a line.
     sed -n "\\|(defsystem \"$1\"|,\\|:components|p" "$root/ars-magna.asd" | tr '\n' ' ' |
-        sed -n 's|.*:depends-on (\([^)]*\)).*|\1|p' | tr -d '"' | tr -s ' ' '\n' |
-        grep -v -e '^ars-magna' -e '^sb-' -e '[^a-z0-9.-]' || :
+        sed -n 's|.*:depends-on (\([^)]*\)).*|\1|p' | tr -d '"' | tr -s ' ' '\n'
+}
+
+libraries() {  # SYSTEM: the libraries that it stands on, also through systems of ours, one a line.
+    for dependency in $(dependencies "$1"); do
+        case $dependency in
+            ars-magna*) libraries "$dependency" ;;
+            sb-* | *[!a-z0-9.-]*) ;;
+            *) echo "$dependency" ;;
+        esac
+    done
 }
 
 plainly='--noinform --no-sysinit --no-userinit --non-interactive'

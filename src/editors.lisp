@@ -135,4 +135,4 @@ so. Return nothing. Signals MISUSE where no editor is."
       (when (and hooks (boundp hooks))
         (setf (global-value hooks) (adjoin 'note-editor-gone (global-value hooks)))))))
 
-(pushnew 'watch-editors *inquiry-hooks*)
+(attend *inquiry-hooks* watch-editors)

@@ -134,7 +134,7 @@
 
 (test plans.that-call-a-command-of-users-are-told-what-it-lacks
   (let* ((name (intern "RPL-PROBE-FAIL" :ars-magna.tests))
-         (advice (funcall language:*advice-on-call* name)))
+         (advice (language:advice-on-call name)))
     (is-true (has-words-p advice "the end of the command probe-fail" "(define-fluents probe"
                           "(define-outcome (probe-fail)" "(:pulse my-fluent*))")
              "~A" advice)
@@ -144,4 +144,4 @@
                       (handler-bind ((warning #'muffle-warning))
                         (eval `(rpl:interp-lambda () (,name 0)))))))
   (dolist (name '(rpl-nosuch robot-turn driver:rpl-robot-turn))
-    (is (null (funcall language:*advice-on-call* name)))))
+    (is (null (language:advice-on-call name)))))

@@ -13,7 +13,7 @@
     (setf (plan-errand-let-go-p errand) t
           (session-after-rewind (plan-errand-session errand)) #'take-up-plans)))
 
-(pushnew 'let-errands-go *rewind-hooks*)
+(attend *rewind-hooks* let-errands-go)
 
 (defun rewind-here (session ticks)
   "Let SESSION go on in a run that is TICKS ticks back."

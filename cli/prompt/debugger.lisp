@@ -216,12 +216,12 @@ threads, until that goes on."
                                (restarts-within condition))
                       'abort)))
 
-(defvar *break-hooks* '()
+(define-event *break-hooks*
   "Functions, or their names, of no arguments, that are called in a thread that has broken, before
 it asks how it goes on: for those who show what stands still then.")
 
 (defun debug-breakage (sessions breakage)
-  (mapc #'funcall *break-hooks*)
+  (tell-listeners *break-hooks*)
   (if (eq (session-thread (first sessions)) (current-thread))
       (debug-here (first sessions) breakage)
       (debug-elsewhere sessions breakage)))
@@ -318,7 +318,7 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
                               (words-for-thread session (current-thread))
                               asker)))))
 
-(pushnew 'tell-of-inquiry *inquiry-hooks*)
+(attend *inquiry-hooks* tell-of-inquiry)
 
 ;;; From when to when.
 

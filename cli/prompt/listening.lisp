@@ -175,7 +175,7 @@ another, so that nobody waits for the tick to end, which it may never."
 
 ;;; A window follows its user into other runs.
 
-(defvar *whereabouts-hooks* '()
+(define-event *whereabouts-hooks*
   "Functions, or their names, of a session, the run that it was in when it read a line last, and the
 one that it is in now, perhaps the same; NIL for none. They are called in its thread before it reads
 a line. A headless run stands still then.")
@@ -183,4 +183,4 @@ a line. A headless run stands still then.")
 (defun tell-whereabouts (session)
   "Let those who want to know hear in which run SESSION is."
   (let ((old (shiftf (session-whereabouts session) *simulation*)))
-    (dolist (hook *whereabouts-hooks*) (funcall hook session old *simulation*))))
+    (tell-listeners *whereabouts-hooks* session old *simulation*)))

@@ -57,7 +57,7 @@ be done, a list of two texts, or is NIL."
       (signal-semaphore (plan-errand-over errand))
       t)))
 
-(pushnew 'note-plan-end *plan-end-hooks*)
+(attend *plan-end-hooks* note-plan-end)
 
 ;;; What is told.
 

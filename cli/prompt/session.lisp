@@ -27,7 +27,7 @@
 (defvar *prompt-robot* nil
   "The name of the robot that the prompt commands: the one last given to SIMULATOR, or chosen.")
 
-(pushnew 'note-robot *simulator-hooks*)
+(attend *simulator-hooks* note-robot)
 
 (defun note-robot (robot options)
   (declare (ignore options))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*runner* *home-in-use* home home-closed-p home-born home-on-change at-home call-at-home
-          in-use-p post next-entry posted-p))
+(export '(*runner* *interface* home-in-use note-outside-change home home-closed-p home-born
+          home-on-change at-home call-at-home in-use-p post next-entry posted-p))
 
 ;;; A fluent that somebody waits for has a home, the plan runner of those who wait. One thread at a
 ;;; time has a home; what others want to change meanwhile they post, and it is heard in the order of
@@ -40,9 +40,20 @@ entry: it returns what is posted instead."
 (defvar *runner* nil
   "The plan runner that this thread has, while plans run.")
 
-(defvar *home-in-use* (constantly nil)
-  "A function that returns the home of fluents that have none yet, where no plan is at work; or
-NIL.")
+(defvar *interface* nil
+  "What plans and fluents belong to where nothing else says so, or NIL: see RPL-INIT-ROBOT.")
+
+(defgeneric home-in-use (interface)
+  (:documentation "Return the home of fluents that have none yet, where no plan is at work and
+INTERFACE is in use; or NIL.")
+  (:method (interface) (declare (ignore interface)) nil))
+
+(defgeneric note-outside-change (interface function fluent value)
+  (:documentation "Note what changes FLUENT where no plan is at work and INTERFACE is in use: that
+FUNCTION, of SET-VALUE and PULSE, is called with FLUENT and VALUE.")
+  (:method (interface function fluent value)
+    (declare (ignore interface function fluent value))
+    (values)))
 
 ;;; Having it.
 

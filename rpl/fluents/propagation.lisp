@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*on-outside-change* apply-settings give-back-all))
+(export '(apply-settings give-back-all))
 
 ;;; A change is heard by the watchers of what was set, in order of arrival, and then by the
 ;;; dependent fluents in order of height, so that none is computed from a mixture of old and new
@@ -182,7 +182,7 @@ says what has happened."
 (defun elsewhere (fluent)
   "Return where changes of FLUENT are to be heard, if that is not where this thread is; else NIL."
   (let ((home (home-of fluent)))
-    (cond ((null home) (and (null *runner*) (funcall (the function *home-in-use*))))
+    (cond ((null home) (and (null *runner*) (home-in-use *interface*)))
           ((eq home *runner*) nil)
           (t home))))
 
@@ -203,14 +203,9 @@ it."
       (funcall (home-on-post home))
       (post home `((:set ,fluent ,value)))))
 
-(defvar *on-outside-change* nil
-  "A function that is told of what is changed where no plan is at work: SET-VALUE or PULSE, as a
-function, and the fluent and value that it is called with; or NIL.")
-
 (declaim (inline note-outside))
 (defun note-outside (function fluent value)
-  (unless *runner*
-    (when *on-outside-change* (funcall (the function *on-outside-change*) function fluent value))))
+  (unless *runner* (note-outside-change *interface* function fluent value)))
 
 (public set-value)
 (defun set-value (fluent value)

@@ -104,9 +104,9 @@ so (ours).")
       (reject-use "There is no plan procedure or function ~S. Calls go by the very symbol: if the ~
                    plan ~:*~A of another package is meant, write ~S."
                   name (procedure-name namesake)))
-    (when (funcall *advice-on-call* name)
+    (when (advice-on-call name)
       (reject-use "There is no plan procedure or function ~(~A~): ~A"
-                  name (funcall *advice-on-call* name)))
+                  name (advice-on-call name)))
     (when (nisps-own name)
       (reject-use "There is no plan procedure or function ~S; NISP has one. Write (in-package ~
                    :ars-user), or use the package NISP in yours." name))

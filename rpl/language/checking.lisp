@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(doubt-form doubt-own-form *advice-on-call* find-call fail-p may-return-p
+(export '(doubt-form doubt-own-form advice-on-call find-call fail-p may-return-p
           endless-whenever-p))
 
 ;;; Plans and functions may be defined in any order, and in several files. So calls are looked at
@@ -72,15 +72,15 @@ construct of NISP, as WAIT-FOR is in packages that do not use NISP."
       (doubt-form form "~(~A~) is not that of plans; NISP has one. Write (in-package :ars-user), ~
                         or nisp:~:*~(~A~)." (symbol-name name)))))
 
-;; What knows more names than plans' and functions' sets it.
-(defvar *advice-on-call* (constantly nil)
-  "A function of a symbol that is the name of no plan procedure or function: it returns in sentences
-why, and what to write; or NIL.")
+(defgeneric advice-on-call (name)
+  (:documentation "Return in sentences why NAME, a symbol, is the name of no plan procedure or
+function, and what to write; or NIL. What knows more names has a method.")
+  (:method (name) (declare (ignore name)) nil))
 
 (defun warn-of-unknown (form)
   (let* ((name (first form))
          (namesake (find-procedure name nil))
-         (advice (funcall *advice-on-call* name)))
+         (advice (advice-on-call name)))
     (cond (namesake
            (doubt-form form "there is no plan procedure or function ~S. If the plan of another ~
                              package is meant, write ~S."

@@ -203,19 +203,18 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
     (let ((fluent (second form)))
       (if (and (consp fluent) (consp (cdr fluent))) (second fluent) fluent))))
 
-(defun test-doubt (form)
-  "Return in a sentence why FORM, a test in Lisp code, is always true, or never; or NIL."
-  (cond ((and (typep form '(cons symbol (cons t null)))
+(defmethod test-doubt ((form symbol))
+  ;; Plans read fluents by value.
+  (when (and (null *own-conses*) (known-fluent-variable-p form))
+    (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
+                 (fluent-value ~:*~(~A~))." form)))
+
+(defmethod test-doubt ((form cons))
+  (cond (*own-conses* nil)
+        ((and (typep form '(cons symbol (cons t null)))
               (member (first form) '("NOT" "NULL") :test #'string=))
          (test-doubt (second form)))
-        ((and (symbolp form) (known-fluent-variable-p form))
-         (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
-                      (fluent-value ~:*~(~A~))." form))
         ((known-pulse-p (read-fluent form))
          (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. Plans write ~
                       (wait-for ~(~A~)); in Lisp, (await-idle), or (run-until (idle-p)) headless."
                  form (read-fluent form)))))
-
-(setf *test-doubt* (lambda (form)
-                     ;; Plans read fluents by value.
-                     (and (null *own-conses*) (test-doubt form))))

@@ -23,6 +23,6 @@ that a robot believes in, and choosing by that.")
                 #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
-                #:*realm* #:fork-realm)
+                #:*interface* #:*realm* #:fork-realm)
   (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
   (:import-from :ars-magna.display #:take-snapshot #:picture-kind))

@@ -72,4 +72,4 @@ those that have begun in OLD since."
             (cons (cons (gensym "ERA") number)
                   (eras-until number (interface-eras interface)))))))
 
-(pushnew 'begin-era *rewind-hooks*)
+(attend *rewind-hooks* begin-era)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*interface* interface-p holding-p call-with-plans))
+(export '(interface-p holding-p call-with-plans))
 
 ;;; Whoever lets plans react holds the interface's lock. Headless that is whoever passes ticks or
 ;;; starts plans; live a thread of their own, which exists while there are plans and a clock. The
@@ -75,9 +75,6 @@ been told since which robot it commands")
 (defmethod print-object ((interface interface) stream)
   (print-unreadable-object (interface stream :type t)
     (princ (interface-robot interface) stream)))
-
-(defvar *interface* nil
-  "The interface in use; see RPL-INIT-ROBOT.")
 
 (pushnew '*interface* *simulation-variables*)
 (pushnew '*realm* *simulation-variables*)

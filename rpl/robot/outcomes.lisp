@@ -192,5 +192,5 @@ for, or what lets them call it; or NIL."
                      (spec-type (command-resource command))
                      (mapcar #'spec-name (command-results command))))))))
 
-(setf *advice-on-call* (lambda (name)
-                         (or (advice-on-command name) (advice-on-goal name))))
+(defmethod advice-on-call ((name symbol))
+  (or (advice-on-command name) (advice-on-goal name)))

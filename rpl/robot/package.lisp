@@ -39,7 +39,7 @@
                 #:fluent-value #:fluent-name
                 #:set-value #:pulse
                 #:apply-settings #:looked-at-p #:forget-looks
-                #:*home-in-use* #:*runner* #:post #:react-to-all
+                #:*interface* #:home-in-use #:note-outside-change #:*runner* #:post #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:heard-from-outside-p #:idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
@@ -58,9 +58,10 @@
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure
                 #:plan-trace #:valve #:make-valve #:valve-losers #:note-command
-                #:with-answer #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks*
+                #:with-answer #:runner-in-use #:*step-plans* #:*plan-start-hooks*
                 #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p
+                #:call-with-client-still
                 #:hear-of-trouble #:note-seen #:*realm*
                 #:give-back-all #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
@@ -68,4 +69,4 @@
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
                 #:entity-realm #:entity-like
-                #:*on-outside-change* #:note-word #:task-now #:*advice-on-call* #:advice-on-goal))
+                #:note-word #:task-now #:advice-on-call #:advice-on-goal))

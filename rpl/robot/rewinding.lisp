@@ -56,10 +56,16 @@ and VALUE."
                (entity-like name))
            value))
 
-(setf *on-outside-change*
-      (lambda (function fluent value)
-        (when (and *simulation* (simulation-past *simulation*))
-          (note-doing *simulation* #'change-again function (name-of-fluent fluent) value))))
+(defun note-change (function fluent value)
+  "Remember for rewinds that FUNCTION has been called with FLUENT and VALUE from outside of plans."
+  (when (and *simulation* (simulation-past *simulation*))
+    (note-doing *simulation* #'change-again function (name-of-fluent fluent) value)))
+
+(defmethod note-outside-change ((interface interface) function fluent value)
+  (note-change function fluent value))
+
+(defmethod note-outside-change ((interface null) function fluent value)
+  (note-change function fluent value))
 
 ;;; What the run was that is over is forgotten.
 
@@ -73,7 +79,7 @@ and VALUE."
             (not (eq (realm-of old) (global-value '*realm*))))
     (leave-realm (realm-of old) (realm-of new))))
 
-(pushnew 'leave-fluents *rewind-hooks*)
+(attend *rewind-hooks* leave-fluents)
 
 (defun give-fluents-back (old new)
   "Let the fluents of OLD, a run that was rewound, have the values that they have where it has gone
@@ -81,7 +87,7 @@ on, in NEW, which is over."
   (let ((from (realm-of new)) (realm (realm-of old)))
     (unless (or (null realm) (eq from realm)) (give-back-all from realm))))
 
-(pushnew 'give-fluents-back *rewound-end-hooks*)
+(attend *rewound-end-hooks* give-fluents-back)
 
 ;; A live run that was rewound has let top-level code work in a fork of where that worked before.
 (defun leave-rewound (robot options)
@@ -94,4 +100,4 @@ where all runs do that are no forks. Fluents have the values there that they had
       (setf (global-value '*realm*) +root+)
       (when (eq from *realm*) (setf *realm* +root+)))))
 
-(pushnew 'leave-rewound *simulator-hooks*)
+(attend *simulator-hooks* leave-rewound)

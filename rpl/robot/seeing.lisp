@@ -4,15 +4,22 @@
 
 (export '(call-with-plans-in-use))
 
-(setf *runner-in-use* (lambda () (and *interface* (interface-runner *interface*)))
-      *home-in-use* (lambda ()
-                      (let ((interface (usable-interface)))
-                        (and interface (interface-runner interface)))))
+(defmethod runner-in-use ((interface interface))
+  (interface-runner interface))
+
+(defun usable-runner ()
+  "Return the runner of the interface that can be used here, or NIL."
+  (let ((interface (usable-interface)))
+    (and interface (interface-runner interface))))
+
+;; Where none is in use, one may react.
+(defmethod home-in-use ((interface interface)) (usable-runner))
+(defmethod home-in-use ((interface null)) (usable-runner))
 
 (defun trace-if-wanted (task)
   (when *trace-plans* (start-trace (task-runner task))))
 
-(pushnew 'trace-if-wanted *plan-start-hooks*)
+(attend *plan-start-hooks* trace-if-wanted)
 
 ;; What was kept of the run, to go back to, may be older than that a trace is wanted.
 (defun trace-rewound (old new)
@@ -21,7 +28,7 @@
     (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
       (with-plans (interface) (start-trace (interface-runner interface))))))
 
-(pushnew 'trace-rewound *rewind-hooks*)
+(attend *rewind-hooks* trace-rewound)
 
 (defun call-with-plans-in-use (function)
   "Call FUNCTION with the runner of the plans in use, none of which goes on meanwhile, or with NIL."
@@ -30,10 +37,9 @@
          (with-plans (*interface*) (funcall function (interface-runner *interface*))))
         (t (funcall function nil))))
 
-(setf *still* (lambda (function)
-                (call-with-plans-in-use (lambda (runner)
-                                          (declare (ignore runner))
-                                          (funcall function)))))
+(defmethod call-with-client-still ((interface interface) function)
+  (note-seen interface)
+  (with-plans (interface) (funcall function)))
 
 (addition print-plans)
 (defun print-plans (&optional (stream *standard-output*) all)

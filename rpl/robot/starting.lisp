@@ -123,4 +123,4 @@ the current one."
       (unless (interface-valid-p interface) (close-interface interface))
       (when (eq interface *interface*) (setf *interface* nil)))))
 
-(pushnew 'forget-interface *simulator-hooks*)
+(attend *simulator-hooks* forget-interface)

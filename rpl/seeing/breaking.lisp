@@ -62,4 +62,4 @@ there to answer, it is a message.")
     (with-simple-restart (continue "Let the failure happen.")
       (enter-break (make-condition 'plan-break :text (own-text failure) :task task :frame frame)))))
 
-(setf *failure-hook* 'consider-break)
+(attend *failure-hooks* consider-break)

@@ -10,7 +10,7 @@
   (check-argument trace-of which (typep which '(or null task (integer 1)))
                   "a task, as begin-plan returns, or the number of one")
   (let ((runner (or runner (runner-to-see which))))
-    (values (or (funcall *still* (lambda () (plan-trace runner)))
+    (values (or (call-with-client-still (runner-client runner) (lambda () (plan-trace runner)))
                 (reject-use "No trace was kept of these plans. Set *trace-plans* to true before ~
                              they start."))
             (if (task-p which) (task-serial which) which))))

@@ -120,4 +120,4 @@ to go on. Where nobody is there to answer, it is a message, and the task goes on
 (defun step-if-wanted (task)
   (when *step-plans* (step-task task)))
 
-(pushnew 'step-if-wanted *plan-start-hooks*)
+(attend *plan-start-hooks* step-if-wanted)

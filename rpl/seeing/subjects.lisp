@@ -2,13 +2,12 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(*runner-in-use* *still* runner-to-see task-with))
+(export '(runner-in-use runner-to-see task-with))
 
-(defvar *runner-in-use* (constantly nil)
-  "A function that returns the plan runner whose tasks are shown where nobody says which, or NIL.")
-
-(defvar *still* #'funcall
-  "A function that calls another while no plan in use goes on.")
+(defgeneric runner-in-use (interface)
+  (:documentation "Return the plan runner whose tasks are shown where nobody says which and
+INTERFACE is in use, or NIL.")
+  (:method (interface) (declare (ignore interface)) nil))
 
 (defun runner-to-see (&optional subject)
   "Return the plan runner of SUBJECT: itself, a task's, that of the plan that asks, or the one in
@@ -16,7 +15,7 @@ use. Signals MISUSE if there is none."
   (or (cond ((task-p subject) (task-runner subject))
             ((typep subject 'plan-runner) subject)
             (*runner*)
-            (t (funcall *runner-in-use*)))
+            (t (runner-in-use *interface*)))
       (reject-use "No plans have run here. Start one first: (begin-plan ...), or the line PLAN at ~
                    the prompt.")))
 

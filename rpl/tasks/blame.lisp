@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(*failure-hook* failure-of plan-backtrace operator-called-p))
+(export '(*failure-hooks* failure-of plan-backtrace operator-called-p))
 
 (defun operator-called-p (form &rest names)
   "True if FORM, of a plan's text, is a use of an operator that is called like one of NAMES."
@@ -18,8 +18,8 @@
   (find-if (lambda (data) (typep data 'plan-failure))
            (mapcar #'frame-data (frames-around task frame))))
 
-(defvar *failure-hook* nil
-  "A function, or its name, called with each failure, its task and frame where it happens; or NIL.")
+(define-event *failure-hooks*
+  "Functions that are called with each failure, its task and frame, where it happens.")
 
 (defun failure-of (condition task frame)
   "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it. It
@@ -37,7 +37,7 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
             (failure-cause failure) (or (failure-cause failure) (handled-failure task frame)))
       (note-event task :failure failure)
       (hear-of-trouble (runner-client (task-runner task)) task failure)
-      (when *failure-hook* (funcall *failure-hook* failure task frame)))
+      (tell-listeners *failure-hooks* failure task frame))
     failure))
 
 (defun lisp-backtrace ()

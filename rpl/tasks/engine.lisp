@@ -55,7 +55,7 @@ Return the task, which runs at the next reaction."
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
           (weigh +start+ runner)
           (push task (runner-roots runner))
-          (dolist (hook *plan-start-hooks*) (funcall hook task))
+          (tell-listeners *plan-start-hooks* task)
           task)))))
 
 ;;; Reacting. In a round every ready task gets its turn, until it waits, ends or has used its slice.

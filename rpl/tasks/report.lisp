@@ -145,10 +145,10 @@ besides."
                              (brief-failure-text failure))
                      text))))
 
-(defvar *plan-start-hooks* '()
+(define-event *plan-start-hooks*
   "Functions, or their names, called with each top-level task before it runs.")
 
-(defvar *plan-end-hooks* '()
+(define-event *plan-end-hooks*
   "Functions, or their names, called with each top-level task that has ended; the report of its
 failure is left to the first that returns true. In any thread that lets plans react.")
 

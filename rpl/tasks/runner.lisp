@@ -5,8 +5,8 @@
 (export '(*runaway-limit* alone-p blocked-p make-ready plan-runner plan-runner-steps counted-steps
           plan-runner-tasks plan-runner-tick runner-blocks runner-dice runner-lisps-dice
           runner-tick runner-ticks-per-second runner-timers runner-stepper runner-note
-          runner-serial runner-alive client-forked-p hear-of-trouble note-seen runner-trace
-          runner-client runner-charged-p all-tasks task-numbered))
+          runner-serial runner-alive client-forked-p call-with-client-still hear-of-trouble
+          note-seen runner-trace runner-client runner-charged-p all-tasks task-numbered))
 
 ;;; Ready tasks queue first-in first-out by level; the highest level runs first. MASK has bit n set
 ;;; while somebody of level n may be queued, and the bit +INTERRUPT+, above all of these, when the
@@ -100,6 +100,12 @@ as it needs. CLIENT is on whose behalf all this is."
   (:method (client)
     (declare (ignore client))
     nil))
+
+(defgeneric call-with-client-still (client function)
+  (:documentation "Call FUNCTION, while no plan of CLIENT goes on, and return its value.")
+  (:method (client function)
+    (declare (ignore client))
+    (funcall function)))
 
 (defgeneric hear-of-trouble (client task failure)
   (:documentation "In TASK, of plans of CLIENT, FAILURE has just happened, which something may take

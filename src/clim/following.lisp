@@ -46,7 +46,7 @@ its own prompt commands, or that it shows; else another. NIL if other windows sh
               ((and old (not (eq old new)) (goes-along-p window old))
                (take-along window new)))))))
 
-(pushnew 'follow-prompt ars-magna.cli:*whereabouts-hooks*)
+(attend ars-magna.cli:*whereabouts-hooks* follow-prompt)
 
 ;;; A program that has broken asks how it goes on: what it stands in is shown as it stands.
 
@@ -62,4 +62,4 @@ its own prompt commands, or that it shows; else another. NIL if other windows sh
         (when (mine-p (timeline-custody (simulation-timeline simulation)))
           (publish watcher simulation))))))
 
-(pushnew 'show-as-it-stands ars-magna.cli:*break-hooks*)
+(attend ars-magna.cli:*break-hooks* show-as-it-stands)

@@ -278,4 +278,4 @@ MISUSE where there is no X server."
         (remove-observer (watcher-observer watcher) new)
         (watch-simulation watcher new)))))
 
-(pushnew 'watch-rewound *rewind-hooks*)
+(attend *rewind-hooks* watch-rewound)

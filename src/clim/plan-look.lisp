@@ -161,4 +161,4 @@ failure is reported elsewhere."
           (setf (plan-look-ended look) (ending-text task))))))
   nil)
 
-(pushnew 'note-ending *plan-end-hooks*)
+(attend *plan-end-hooks* note-ending)

@@ -38,12 +38,8 @@
   "Bins" (listed (blueprint-bins blueprint))
   "Parts of its own" (listed (mapcar #'first (blueprint-parts blueprint))))
 
-(defun function-of-command (name)
-  "Return the name of the function for the command that the prompt calls NAME; NIL if it is called
-so itself, or there is none."
+(defmethod function-meant ((name symbol))
   (let ((command (find-command name nil)))
     (and command
          (not (same-name-p name (command-name command)))
          (command-name command))))
-
-(setf *function-meant* 'function-of-command)

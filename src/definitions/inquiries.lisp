@@ -17,7 +17,7 @@
 (defvar *inquiries* '() "All inquiries under way, the newest first.")
 (defvar *inquiries-lock* (make-lock "inquiries"))
 
-(defvar *inquiry-hooks* '()
+(define-event *inquiry-hooks*
   "Functions, or their names, of a condition and of who asks, in words. They are called in the
 thread that has broken, before it is asked there how that goes on.")
 
@@ -89,8 +89,7 @@ has gone without an answer, somebody else. Return if they do."
     (catch inquiry
       (call-noting-inquiry inquiry
                            (lambda ()
-                             (dolist (function *inquiry-hooks*)
-                               (funcall function condition (words-for-asker hook)))
+                             (tell-listeners *inquiry-hooks* condition (words-for-asker hook))
                              (enter-outer condition hook)))
       (return-from inquire))
     (ask-how-to-go-on *front-end* condition)

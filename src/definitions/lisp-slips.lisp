@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(note-dispatch-character value-behind *function-meant* ours-called))
+(export '(note-dispatch-character value-behind function-meant ours-called))
 
 (defun functions-like (name package)
   "Return the functions and macros, not Lisp's, that PACKAGE sees and for which NAME may be a slip."
@@ -50,16 +50,16 @@ PREDICATE, and how to use it; or NIL."
 
 ;;; Functions.
 
-;; The layer that knows commands sets it.
-(defvar *function-meant* (constantly nil)
-  "A function of a symbol that is the name of no function: it returns that of one which is called so
-elsewhere, as at the prompt, or NIL.")
+(defgeneric function-meant (name)
+  (:documentation "Return the name of the function that is called NAME elsewhere, as at the prompt,
+where NAME is a symbol that names no function; or NIL. The layer that knows commands has a method.")
+  (:method (name) (declare (ignore name)) nil))
 
 (defun function-slip-text (name)
   "Return in a sentence what NAME, of no function, may be a slip for, or NIL."
   (when (and (symbolp name) (symbol-package name))
     (multiple-value-bind (ours package)
-        (ours-called (or (funcall *function-meant* name) name))
+        (ours-called (or (function-meant name) name))
       (if ours
           (if (eq ours (find-symbol (symbol-name ours) (symbol-package name)))
               (format nil "In Lisp it is ~(~A~)." ours)

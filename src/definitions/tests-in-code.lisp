@@ -2,13 +2,13 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(*test-doubt* map-calls map-comparisons compared-words tested-in values-used-in
+(export '(test-doubt map-calls map-comparisons compared-words tested-in values-used-in
           code-doubt))
 
-;; The layer that knows fluents sets it.
-(defvar *test-doubt* (constantly nil)
-  "A function of a form, a test in Lisp code: it returns in a sentence why that is not what is
-meant, or NIL.")
+(defgeneric test-doubt (form)
+  (:documentation "Return in a sentence why FORM, a test in Lisp code, is not what is meant; or NIL.
+The layer that knows fluents has methods.")
+  (:method (form) (declare (ignore form)) nil))
 
 ;;; Words that something is compared with: keywords, and what may be meant for one.
 

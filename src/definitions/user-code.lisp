@@ -75,7 +75,7 @@ be interrupted."
   "Return ORIGIN, an item or list of items, as one text."
   (format nil "~{~A~}" (ensure-list origin)))
 
-(defvar *user-error-hooks* '()
+(define-event *user-error-hooks*
   "Functions that are called with the text of each error in users' code that is reported.")
 
 (defun report-user-error (condition origin)
@@ -84,7 +84,7 @@ items. A program that goes on asking when its run is over is no trouble."
   (let ((text (format nil "Error in ~A: ~A" (text-of-origin origin) (brief-text condition)))
         (stuff (list* "Error in " (append (ensure-list origin)
                                           (list ": " (brief-text condition))))))
-    (dolist (hook *user-error-hooks*) (funcall hook text))
+    (tell-listeners *user-error-hooks* text)
     (if (typep condition 'outlived)
         (apply #'error-set stuff)
         (apply #'trouble-set condition text stuff))))

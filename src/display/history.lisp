@@ -184,4 +184,4 @@ the trails of OLD up to now."
       (remove-observer (cdr entry) new)
       (keep-history new))))
 
-(pushnew 'follow-rewind *rewind-hooks*)
+(attend *rewind-hooks* follow-rewind)

@@ -38,5 +38,5 @@ and how to get one. The option :DISPLAY NIL of SIMULATOR leaves both out."
             (push text *told-reasons*)
             (out text t)))))))
 
-(pushnew 'announce-display *simulator-hooks*)
+(attend *simulator-hooks* announce-display)
 (pushnew 'display *hook-options*)

@@ -269,7 +269,7 @@ too few have; but not if the run is LEFT-P, as by an error, or ticks may have pa
       (queue-message (make-message :warning (list text) :notable-p t)
                      (simulation-messages simulation)))))
 
-(defvar *rewound-end-hooks* '()
+(define-event *rewound-end-hooks*
   "Functions of a headless run that was rewound, and of the one that went on in its place and is
 over now.")
 
@@ -279,7 +279,7 @@ over now.")
     (retire-robots (simulation-robots last) reason)
     (end-simulation last reason)
     (unless (eq last simulation)
-      (dolist (hook *rewound-end-hooks*) (funcall hook simulation last)))))
+      (tell-listeners *rewound-end-hooks* simulation last))))
 
 (defun variables-among (names)
   "Return the symbols among NAMES, a list or a single name, that can be variables."

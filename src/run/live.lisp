@@ -4,7 +4,7 @@
 
 (export '(start-clock stop-clock doubt-wait call-as-owner *simulator-hooks* *hook-options*))
 
-(defvar *simulator-hooks* '()
+(define-event *simulator-hooks*
   "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
 
 (defvar *hook-options* '()
@@ -350,7 +350,7 @@ MISUSE if the robot no longer fits into its map. See reading 238."
                      do (check-no-fork candidate)
                      when (start-live candidate rate seed journal keep thinking)
                        return candidate)))
-    (dolist (hook *simulator-hooks*) (funcall hook robot options))
+    (tell-listeners *simulator-hooks* robot options)
     (publish-variables (robot-simulation robot))
     robot))
 

@@ -98,7 +98,7 @@ now, of which TEXT tells, to ROBOT, if given. Return the remark, or NIL."
     (let ((robots (simulation-robots *simulation*)))
       (remark *simulation* :error text (and (null (rest robots)) (first robots))))))
 
-(pushnew 'remark-error *user-error-hooks*)
+(attend *user-error-hooks* remark-error)
 
 ;;; Beginning and end.
 

@@ -9,7 +9,7 @@
 ;;; fork becomes the current simulation and the value of the variables, has the run's observers and
 ;;; messages, and is live if the run was.
 
-(defvar *rewind-hooks* '()
+(define-event *rewind-hooks*
   "Functions of a run that is being rewound and of the one that is to go on in its place.")
 
 ;;; What may be rewound, and how far.
@@ -136,7 +136,7 @@ it, and the tick at which plans strayed on the way, or NIL."
         (simulation-gate new) (simulation-gate old)
         (simulation-messages new) (simulation-messages old)
         (simulation-messages old) (make-message-queue))
-  (dolist (hook *rewind-hooks*) (funcall hook old new)))
+  (tell-listeners *rewind-hooks* old new))
 
 (defun end-rewound (old new)
   "Let OLD be over, as NEW goes on in its place."

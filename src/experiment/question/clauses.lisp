@@ -322,7 +322,7 @@ CLAUSES vary, and what the clause KEY names."
   "Signal MALFORMED-DEFINITION unless CLAUSE has one form, and warn if that is no test."
   (unless (= 2 (length clause)) (reject definition clause))
   (let* ((test (second clause))
-         (doubt (or (funcall *test-doubt* test)
+         (doubt (or (test-doubt test)
                     (test-advice test)
                     (number-as-test-advice test)
                     (state-as-test-advice test)

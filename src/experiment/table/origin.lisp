@@ -6,13 +6,19 @@
 
 ;;; None of it decides a trial, so it is in no fingerprint.
 
+(defun libraries-of (system)
+  "Return the names of the libraries that the system called SYSTEM stands on, through its core."
+  (loop for name in (remove-if-not #'stringp (asdf:system-depends-on (asdf:find-system system)))
+        if (string= "ars-magna" (asdf:primary-system-name name))
+          append (libraries-of name)
+        else collect name))
+
 (defparameter *libraries*
-  (let ((system (asdf:find-system "ars-magna" nil)))
-    (and system
-         (loop for name in (remove-if-not #'stringp (asdf:system-depends-on system))
-               for library = (asdf:registered-system name)
-               collect (format nil "~A~@[ ~A~]" name
-                               (and library (asdf:component-version library))))))
+  (and (asdf:find-system "ars-magna" nil)
+       (loop for name in (libraries-of "ars-magna")
+             for library = (asdf:registered-system name)
+             collect (format nil "~A~@[ ~A~]" name
+                             (and library (asdf:component-version library)))))
   "The names of the libraries that the simulator is built with, with their versions.")
 
 (defun git-says (directory &rest arguments)
