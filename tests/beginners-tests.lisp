@@ -37,6 +37,8 @@
                           "Did you mean :robot-blocked?"))
     (is-true (has-words-p (told '(eql (rpl:fluent-value (nisp:vref driver:camera-error* 0)) :ok))
                           "its error code is NIL"))
+    (is-true (has-words-p (told '(case driver:robot-movement-error* (:blocked 1) (:no-cornr 2)))
+                          "Did you mean :robot-blocked?" "Did you mean :no-corner?"))
     (dolist (test '((eq driver:robot-movement-error* :robot-blocked) (eq robot :blocked)
                     (eq (rpl:fluent-value (nisp:vref driver:camera-error* 0)) :not-tracking)))
       (is (not (search "no command" (told test)))))))

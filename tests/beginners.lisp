@@ -134,6 +134,9 @@ muffled."
   (is-true (has-words-p (warnings-of-procedure
                          '(when robot (command:camera-view (robot:robot-camera robot 0) nil)))
                         "(rpl-camera-view camera) (wait-for (vref camera-input* camera))"))
+  (is-true (has-words-p (warnings-of-procedure
+                         '(list robot (nisp:continuation (err) (list err) (sleep 3))))
+                        "sleep stops all plans"))
   (is (string= "" (warnings-of-procedure '(list robot) '(driver:rpl-robot-turn 1)
                                          '(mapc (lambda (each) (command:robot-turn each 1 nil))
                                            (list robot))))))

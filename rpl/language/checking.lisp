@@ -164,15 +164,14 @@ of LAMBDA-LIST's, or what stands there for such a list; or NIL."
                                     (slip-in-construct (cons (first form) part) expected))))))))
 
 (defun find-call (test forms)
-  "Return the first call in FORMS for which TEST is true, or NIL; not in what is called later."
+  "Return the first call in FORMS for which TEST is true, or NIL; not in what is called later, nor
+in a call of which TEST says :NOWHERE."
   (loop for tail = forms then (rest tail)
         while (consp tail)
-        thereis (let ((form (first tail)))
-                  (cond ((atom form) nil)
-                        ((funcall test form) form)
-                        ((not (or (member (first form) '(quote function lambda))
-                                  (and (symbolp (first form))
-                                       (same-name-p (first form) 'continuation))))
+        thereis (let* ((form (first tail)) (answer (and (consp form) (funcall test form))))
+                  (cond ((or (atom form) (eq :nowhere answer)) nil)
+                        (answer form)
+                        ((not (member (first form) '(quote function lambda)))
                          (find-call test form))))))
 
 (defun fail-p (form)

@@ -63,11 +63,13 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
        (search "-ERROR*" (symbol-name form))))
 
 (define-mistake comparison-doubt :text (form)
-  "FORM compares the value of a fluent with a word that it never is."
+  "FORM compares the value of a fluent with words that it never is."
   (multiple-value-bind (words subject) (compared-words form)
-    (let ((fluent (compared-fluent subject)))
-      (cond ((operator-in-p fluent '("TASK-STATUS")) (some #'status-doubt words))
-            ((error-fluent-p fluent) (some #'code-doubt words))))))
+    (let* ((fluent (compared-fluent subject))
+           (doubts (remove nil (cond ((operator-in-p fluent '("TASK-STATUS"))
+                                      (mapcar #'status-doubt words))
+                                     ((error-fluent-p fluent) (mapcar #'code-doubt words))))))
+      (and doubts (format nil "~{~A~^ ~}" doubts)))))
 
 ;;; Pulses take no time: between two waits nobody finds them true.
 
@@ -144,10 +146,11 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
                  name (end-text name part) (results-of-command name part)))))
 
 (define-mistake command-of-others :leaf (form)
-  "FORM is a command that plans call by another function."
-  (and (has-twin-p (first form))
-       (format nil "~(~A~) does not tell plans of its end. In a plan write ~A."
-               (first form) (twin-text (first form)))))
+  "FORM is a command that plans call by another function, and not in what is called later."
+  (cond ((and (symbolp (first form)) (same-name-p (first form) 'continuation)) :nowhere)
+        ((has-twin-p (first form))
+         (format nil "~(~A~) does not tell plans of its end. In a plan write ~A."
+                 (first form) (twin-text (first form))))))
 
 ;;; Handlers of Lisp's. A failure is no error.
 
