@@ -10,13 +10,13 @@
 
 (defun plan-backtrace (task frame)
   "Return the expressions under way in TASK at FRAME and around it, innermost first."
-  (append (forms-under-way frame)
-          (loop for whole in (rest (lineage task)) append (forms-under-way (task-frame whole)))))
+  (nconc (forms-under-way frame)
+         (loop for whole in (rest (lineage task)) nconc (forms-under-way (task-frame whole)))))
 
 (defun handled-failure (task frame)
   "Return the failure that TASK at FRAME, or a task around it, is handling or cleaning up after."
-  (find-if (lambda (data) (typep data 'plan-failure))
-           (mapcar #'frame-data (frames-around task frame))))
+  (loop for each in (frames-around task frame)
+        when (typep (frame-data each) 'plan-failure) return (frame-data each)))
 
 (define-event *failure-hooks*
   "Functions that are called with each failure, its task and frame, where it happens.")

@@ -166,8 +166,8 @@ over :succeeded, :failed or :evaporated.")
 (defun frames-around (task &optional (frame (task-frame task)))
   "Return the frames of TASK from FRAME on, and those of the tasks that it is part of, innermost
 first."
-  (append (frame-chain frame)
-          (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
+  (nconc (frame-chain frame)
+         (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
 
 (defun part-of-p (task whole)
   "True if TASK is WHOLE or a part of it."
@@ -195,14 +195,15 @@ first."
   "Return FRAME and those that it is run on behalf of, innermost first, as a list of lists: the
 frames of one list run one expression."
   (let ((runs '()) (last-form nil))
-    (dolist (each (frame-chain frame))
-      (let ((form (current-form (frame-node each) each)))
-        (if (and runs
-                 (eq form last-form)
-                 (not (find (frame-node each) (first runs) :key #'frame-node)))
-            (push each (first runs))
-            (push (list each) runs))
-        (setf last-form form)))
+    (loop for each = frame then (frame-up each)
+          while each
+          do (let ((form (current-form (frame-node each) each)))
+               (if (and runs
+                        (eq form last-form)
+                        (not (find (frame-node each) (first runs) :key #'frame-node)))
+                   (push each (first runs))
+                   (push (list each) runs))
+               (setf last-form form)))
     (nreverse (mapcar #'nreverse runs))))
 
 (defun forms-under-way (frame)
