@@ -14,9 +14,6 @@
   (list (or (and (not *saved-by-user-p*) (environment-value "ARS_MAGNA_PROGRAM"))
             (first (uiop:raw-command-line-arguments)))))
 
-(defun command-text (words)
-  (format nil "~{~A~^ ~}" (mapcar #'uiop:escape-sh-token words)))
-
 (defun save-program (name)
   "Save this program, as it is now, as the executable file NAME, and end this process."
   (settle-fingerprints)

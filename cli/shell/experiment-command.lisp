@@ -110,7 +110,7 @@ tells what trial took long, or is NIL."
          (rows (and out (ignore-errors (count-rows out)))))
     (if out
         (say "stopped with ~D row~:P in ~A~@[; ~A~]. To go on:~%  ~A" (or rows 0) out under-way
-             (command-text (append (program-words) (list command) arguments)))
+             (uiop:escape-sh-command (append (program-words) (list command) arguments)))
         (say "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
 
 (defun call-stoppable (function command arguments options)
