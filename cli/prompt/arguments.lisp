@@ -77,15 +77,11 @@ method, DATUM is the argument.")
   (declare (ignore stream argument))
   (error "#~C is for programs" char))
 
-(defun data-readtable ()
-  "Return the readtable that is in use, without what makes objects by calling functions."
-  (let ((readtable (copy-readtable)))
-    (set-dispatch-macro-character #\# #\S #'refuse-syntax readtable)
-    readtable))
-
 (defun read-data-from-string (text start)
   "Return the Lisp datum in TEXT at START and where it ends. Nothing that it says is evaluated."
-  (let ((*read-eval* nil) (*readtable* (data-readtable)))
+  (let ((*read-eval* nil) (*readtable* (copy-readtable)))
+    ;; That makes objects by calling functions.
+    (set-dispatch-macro-character #\# #\S #'refuse-syntax)
     (read-from-string text t nil :start start :preserve-whitespace t)))
 
 (defun unquoted (datum)

@@ -69,10 +69,6 @@ loads; NIL if neither, or nobody watches."
     (say-on-error-output (format nil "~@[~A, ~]~@[line ~D: ~]~A"
                                  (and line (account-file account)) line text))))
 
-(defun leave-batch (session whose)
-  (say-where session (format nil "stopped~@[ in ~A~]." whose))
-  (throw 'leave 130))
-
 (defun dropped-text (count)
   (format nil "~[~:; ~:*~D line~:P that waited ~:*~[~;was~:;were~] dropped; the arrow up brings ~
                ~:*~[~;it~:;them~] back.~]"
@@ -81,7 +77,9 @@ loads; NIL if neither, or nobody watches."
 (defun interrupted (session whose)
   "Tell the user of SESSION that his interrupt has ended the line, in code of WHOSE, a text or NIL.
 Users' code that keeps the simulator waiting is aborted, too."
-  (when (session-batch-p session) (leave-batch session whose))
+  (when (session-batch-p session)
+    (say-where session (format nil "stopped~@[ in ~A~]." whose))
+    (throw 'leave 130))
   (when *simulation* (abort-hog *simulation*))
   (let ((console (session-console session)) (dropped (drop-waiting (session-input session))))
     (answered console)

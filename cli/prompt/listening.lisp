@@ -106,14 +106,11 @@ the prompts again. One whose user is not there any more leaves them to others."
   (cond ((not (simulation-ticking-p simulation)) (show-messages session))
         ;; Its tick ends when somebody says how it goes on, who may need to know this.
         ((users-code-broken-p simulation) (show-messages session))
-        ((in-simulation-p simulation) (show-after-changes session simulation))
+        ((or (not (live-p simulation)) (eq (simulation-thread simulation) (current-thread)))
+         (show-after-changes session simulation))
         (t (setf (session-news-p session) t)
            ;; The tick may have ended just now, without seeing the news.
            (unless (simulation-ticking-p simulation) (look session)))))
-
-(defun in-simulation-p (simulation)
-  (or (not (live-p simulation))
-      (eq (simulation-thread simulation) (current-thread))))
 
 (defun look (session)
   "Show what has not been shown at the end of a tick."
@@ -134,15 +131,11 @@ another, so that nobody waits for the tick to end, which it may never."
   (setf (message-queue-listener (simulation-messages simulation))
         (and session (lambda () (hear session simulation)))))
 
-(defun copy-of-counts (session)
-  (let ((copy (make-hash-table :test 'equal)))
-    (with-lock ((session-lock session)) (take-counts copy (session-told session)))
-    copy))
-
 (defun listen-to (session simulation)
   ;; A new window does not know what others have been told often.
   (dolist (other (remove session (sessions-hearing simulation)))
-    (let ((counts (copy-of-counts other)))
+    (let ((counts (make-hash-table :test 'equal)))
+      (with-lock ((session-lock other)) (take-counts counts (session-told other)))
       (with-lock ((session-lock session)) (take-counts (session-told session) counts))))
   (setf (session-simulation session) simulation)
   (set-listener session simulation)

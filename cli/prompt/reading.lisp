@@ -90,12 +90,6 @@ and the condition that says so; NIL at the end."
   (handler-case (read-input session +going-on+ text)
     (line-too-long (condition) (values (line-outline condition) condition))))
 
-(defun next-outline (session text)
-  "Return the next line of SESSION, which goes on from TEXT, or its outline. At the end of what is
-typed, signal END-OF-FILE."
-  (or (values (read-outline session text))
-      (error 'end-of-file :stream (session-input session))))
-
 (defun skip-forms (stream)
   "Read STREAM, a growing text, until no form is open at the end of a line."
   (loop with depth = 0
@@ -106,8 +100,11 @@ typed, signal END-OF-FILE."
 
 (defun skip-rest (session text start)
   "Read on in SESSION, of which TEXT has been read, with forms from START on, until these end."
-  (handler-case (skip-forms (text-stream text start (lambda (text) (next-outline session text))))
-    (end-of-file ())))
+  (flet ((next-outline (text)
+           (or (values (read-outline session text))
+               (error 'end-of-file :stream (session-input session)))))
+    (handler-case (skip-forms (text-stream text start #'next-outline))
+      (end-of-file ()))))
 
 (defun skip-after (condition session text start)
   "Do as SKIP-REST does if CONDITION says that what begins in TEXT at START cannot be read."
@@ -128,18 +125,17 @@ typed, signal END-OF-FILE."
 ;;; Each character is read once or twice, however many lines there are, and what is evaluated while
 ;;; it is read, after #., is so as often.
 
-(defun read-more (session text)
-  (or (read-input session +going-on+ text)
-      (reject-line "The form is not complete: ~A" (one-line text))))
-
 (defun read-growing (session text start)
   "Return what READ-FORM does, of a form that goes on after TEXT."
-  (let* ((stream (text-stream text start (lambda (text) (read-more session text))))
-         (form (skipping-rest (session (grown-text stream) start)
-                 (read-preserving-whitespace stream))))
-    (values form
-            (min (grown-position stream) (length (grown-text stream)))
-            (grown-text stream))))
+  (flet ((read-more (text)
+           (or (read-input session +going-on+ text)
+               (reject-line "The form is not complete: ~A" (one-line text)))))
+    (let* ((stream (text-stream text start #'read-more))
+           (form (skipping-rest (session (grown-text stream) start)
+                   (read-preserving-whitespace stream))))
+      (values form
+              (min (grown-position stream) (length (grown-text stream)))
+              (grown-text stream)))))
 
 (defun left-out-p (text start)
   "True if TEXT has from START on no form but one that Lisp leaves out, as after #-sbcl."

@@ -20,19 +20,15 @@
   (let ((run (message-run message)))
     (if run (simulation-tick run) 0)))
 
-(defun room-to-count (told)
-  "Return TOLD, a table of tallies by what they are of, with room for one more."
-  (when (< *message-limit* (hash-table-count told)) (clrhash told))
-  told)
-
 (defun tally-for (message told)
   (let* ((text (message-text message))
          (code (let ((item (item-at-fault message)))
                  (and item (recurring-code item))))
          (tally (gethash text told)))
-    (if (and tally (eq code (tally-code tally)) (<= (tally-tick tally) (tick-of message)))
-        tally
-        (setf (gethash text (room-to-count told)) (make-tally :code code)))))
+    (cond ((and tally (eq code (tally-code tally)) (<= (tally-tick tally) (tick-of message)))
+           tally)
+          (t (when (< *message-limit* (hash-table-count told)) (clrhash told))
+             (setf (gethash text told) (make-tally :code code))))))
 
 (defun power-of-ten-p (number)
   (or (= 1 number)
