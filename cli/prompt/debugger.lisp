@@ -44,8 +44,7 @@ and syntax that are used here."
                  restarts)
         (reject-line "~A is no way to go on. Give a number or name that is listed (~{~A~^, ~}), ~
                       BACKTRACE, PLAN-TREE, QUIT, or a form in parentheses."
-                     word (mapcar (lambda (restart) (plain-name (restart-name restart)))
-                                  restarts)))))
+                     word (mapcar #'plain-name (mapcar #'restart-name restarts))))))
 
 (defun broken-calls ()
   "Return the calls under way that led into the debugger, the newest first, as far as they are the
