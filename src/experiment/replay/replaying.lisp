@@ -84,35 +84,11 @@ there is none."
 
 ;;; The whole.
 
-(defstruct (replaying (:constructor make-replaying (experiment condition trial then journal))
-                      (:copier nil))
-  "A trial that is run again, and what comes of that. KEPT is its journal, if JOURNAL is true."
-  (experiment nil :type experiment :read-only t)
-  (condition nil :type trial-condition :read-only t)
-  (trial 0 :type integer :read-only t)
-  (then nil :type (or function symbol) :read-only t)
-  (journal nil :read-only t)
-  (stopped-p nil :type boolean)
-  (kept nil))
-
 (defun keep-journal (journal)
   "Return the journal of the current simulation, if JOURNAL is true; save it if that is a name."
   (when journal
     (when (typep journal '(or string pathname)) (save-journal journal))
     (end-of-journal (current-simulation))))
-
-(defun look-around (replaying)
-  "Do what is to be done where the trial of REPLAYING has ended or is stopped."
-  (call-aside (lambda ()
-                (setf (replaying-kept replaying) (keep-journal (replaying-journal replaying)))
-                (funcall (replaying-then replaying)))))
-
-(defun stop-replaying (replaying)
-  "Leave the trial of REPLAYING, which stands at its gate."
-  (let ((result (make-result (replaying-condition replaying) (replaying-trial replaying) 0)))
-    (note-end result)
-    (unless (shiftf (replaying-stopped-p replaying) t) (look-around replaying))
-    (throw 'stopped result)))
 
 (defvar *trial-replayed* nil
   "The trial that REPLAY-TRIAL runs in this thread, in words, or NIL.")
@@ -123,32 +99,27 @@ there is none."
           (1+ (position condition (experiment-conditions experiment)))
           trial))
 
-(defun run-replaying (replaying until rate step)
-  (let* ((experiment (replaying-experiment replaying))
-         (condition (replaying-condition replaying))
-         (trial (replaying-trial replaying))
-         (*trial-replayed* (trial-words experiment condition trial)))
-    (catch 'stopped
-      (run-again experiment condition trial
-                 :gate (looking-gate until rate step (lambda () (stop-replaying replaying)))
-                 :journal (and (replaying-journal replaying) t)
-                 :then (lambda (result)
-                         (declare (ignore result))
-                         (look-around replaying))))))
-
-(defun run-comparing (replaying directory function)
-  "Call FUNCTION, which runs the trial of REPLAYING. Return its result, and in what that differs
-from the row in DIRECTORY, if that is given."
-  (let* ((experiment (replaying-experiment replaying))
-         (condition (replaying-condition replaying))
-         (parts (and directory (prepare-condition experiment condition)))
-         (row (and directory
-                   (row-of-trial experiment condition (replaying-trial replaying) directory)))
-         (result (funcall function)))
-    (values result
-            (and row
-                 (not (replaying-stopped-p replaying))
-                 (row-differences experiment result parts row directory)))))
+(defun run-replaying (experiment condition trial until rate step journal then)
+  "Run TRIAL of CONDITION of EXPERIMENT; the other arguments are those of REPLAY-TRIAL. Return its
+result, whether it was stopped, and its journal, if JOURNAL is true."
+  (let ((*trial-replayed* (trial-words experiment condition trial)) (stopped-p nil) (kept nil))
+    (labels ((look-around ()
+               (call-aside (lambda ()
+                             (setf kept (keep-journal journal))
+                             (funcall then))))
+             (stop ()
+               (let ((result (make-result condition trial 0)))
+                 (note-end result)
+                 (unless (shiftf stopped-p t) (look-around))
+                 (throw 'stopped result))))
+      (let ((result (catch 'stopped
+                      (run-again experiment condition trial
+                                 :gate (looking-gate until rate step #'stop)
+                                 :journal (and journal t)
+                                 :then (lambda (result)
+                                         (declare (ignore result))
+                                         (look-around))))))
+        (values result stopped-p kept)))))
 
 (defun measured (experiment result)
   "Return lists (name value) of what was measured in RESULT, of EXPERIMENT."
@@ -163,17 +134,16 @@ from the row in DIRECTORY, if that is given."
         for (tick . texts) in (result-series result)
         collect (cons tick (loop for text in texts collect (value-in text shared)))))
 
-(defun replaying-plist (replaying result differences)
-  (let ((over-p (not (replaying-stopped-p replaying))))
-    (list :outcome (and over-p (result-outcome result))
-          :reason (if over-p (result-reason result) "")
-          :ticks (result-ticks result)
-          :digest (result-digest-text result)
-          :measures (measured (replaying-experiment replaying) result)
-          :series (recorded result)
-          :error (if over-p (result-error result) "")
-          :journal (replaying-kept replaying)
-          :differences differences)))
+(defun replaying-plist (experiment result stopped-p journal differences)
+  (list :outcome (and (not stopped-p) (result-outcome result))
+        :reason (if stopped-p "" (result-reason result))
+        :ticks (result-ticks result)
+        :digest (result-digest-text result)
+        :measures (measured experiment result)
+        :series (recorded result)
+        :error (if stopped-p "" (result-error result))
+        :journal journal
+        :differences differences))
 
 (defun check-replay (trial until then step journal directory)
   (check-argument replay-trial trial (and (integerp trial) (<= 0 trial +largest+))
@@ -213,9 +183,13 @@ UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."
   (check-replay trial until then step journal directory)
   (when rate (check-rate rate))
   (let* ((experiment (find-experiment experiment))
+         (condition (find-condition experiment condition))
          (*trace-plans* (or trace *trace-plans*))
-         (replaying (make-replaying experiment (find-condition experiment condition)
-                                    trial then journal)))
-    (multiple-value-bind (result differences)
-        (run-comparing replaying directory (lambda () (run-replaying replaying until rate step)))
-      (replaying-plist replaying result differences))))
+         (parts (and directory (prepare-condition experiment condition)))
+         (row (and directory (row-of-trial experiment condition trial directory))))
+    (multiple-value-bind (result stopped-p kept)
+        (run-replaying experiment condition trial until rate step journal then)
+      (replaying-plist experiment result stopped-p kept
+                       (and row
+                            (not stopped-p)
+                            (row-differences experiment result parts row directory))))))
