@@ -4,19 +4,13 @@
 
 (export '(difference-chart))
 
-(defstruct (difference (:constructor make-difference (label estimate low high words)) (:copier nil))
-  "An estimate with an interval, any of which may be NIL, and what else is said of it."
-  (label "" :read-only t)
-  (estimate nil :read-only t)
-  (low nil :read-only t)
-  (high nil :read-only t)
-  (words nil :read-only t))
-
 (defun checked-difference (row)
+  "Return ROW as a list (label estimate low high words): what is compared, an estimate with an
+interval, any of which may be NIL, and what else is said of it."
   (check-argument difference-chart row (and (consp row) (ignore-errors (<= 2 (length row) 5)))
                   "a list (label estimate low high words)")
   (destructuring-bind (label estimate &optional low high words) row
-    (make-difference (name-text label) (exact estimate) (exact low) (exact high) words)))
+    (list (name-text label) (exact estimate) (exact low) (exact high) words)))
 
 (defun signed-text (value percent)
   (concatenate 'string (if (and value (plusp value)) "+" "")
@@ -30,15 +24,10 @@
         (t (funcall text value))))
 
 (defun difference-entry (difference percent)
-  (list (difference-label difference)
-        (interval-text (difference-estimate difference) (difference-low difference)
-                       (difference-high difference)
-                       (lambda (value) (signed-text value percent)))
-        (difference-words difference)))
-
-(defun difference-numbers (difference)
-  (remove nil (list (difference-estimate difference) (difference-low difference)
-                    (difference-high difference))))
+  (destructuring-bind (label estimate low high words) difference
+    (list label
+          (interval-text estimate low high (lambda (value) (signed-text value percent)))
+          words)))
 
 (defun draw-estimate (canvas index y value low high across)
   "Draw VALUE with its interval along the axis ACROSS at Y, with the look of INDEX."
@@ -62,13 +51,13 @@ hundredths. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT.
   (let* ((differences (mapcar #'checked-difference rows))
          (table (plan-table (mapcar (lambda (difference) (difference-entry difference percent))
                                     differences)
-                            (cons 0 (mapcan #'difference-numbers differences))
+                            (cons 0 (loop for difference in differences
+                                          append (remove nil (subseq difference 1 4))))
                             :title title :subtitle subtitle :x-label x-label :width width
                             :percent percent)))
     (table-svg table
                (lambda (canvas row number)
                  (when (zerop number) (draw-zero canvas table))
-                 (let ((difference (elt differences number)))
-                   (draw-estimate canvas 0 (row-middle row) (difference-estimate difference)
-                                  (difference-low difference) (difference-high difference)
+                 (destructuring-bind (estimate low high) (subseq (elt differences number) 1 4)
+                   (draw-estimate canvas 0 (row-middle row) estimate low high
                                   (table-across table)))))))

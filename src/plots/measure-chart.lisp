@@ -7,37 +7,29 @@
 ;;; The numbers of a group stand in columns of four pixels, as high as there are many in each. So
 ;;; ten numbers and ten thousand are drawn alike.
 
-(defstruct (group (:constructor make-group (label numbers middle low high)) (:copier nil))
-  "NUMBERS, and what is in their middle, with an interval."
-  (label "" :read-only t)
-  (numbers '() :type list :read-only t)
-  (middle nil :read-only t)
-  (low nil :read-only t)
-  (high nil :read-only t))
-
 (defconstant +column-width+ 4 "How wide a column is, in pixels.")
 (defconstant +column-height+ 28 "How high the highest column of a group is, in pixels.")
 
 (defun checked-group (row)
+  "Return ROW as a list (label numbers middle low high): NUMBERS, and what is in their middle, with
+an interval."
   (check-argument measure-chart row
                   (and (consp row) (ignore-errors (<= 2 (length row) 5))
                        (typep (second row) 'sequence))
                   "a list (label numbers middle low high)")
   (destructuring-bind (label numbers &optional middle low high) row
-    (make-group (name-text label) (remove nil (map 'list #'exact numbers))
-                (exact middle) (exact low) (exact high))))
+    (list (name-text label) (remove nil (map 'list #'exact numbers))
+          (exact middle) (exact low) (exact high))))
 
 (defun group-values (group)
-  (append (remove nil (list (group-middle group) (group-low group) (group-high group)))
-          (group-numbers group)))
+  (append (remove nil (cddr group)) (second group)))
 
 (defun group-entry (group middle-label)
-  (list (group-label group)
-        (and (group-middle group)
-             (format nil "~A ~A" middle-label
-                     (interval-text (group-middle group) (group-low group) (group-high group)
-                                    #'figure-text)))
-        (format nil "n = ~D" (length (group-numbers group)))))
+  (destructuring-bind (label numbers middle low high) group
+    (list label
+          (and middle
+               (format nil "~A ~A" middle-label (interval-text middle low high #'figure-text)))
+          (format nil "n = ~D" (length numbers)))))
 
 (defun columns (numbers axis)
   "Return an alist from columns, counted from where AXIS begins, to how many NUMBERS are in each."
@@ -61,10 +53,10 @@
       (draw-line canvas draw-gcontext* (axis-from axis) y (axis-to axis) y))))
 
 (defun draw-group (canvas group row axis)
-  (let ((base (+ (row-middle row) 12)))
-    (draw-columns canvas (group-numbers group) base axis)
-    (draw-estimate canvas 3 (+ base 8) (group-middle group) (group-low group) (group-high group)
-                   axis)))
+  (destructuring-bind (numbers middle low high) (rest group)
+    (let ((base (+ (row-middle row) 12)))
+      (draw-columns canvas numbers base axis)
+      (draw-estimate canvas 3 (+ base 8) middle low high axis))))
 
 (defun measure-chart (rows &key log-x (middle-label "median") title subtitle x-label (width 720))
   "Return a chart of many numbers as an SVG document. ROWS are lists (label numbers middle low
