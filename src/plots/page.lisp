@@ -12,24 +12,19 @@
   (check-argument chart height (whole-p height 200 10000)
                   "an integer from 200 to 10000, in pixels"))
 
-;;; Title and subtitle.
-
-(defstruct (heading (:constructor make-heading (title subtitle)) (:copier nil))
-  "Lines of text above a chart."
-  (title '() :type list)
-  (subtitle '() :type list))
+;;; Title and subtitle: a heading is a list of both, each a list of lines.
 
 (defun plan-heading (title subtitle width)
   (let ((room (- width (* 2 +margin+))))
-    (make-heading (wrapped title room :size 15 :bold-p t) (wrapped subtitle room))))
+    (list (wrapped title room :size 15 :bold-p t) (wrapped subtitle room))))
 
 (defun heading-bottom (heading)
-  (+ +margin+ (* 19 (length (heading-title heading))) (lines-height (heading-subtitle heading))))
+  (+ +margin+ (* 19 (length (first heading))) (lines-height (second heading))))
 
 (defun draw-heading (canvas heading)
-  (let ((y (write-lines canvas +margin+ (+ +margin+ 13) (heading-title heading)
-                        :size 15 :step 19 :bold-p t)))
-    (write-lines canvas +margin+ (- y 2) (heading-subtitle heading) :color +faint-ink+)))
+  (destructuring-bind (title subtitle) heading
+    (let ((y (write-lines canvas +margin+ (+ +margin+ 13) title :size 15 :step 19 :bold-p t)))
+      (write-lines canvas +margin+ (- y 2) subtitle :color +faint-ink+))))
 
 ;;; The document.
 
