@@ -19,10 +19,9 @@
          (name (format nil "~{~A~^-~}" words)))
     (subseq name 0 (min 100 (length name)))))
 
-(defun new-name (picture names)
-  "Return the name for PICTURE, which is none of NAMES."
-  (let ((name (file-word (format nil "~A~@[-~A~]" (picture-name picture)
-                                  (picture-where picture)))))
+(defun new-name (name where names)
+  "Return the name for the picture called NAME, of WHERE, which is none of NAMES."
+  (let ((name (file-word (format nil "~A~@[-~A~]" name where))))
     (if (member name names :test #'string=)
         (loop for number from 2
               for other = (format nil "~A-~D" name number)
@@ -32,11 +31,10 @@
 (defun save-pictures (pictures directory kind)
   "Save PICTURES in DIRECTORY, as files of KIND. Return their truenames."
   (let ((names '()))
-    (loop for picture in pictures
-          for name = (new-name picture names)
+    (loop for (title where chart) in pictures
+          for name = (new-name title where names)
           do (push name names)
-          collect (save-chart (file-in directory (format nil "~A.~(~A~)" name kind))
-                              (picture-chart picture)))))
+          collect (save-chart (file-in directory (format nil "~A.~(~A~)" name kind)) chart))))
 
 (addition save-result-pictures)
 (define-with-keywords save-result-pictures

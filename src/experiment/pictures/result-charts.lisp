@@ -2,11 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
-(defstruct (picture (:constructor make-picture (name where chart)) (:copier nil))
-  "A CHART, an SVG document, of what is called NAME, and of conditions that WHERE tells apart."
-  (name "" :type string :read-only t)
-  (where nil :type (or null string) :read-only t)
-  (chart "" :type string :read-only t))
+;;; A picture is a list (name where chart): the chart, an SVG document, of what is called NAME, and
+;;; of conditions that WHERE tells apart.
 
 ;;; What is written above.
 
@@ -64,17 +61,17 @@ estimate for a sample."
     (flet ((estimate-of (sample) (funcall reader (cdr (assoc sample table)))))
       (loop for panel in (panels (results-samples results) (factors-beside results) factors)
             for series = (chart-series panel place #'estimate-of)
-            collect (make-picture
-                     name (panel-where panel)
-                     (line-chart series
-                                 :percent (eq :rate kind)
-                                 :log-x (and place (log-x-p (mapcar #'x-value
-                                                                    (levels results place))))
-                                 :title (title-of results)
-                                 :subtitle (subtitle panel words (intervals-words kind summaries))
-                                 :x-label (and place (nth place factors))
-                                 :legend-title (panel-title panel)
-                                 :y-label y-label))))))
+            collect (list name (panel-where panel)
+                          (line-chart series
+                                      :percent (eq :rate kind)
+                                      :log-x (and place (log-x-p (mapcar #'x-value
+                                                                         (levels results place))))
+                                      :title (title-of results)
+                                      :subtitle (subtitle panel words
+                                                          (intervals-words kind summaries))
+                                      :x-label (and place (nth place factors))
+                                      :legend-title (panel-title panel)
+                                      :y-label y-label))))))
 
 (defun success-pictures (results summaries)
   (estimates-charts results summaries "success" "trials that succeed" nil #'summary-success))
@@ -95,8 +92,7 @@ estimate for a sample."
   (loop with chunks = (in-chunks rows +most-rows+)
         for chunk in chunks
         for number from 1
-        collect (make-picture name (and (rest chunks) (integer-text number))
-                              (funcall chart chunk))))
+        collect (list name (and (rest chunks) (integer-text number)) (funcall chart chunk))))
 
 (defun spread-pictures (results summaries place)
   "Return pictures of how the numbers of the measure at PLACE lie."
@@ -170,7 +166,7 @@ estimate for a sample."
   "Return the picture of survival in PANEL of RESULTS, until HORIZON; ERRORS is what there is to say
 of trials that broke off."
   (let ((band-p (<= (length (panel-series panel)) +most-bands+)))
-    (make-picture
+    (list
      "survival" (panel-where panel)
      (survival-chart (loop for (name sample) in (panel-series panel)
                            collect (curve-of name sample horizon (confidence-for results sample)
