@@ -7,12 +7,8 @@
 ;;; What varies is a factor: a parameter, a variable of the experiment's forms, the thinking mode,
 ;;; or the robots, and with them the world. A condition gives each factor a value. Conditions are
 ;;; all combinations of the factors' values, or a list of named cases, or each case with each
-;;; combination. What a design samples varies together: its factors are one axis.
-
-(defstruct (axis (:constructor make-axis (names choices)) (:copier nil))
-  "Factors that vary together: their NAMES, symbols, and CHOICES, lists of settings (name value)."
-  (names '() :type list :read-only t)
-  (choices '() :type list :read-only t))
+;;; combination. What a design samples varies together: its factors are one axis. An axis is a list
+;;; (names choices): the names of factors that vary together, and lists of settings (name value).
 
 (defstruct (trial-condition (:conc-name condition-) (:constructor %make-condition) (:copier nil))
   "What the trials of one condition have in common."
@@ -45,7 +41,7 @@
   (if (null axes)
       (list '())
       (loop with rest = (combinations (rest axes))
-            for choice in (axis-choices (first axes))
+            for choice in (second (first axes))
             append (loop for others in rest collect (append choice others)))))
 
 (defun setting-text (setting)

@@ -210,10 +210,10 @@ in CHOICES."
   (cond ((design-part-p part)
          (let ((choices (design-choices definition part values)))
            (check-sampled definition part choices)
-           (make-axis (part-names part) choices)))
+           (list (part-names part) choices)))
         (t (check-values definition part values)
-           (make-axis (part-names part)
-                      (loop for value in values collect (list (list (first part) value)))))))
+           (list (part-names part)
+                 (loop for value in values collect (list (list (first part) value)))))))
 
 (defun settings-from (definition settings)
   "Return lists (name value) for SETTINGS, lists (part value) of a definition."

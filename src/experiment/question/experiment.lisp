@@ -73,7 +73,7 @@ PARAMETERS, lists (name value), that all have."
   (remove-duplicates
    (append (loop for case in (experiment-cases experiment)
                  append (mapcar #'first (second case)))
-           (loop for axis in (experiment-axes experiment) append (axis-names axis)))
+           (loop for axis in (experiment-axes experiment) append (first axis)))
    :from-end t))
 
 (defun all-conditions (experiment clean parameters)
