@@ -83,15 +83,6 @@ WATCH with the simulation at the beginning and after each tick. Signals what FUN
                           (draw-movers canvas snapshot layers)
                           (draw-tick-label canvas (snapshot-tick snapshot))))))
 
-(defun write-animation (stream snapshots rate &key layers in-color scale title)
-  (let ((first (first snapshots)))
-    (with-map-svg (canvas stream first :layers layers :in-color in-color :scale scale)
-      (draw-framed canvas first layers
-                   (lambda ()
-                     (draw-terrain canvas (snapshot-map first) :layers layers)
-                     (write-frames-of canvas snapshots rate layers))
-                   :title title))))
-
 ;;; A page. Its legend stands beside the picture, so that this can be as large as there is room; and
 ;;; has what is to be seen in any of the frames.
 
@@ -286,9 +277,14 @@ does."
   (let ((snapshots '()))
     (call-with-frames (lambda (snapshot) (push snapshot snapshots))
                       journal (frame-step journal every until) until :part part)
-    (with-output-to-string (stream)
-      (write-animation stream (reverse snapshots) rate :layers layers :in-color in-color
-                                                       :scale scale :title title))))
+    (let* ((snapshots (reverse snapshots)) (first (first snapshots)))
+      (with-output-to-string (stream)
+        (with-map-svg (canvas stream first :layers layers :in-color in-color :scale scale)
+          (draw-framed canvas first layers
+                       (lambda ()
+                         (draw-terrain canvas (snapshot-map first) :layers layers)
+                         (write-frames-of canvas snapshots rate layers))
+                       :title title))))))
 
 (addition journal-moments)
 (define-with-keywords journal-moments
