@@ -4,14 +4,12 @@
 
 ;;; Trials come by number, and for each number all conditions, so that whoever stops early has as
 ;;; many of each. Workers take one after the other from the queue. A shard (index . count) has the
-;;; trials whose numbers leave INDEX when divided by COUNT.
+;;; trials whose numbers leave INDEX when divided by COUNT; (0 . 1) has all.
 
-(defstruct (queue (:constructor make-queue
-                      (conditions first last presence shard &optional time-limit))
+(defstruct (queue (:constructor make-queue (conditions last presence shard time-limit))
                   (:copier nil))
-  "The trials from FIRST to LAST of CONDITIONS that PRESENCE lacks, of SHARD if there is one."
+  "The trials from 1 to LAST of CONDITIONS that are in SHARD and that PRESENCE lacks."
   (conditions '() :type list :read-only t)
-  (first 1 :type integer :read-only t)
   (last 0 :type integer :read-only t)
   (presence nil :type hash-table :read-only t)
   (shard nil :type list :read-only t)
@@ -24,14 +22,13 @@
   (closed-p nil :type boolean))
 
 (defun in-shard-p (trial shard)
-  (or (null shard) (= (car shard) (mod trial (cdr shard)))))
+  (= (car shard) (mod trial (cdr shard))))
 
 (defun step-queue (queue)
   "Return the next trial of QUEUE, present or not, as a condition and a number, or NIL."
   (when (null (queue-left queue))
     (setf (queue-trial queue)
-          (loop for trial from (max (queue-first queue) (1+ (queue-trial queue)))
-                  to (queue-last queue)
+          (loop for trial from (1+ (queue-trial queue)) to (queue-last queue)
                 when (in-shard-p trial (queue-shard queue)) return trial
                 finally (return (1+ (queue-last queue))))
           (queue-left queue) (and (<= (queue-trial queue) (queue-last queue))
@@ -47,21 +44,18 @@
                     ((not (present-p condition trial (queue-presence queue)))
                      (return (values condition trial)))))))))
 
-(defun count-in-shard (first last shard)
-  (if shard
-      (flet ((up-to (number)
-               (destructuring-bind (index . count) shard
-                 (if (< number index) 0 (1+ (floor (- number index) count))))))
-        (- (up-to last) (up-to (1- first))))
-      (max 0 (- last first -1))))
+(defun count-in-shard (last shard)
+  "Return how many numbers from 1 to LAST are of trials in SHARD."
+  (destructuring-bind (index . count) shard
+    (- (floor (- last index) count) (floor (- index) count))))
 
 (defun count-missing (queue)
   "Return how many trials there are in QUEUE, of which none has been taken."
-  (let ((first (queue-first queue)) (last (queue-last queue)) (shard (queue-shard queue)))
+  (let ((last (queue-last queue)) (shard (queue-shard queue)))
     (loop for condition in (queue-conditions queue)
           for bits = (bits-of condition (queue-presence queue))
-          sum (- (count-in-shard first last shard)
-                 (loop for trial from first below (min (1+ last) (length bits))
+          sum (- (count-in-shard last shard)
+                 (loop for trial from 1 below (min (1+ last) (length bits))
                        count (and (plusp (aref bits trial)) (in-shard-p trial shard)))))))
 
 ;;; Running them.

@@ -80,7 +80,7 @@ Signals MISUSE for rows of other code."
 
 (defun run-round (experiment conditions last presence shard store workers time-limit stream)
   "Run the trials up to LAST of CONDITIONS that are not there."
-  (let* ((queue (make-queue conditions 1 last presence shard time-limit))
+  (let* ((queue (make-queue conditions last presence (or shard '(0 . 1)) time-limit))
          (missing (count-missing queue))
          (workers (min workers missing))
          (progress (make-progress stream (and stream (interactive-stream-p stream))
