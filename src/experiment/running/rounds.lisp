@@ -60,31 +60,30 @@
 
 ;;; Running them.
 
-(defun run-and-keep (experiment condition trial queue keep progress worker)
-  "Run TRIAL of CONDITION, which is of QUEUE, have KEEP, a function, keep what comes of it, and tell
-PROGRESS."
+(defun run-and-keep (experiment condition trial queue store progress worker)
+  "Run TRIAL of CONDITION, which is of QUEUE, keep what comes of it in STORE, and tell PROGRESS."
   (let ((begun (moment)))
     (setf (svref (progress-under-way progress) worker)
           (list condition trial begun (trial-seed experiment trial)))
     (let ((result (run-guarded experiment condition trial (lambda () (queue-closed-p queue))
                                (queue-time-limit queue))))
-      (funcall keep result (* 1000 (seconds-since begun)) worker))
+      (keep-row store result (* 1000 (seconds-since begun)) worker))
     (setf (svref (progress-under-way progress) worker) nil)
     (atomic-incf (progress-done progress))))
 
-(defun work-off (experiment queue keep progress worker)
+(defun work-off (experiment queue store progress worker)
   (flet ((work ()
            (loop (multiple-value-bind (condition trial) (next-trial queue)
                    (unless condition (return))
-                   (run-and-keep experiment condition trial queue keep progress worker)))))
+                   (run-and-keep experiment condition trial queue store progress worker)))))
     (call-in-silence
      (lambda ()
        (call-plainly (lambda () (call-with-own-lisps-dice #'work)))))))
 
-(defun run-queue (experiment queue keep progress workers)
+(defun run-queue (experiment queue store progress workers)
   "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more, and
 those under way are given a moment."
-  (call-by-workers (lambda (worker) (work-off experiment queue keep progress worker))
+  (call-by-workers (lambda (worker) (work-off experiment queue store progress worker))
                    workers
                    :pulse (lambda () (tell-progress progress))
                    ;; Nobody gets another trial.

@@ -87,10 +87,7 @@ Signals MISUSE for rows of other code."
                                   missing workers))
          (*progress* progress))
     (when (plusp missing)
-      (run-queue experiment queue
-                 (lambda (result milliseconds worker)
-                   (keep-row store result milliseconds worker))
-                 progress workers)
+      (run-queue experiment queue store progress workers)
       (tell-progress progress t))))
 
 (defun run-until-narrow (experiment width most directory store workers time-limit stream)
