@@ -158,14 +158,10 @@ Signals MISUSE if they are both."
   "Return the pairs of samples of RESULTS that are meant by FIRST and SECOND, which may be :ALL, and
 the place of the factor if these are levels of one that several conditions have."
   (multiple-value-bind (first second) (as-meant results first second)
-    (pairs-of-meant results first second)))
-
-(defun pairs-of-meant (results first second)
-  "Do as PAIRS-MEANT does, with FIRST and SECOND that are as they are meant."
-  (let ((several-p (or (rest (samples-meant-by results first))
-                       (and (not (eq :all second)) (rest (samples-meant-by results second))))))
     (multiple-value-bind (pairs place)
-        (and several-p (pairs-of-levels results first second))
+        (and (or (rest (samples-meant-by results first))
+                 (and (not (eq :all second)) (rest (samples-meant-by results second))))
+             (pairs-of-levels results first second))
       (if pairs
           (values pairs place)
           (pairs-of-conditions results first second)))))
