@@ -42,7 +42,6 @@ WATCH with the simulation at the beginning and after each tick. Signals what FUN
       (call-with-replay #'end journal :until until :observer #'look :beginning #'look))))
 
 (defun frame-step (journal every until)
-  "Return every how many ticks to draw a frame."
   (or every
       (max 1 (ceiling (if until (min until (journal-end journal)) (journal-end journal))
                       +frame-limit+))))

@@ -27,7 +27,6 @@ a vector of such numbers."
         while end collect (subseq text start (1+ end))))
 
 (defun add-frame (text reel)
-  "Let the frame that is drawn by TEXT, in SVG, be the next of REEL."
   (let ((numbers (reel-numbers reel)))
     (flet ((number-of (line)
              (or (gethash line numbers)

@@ -43,7 +43,6 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
                 expected))
 
 (defun number-in (file entry least most expected)
-  "Return the number that ENTRY has, from LEAST to MOST."
   (let ((number (and (stringp (entry-value entry)) (read-decimal (entry-value entry)))))
     (unless (and number (<= least number most)) (reject-entry file entry expected))
     number))
@@ -59,7 +58,6 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
   (number-in file entry 0 1 "a probability from 0 to 1"))
 
 (defun origin-in (file entry)
-  "Return the list of three numbers that ENTRY has."
   (let ((numbers (and (consp (entry-value entry)) (mapcar #'read-decimal (entry-value entry)))))
     (unless (and (= 3 (length numbers))
                  (every (lambda (number) (and number (within-reason-p number))) numbers))

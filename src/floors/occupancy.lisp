@@ -91,7 +91,6 @@ occupied and unknown, by TABLE."
         (setf (aref cells index) (aref table (aref samples index)))))))
 
 (defun image-grid (image description side share)
-  "Return the grid for IMAGE, read as DESCRIPTION says, with cells of SIDE by SIDE pixels."
   (let ((table (state-table description (image-white image))))
     (if (= 1 side)
         (pixel-grid image table)

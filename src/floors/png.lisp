@@ -60,7 +60,6 @@
         (shade-of-colour grey grey grey alpha rule))))
 
 (defun shade-table (png rule)
-  "Return a vector of the samples for all values of the one channel of PNG."
   (let ((table (make-array (ash 1 (png-depth png)) :element-type '(unsigned-byte 16)))
         (shade (if (png-palette-p png) #'shade-of-place #'shade-of-grey)))
     (dotimes (value (length table) table)

@@ -30,8 +30,6 @@ and BEFORE; :UNKNOWN if these do not say."
             (and (nthcdr 5 only) (list (format nil "~A: ..." title))))))
 
 (defun ruler-changes (after before)
-  "Return lines that warn that the experiment's own text is another in the directory AFTER than in
-BEFORE."
   (let ((now (form-described after)) (then (form-described before)))
     (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it ~
                        does, measures or counts as success may be another thing in each, so what ~
@@ -39,7 +37,6 @@ BEFORE."
           (append (lines-only-in then now "before") (lines-only-in now then "now")))))
 
 (defun parts-words (parts conditions)
-  "Return in a sentence that PARTS of the fingerprints differ, under so many CONDITIONS."
   (let ((others (remove-if (lambda (part) (part-of-kind-p "condition" part)) parts)))
     (format nil "What differs between the tables, under ~D condition~:P: ~{~A~^, ~}."
             conditions

@@ -95,7 +95,6 @@ estimate for a sample."
         collect (list name (and (rest chunks) (integer-text number)) (funcall chart chunk))))
 
 (defun spread-pictures (results summaries place)
-  "Return pictures of how the numbers of the measure at PLACE lie."
   (let ((name (nth place (results-measures results))))
     (pictures-of-rows (format nil "spread-of-~A" name)
                       (loop for sample in (results-samples results)

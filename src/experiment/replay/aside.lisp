@@ -50,7 +50,6 @@ where nobody is to answer it is an error of the trial."
         (funcall function)))))
 
 (defun run-to-end (experiment result then)
-  "Do in the current simulation what EXPERIMENT says, and call THEN with RESULT, what came of it."
   (keep-history)
   (conduct-to-end experiment result)
   (setf (simulation-gate (current-simulation))

@@ -35,7 +35,6 @@ they are too large or small for that."
     (loop for text in texts collect (format nil "~V@A" width text))))
 
 (defun interval-texts (estimates)
-  "Return what is written of each of ESTIMATES: its value and its interval."
   (let ((writer (writer-for estimates)))
     (flet ((texts (reader) (aligned-texts (mapcar reader estimates) writer)))
       (loop for estimate in estimates

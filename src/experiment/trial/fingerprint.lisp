@@ -45,7 +45,6 @@ it has been changed since."
     parts))
 
 (defun configuration-parts (experiment condition)
-  "Return the parts that are in the text of EXPERIMENT and the values of CONDITION."
   (list (list :simulator *simulator-version* *simulator-digest*)
         (list :experiment (string-downcase (experiment-name experiment))
               (form-digest (experiment-deciding experiment)))
@@ -71,7 +70,6 @@ it has been changed since."
              definitions))
 
 (defun reach-of (experiment condition definitions)
-  "Return what a trial of CONDITION can reach, which begins with DEFINITIONS."
   (let ((reach (make-reach)))
     (dolist (entry (entries-of definitions)) (visit-definition entry reach))
     (dolist (function (list* (experiment-run experiment) (experiment-until experiment)
@@ -110,7 +108,6 @@ reach."
             (digest-value digest))))
 
 (defun note-reach (condition reach)
-  "Give CONDITION what its trials need of REACH, what they can reach."
   (setf (condition-variables condition)
         (loop for symbol in (reach-variables reach)
               collect (list symbol (global-value symbol)))
