@@ -150,6 +150,31 @@ name, in Nisp's syntax and with a decimal fraction."
   (let ((said (complaint-about-file "ä" "(with-open-file (in ~S) (read-line in))" :latin-1)))
     (is-true (has-words-p said ".lisp cannot be read: it has bytes that are not UTF-8") "~A" said)))
 
+(defun told-of-compiling (text)
+  "Return the lines that a batch answers which compiles a file with TEXT, one error or more."
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+    (write-string text out)
+    :close-stream
+    (prog1 (remove-if-not (lambda (line) (uiop:string-prefix-p "*" line))
+                          (type-batch (format nil "(compile-file ~S)" (base:native-name path))))
+      (uiop:delete-file-if-exists (compile-file-pathname path)))))
+
+(test files.that-are-compiled-say-where-they-cannot-be
+  (loop for (text . words) in
+        '(("~%(list 1)~%(nowhere:f)" "*ERROR*" "line 3: " "cannot be read" "NOWHERE")
+          ("(list 1)~%(list 2))" "*ERROR*" "line 2: " "unmatched close parenthesis")
+          ("(list 1)~%~%(list 2" "*ERROR*" "line 3: " "it ends too early")
+          ("(defun f ()~%  (let ((1 2)) 3))" "*ERROR*" "line 2: " "1 is not a symbol")
+          ("(defun f (x)~%  (list x~%    (car)))" "*WARNING*" "line 3: " "CAR" "zero arguments"))
+        for told = (told-of-compiling (format nil text))
+        do (is (= 1 (length told)) "~A" told)
+           (is-true (apply #'has-words-p (first told) ".lisp, " words) "~A" told)))
+
+(test files.that-are-compiled-well-need-no-words
+  "Matters of style, and what a program muffles, are not told."
+  (is (null (told-of-compiling "(defun f (x) 1) (eval-when (:compile-toplevel) (list (list 1)))")))
+  (is (null (told-of-compiling "(locally (declare (sb-ext:muffle-conditions warning)) (car))"))))
+
 (test worlds.of-a-file-begin-with-its-first-robot
   "However often it is loaded, and whatever had its robots' names before."
   (flet ((robots (&rest names)

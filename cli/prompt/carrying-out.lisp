@@ -40,10 +40,33 @@ nobody has defined at its end are messages."
                      ((and new-p (null file) (eq :variable kind))
                       (tell-of-new-variable name)))))))
 
+(defun tell-with-place (tell condition)
+  "Let TELL, ERROR-SET or WARNING-SET, say what CONDITION says, which came up in COMPILE-FILE, with
+file and line. Do nothing elsewhere."
+  (let ((text (one-line (condition-text condition))))
+    (multiple-value-bind (file line) (if (typep condition 'reader-error)
+                                         (reading-place condition)
+                                         (compiling-place))
+      (cond ((null file))
+            ((placed-p condition) (funcall tell text))
+            (t (funcall tell (format nil "~A~@[, line ~D~]: ~A" file line text)))))))
+
+(defun tell-of-compiling (condition)
+  "Tell what CONDITION says if it is that COMPILE-FILE cannot compile a form, or expects it to fail."
+  (cond ((null *compile-file-truename*))
+        ((compiler-error-p condition)
+         (tell-with-place #'error-set (encapsulated-condition condition)))
+        ((typep condition 'warning) (tell-with-place #'warning-set condition))))
+
 (defun call-telling-doubts (function)
   "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
-together, are messages."
-  (call-quietly (lambda () (call-as-unit function))))
+together, and what is wrong in files that it compiles, are messages."
+  (let ((last nil))
+    ;; Each EVAL that is under way signals once more what comes up in the compiler.
+    (handler-bind ((condition (lambda (condition)
+                                (unless (eq condition (shiftf last condition))
+                                  (tell-of-compiling condition)))))
+      (call-quietly (lambda () (call-as-unit function))))))
 
 (defun eval-quietly (form)
   "Evaluate FORM. What it writes to the error output comes when it is done."

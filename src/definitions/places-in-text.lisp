@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(reading-place))
+(export '(reading-place compiling-place))
 
 ;;; The compiler knows which element of which form a form is: see PLACE-IN-TEXT. The text is
 ;;; followed down to that as far as it can be: a quoted form, for one, is no list in the text. In
@@ -50,13 +50,14 @@ ends; NIL if there is no list, or it cannot be read."
 
 (defun line-in-text (file form place)
   "Return the line in FILE on which FORM stands, which is at PLACE, see PLACE-IN-TEXT; NIL if PLACE
-is NIL or FILE cannot be read."
+is NIL or FILE cannot be read. If FORM is NIL, PLACE alone counts."
   (and place
        (ignore-errors
          (let ((text (text-of-file file)))
            (multiple-value-bind (start end) (bounds-of-place text place)
-             (line-number text (or (car (find form (forms-in text start end)
-                                              :key #'cdr :test #'found-p))
+             (line-number text (or (and form
+                                        (car (find form (forms-in text start end)
+                                                   :key #'cdr :test #'found-p)))
                                    start)))))))
 
 (defun line-of-form-being-read (stream)
@@ -75,3 +76,11 @@ something else. Only while that file is still open."
                 (cond ((typep cause 'end-of-file) (line-of-form-being-read stream))
                       ((undecodable-format cause) (line-of-next stream))
                       (t (line-reached stream))))))))
+
+(defun compiling-place ()
+  "Return which file COMPILE-FILE compiles, as the system calls it, and on which line the form begins
+that it is at, or NIL if that is not known. Return NIL if no file is being compiled."
+  (multiple-value-bind (path place) (compiler-place)
+    (when path
+      (let ((file (native-name path)))
+        (values file (line-in-text file nil place))))))

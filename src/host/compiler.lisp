@@ -4,7 +4,8 @@
 
 (export '(show-lambda-list nested-p place-of set-place call-with-current-place positions-of-forms
           edited-file error-context call-with-error-context call-as-compiler call-as-other-file
-          wrap-compilation-units wrap-unit-summaries context-original-form))
+          wrap-compilation-units wrap-unit-summaries context-original-form context-file
+          context-path compiler-error-p))
 
 ;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
 
@@ -86,6 +87,21 @@ the name of the file that is being evaluated: if it returns true, FUNCTION's fil
 (defun context-original-form (context)
   "Return the text of the form that CONTEXT is about."
   (internal (:sb-c #:compiler-error-context-original-form) context))
+
+(defun context-file (context)
+  "Return the pathname of the file that CONTEXT is in; NIL if it is in none."
+  (let ((file (and context (internal (:sb-c #:compiler-error-context-file-name) context))))
+    (and (pathnamep file) file)))
+
+(defun context-path (context)
+  "Return a list of which element of which list in the text CONTEXT is about, the innermost number
+first, that of the form at top level last."
+  (internal (:sb-c #:compiler-error-context-original-source-path) context))
+
+(defun compiler-error-p (condition)
+  "True if CONDITION is that the compiler cannot read or compile a form, and goes on. What it says
+is its ENCAPSULATED-CONDITION."
+  (internal-type-p condition :sb-c #:compiler-error))
 
 (defun call-as-compiler (function)
   "Call FUNCTION. What it warns of is told as what the compiler warns of."

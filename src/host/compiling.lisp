@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.host)
 
-(export '(keep-place in-source-p call-at-place at-end-of-unit call-as-unit place-in-text))
+(export '(keep-place in-source-p call-at-place at-end-of-unit call-as-unit place-in-text
+          compiler-place))
 
 ;;; A list that was made of one that stands in the source can be given its place: what the compiler
 ;;; has to say of it is then said of what the author wrote. See src/host/compiler.lisp.
@@ -31,6 +32,20 @@
   "While something is done that waited until all had been read: a list of a form and, after it,
 where in the text that stands.")
 
+(defun place-at (path)
+  "Return the list that PLACE-IN-TEXT does of the form that PATH leads to, the innermost number
+first; NIL if that is not known."
+  (destructuring-bind (&optional top . numbers) (reverse path)
+    (let ((positions (positions-of-forms)))
+      (and top positions (< top (length positions))
+           (cons (aref positions top) numbers)))))
+
+(defun compiler-place ()
+  "Return the pathname of the file that is being compiled, and what PLACE-IN-TEXT returns of the form
+in it that the compiler is at, or NIL if that is not known. Return NIL if no file is being compiled."
+  (let* ((context (and *compile-file-truename* (error-context))) (file (context-file context)))
+    (and file (values file (place-at (context-path context))))))
+
 (defun place-in-text (form)
   "Return where FORM stands in the text that is being compiled or loaded: a list of the position
 after which the form at top level around it begins, and of numbers from 0, which element of that it
@@ -38,10 +53,7 @@ is in, which element of this, and so on. Return NIL if that is not known."
   (cond
     ((and *kept-place* (eq form (first *kept-place*))) (rest *kept-place*))
     ((edited-file) nil)
-    (t (destructuring-bind (&optional top . numbers) (reverse (nthcdr 2 (place-of form)))
-         (let ((positions (positions-of-forms)))
-           (and top positions (< top (length positions))
-                (cons (aref positions top) numbers)))))))
+    (t (place-at (nthcdr 2 (place-of form))))))
 
 ;;; What can be said only when all of a file has been read, or of all files of a system.
 ;;;
