@@ -52,7 +52,7 @@ file and line. Do nothing elsewhere."
             (t (funcall tell (format nil "~A~@[, line ~D~]: ~A" file line text)))))))
 
 (defun tell-of-compiling (condition)
-  "Tell what CONDITION says if it is that COMPILE-FILE cannot compile a form, or expects it to fail."
+  "Tell what CONDITION says if it is that COMPILE-FILE cannot compile a form, or warns of one."
   (cond ((null *compile-file-truename*))
         ((compiler-error-p condition)
          (tell-with-place #'error-set (encapsulated-condition condition)))

@@ -78,8 +78,8 @@ something else. Only while that file is still open."
                       (t (line-reached stream))))))))
 
 (defun compiling-place ()
-  "Return which file COMPILE-FILE compiles, as the system calls it, and on which line the form begins
-that it is at, or NIL if that is not known. Return NIL if no file is being compiled."
+  "Return which file COMPILE-FILE compiles, as the system calls it, and on which line the form
+begins that it is at, or NIL if that is not known. Return NIL if no file is being compiled."
   (multiple-value-bind (path place) (compiler-place)
     (when path
       (let ((file (native-name path)))

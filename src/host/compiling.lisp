@@ -41,8 +41,9 @@ first; NIL if that is not known."
            (cons (aref positions top) numbers)))))
 
 (defun compiler-place ()
-  "Return the pathname of the file that is being compiled, and what PLACE-IN-TEXT returns of the form
-in it that the compiler is at, or NIL if that is not known. Return NIL if no file is being compiled."
+  "Return the pathname of the file that is being compiled, and what PLACE-IN-TEXT returns of the
+form in it that the compiler is at, or NIL if that is not known. Return NIL if no file is being
+compiled."
   (let* ((context (and *compile-file-truename* (error-context))) (file (context-file context)))
     (and file (values file (place-at (context-path context))))))
 
