@@ -127,14 +127,14 @@ that does not describe IMAGE, a file IMAGE that PATH does not describe, or one t
 (defun export-map (map file &key unknown)
   "Write the walls of MAP, a map or its name, as an occupancy grid for ROS's map_server: the YAML
 file FILE, a string or pathname whose name ends in .yaml or .yml, and beside it an image in PGM that
-is called the same. ~/ is the home directory. A pixel is a cell, as wide as MAP-FRAME says, and
-IMPORT-MAP makes the same cells of it. UNKNOWN says, as for IMPORT-MAP, which walls are written as
-what nobody knows: a substance, or a list of that and a parameter, such as (glass 5); NIL and :WALLS
-say none; a substance that MAP has no walls of is for no pixel. Substances and things are not
-written. A description of a map that is there is replaced if it names that image, and with it the
-image. If FILE is a link, both are written where it leads to, called as that is. Return the
-truenames of both. Signals UNUSABLE-FLOOR, as where something else has one of these names, and
-WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they were."
+is called the same. In a string ~/ is the home directory, and * ? [ and \\ stand for themselves. A
+pixel is a cell, as wide as MAP-FRAME says, and IMPORT-MAP makes the same cells of it. UNKNOWN says,
+as for IMPORT-MAP, which walls are written as what nobody knows: a substance, or a list of that and
+a parameter, such as (glass 5); NIL and :WALLS say none; a substance that MAP has no walls of is for
+no pixel. Substances and things are not written. A description of a map that is there is replaced if
+it names that image, and with it the image. If FILE is a link, both are written where it leads to,
+called as that is. Return the truenames of both. Signals UNUSABLE-FLOOR, as where something else has
+one of these names, and WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they were."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-said-p unknown)
                   "the name of a substance, or a list of that and a parameter, as in (glass 5)")

@@ -136,11 +136,12 @@ of it. Nothing is defined. Signals the same."
 (defun import-map (file &rest options &key name pixels cell share substance unknown clauses cache
                                         limit)
   "Define a map from an occupancy grid as ROS's map_server keeps it: FILE, a string or pathname, is
-the YAML file that names the image, PGM or PNG (not interlaced) by its first bytes. ~/ is the home
-directory. Colours become grey as in ROS's nav2_map_server: the average of red, green and blue; if
-the image has alpha, the mode trinary averages that in as a fourth, in the mode scale a pixel that
-is not wholly opaque is unknown, and the mode raw ignores it. The map is called NAME, by default the
-file's name as a symbol of the current package, and is like one of DEFMAP's from then on. OPTIONS:
+the YAML file that names the image, PGM or PNG (not interlaced) by its first bytes. In a string ~/
+is the home directory, and * ? [ and \\ stand for themselves. Colours become grey as in ROS's
+nav2_map_server: the average of red, green and blue; if the image has alpha, the mode
+trinary averages that in as a fourth, in the mode scale a pixel that is not wholly opaque is
+unknown, and the mode raw ignores it. The map is called NAME, by default the file's name as a symbol
+of the current package, and is like one of DEFMAP's from then on. OPTIONS:
   :pixels -- how many pixels wide a cell is, by default 1; or :cell -- how many metres, instead
   :share -- which share of its pixels must be occupied for a cell to be, by default 0: any one
   :substance -- that of the walls, by default bricks, or a list such as (bricks 20)
