@@ -103,6 +103,16 @@ name, in Nisp's syntax and with a decimal fraction."
         (let ((text (princ-to-string condition)))
           (subseq text (search ", line " text)))))))
 
+(test worlds.that-make-no-sense-are-told-without-packages
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+    (write-string "(defmap pen (9 9) (obj t12345))" out)
+    :close-stream
+    (base:with-own-definitions ()
+      (handler-case (cli::world-robots-called (base:native-name path))
+        (error (condition)
+          (let* ((*package* (find-package :cl-user)) (said (cli::ending-reason condition)))
+            (is-true (has-words-p said "(obj t12345)") "~A" said)))))))
+
 (test files.that-cannot-be-read-say-so-in-plain-words
   (loop for (text line cause) in '(("(values 1)~%(values 2" "line 2" "parenthesis")
                                    ("(values 1)~%~%(values 2))" "line 3" "parenthesis")

@@ -226,9 +226,14 @@ value."
 
 ;;; The process.
 
+(defun ending-reason (condition)
+  "Return what CONDITION says, on one line, with names as users write them."
+  (let ((*package* (user-package)))
+    (complaint-text (ending-text condition))))
+
 (defun give-reason (condition status)
   "Say on the error output what CONDITION says; return STATUS."
-  (ignore-errors (say-on-error-output (complaint-text (ending-text condition))))
+  (ignore-errors (say-on-error-output (ending-reason condition)))
   status)
 
 (defun call-for-status (function)
