@@ -96,6 +96,19 @@
           (is (search ".lock: it is a directory" (princ-to-string condition)))))
       (is-true (experiment:read-results directory) "reading needs no lock"))))
 
+(test machine-tables.that-are-none-may-be-deleted
+  (define-walk)
+  (with-directories (directory)
+    (walk directory :trials 1)
+    (let ((file (uiop:subpathname directory "machine.csv")))
+      (base:call-replacing-file (lambda (out) (write-line "no table" out)) file)
+      (handler-case (progn (walk directory :trials 1) (fail))
+        (experiment:damaged-table (condition)
+          (is (search "machine.csv, line 1: its columns are no table" (princ-to-string condition)))
+          (is (search "Or delete this file" (princ-to-string condition)))))
+      (delete-file file)
+      (is-true (walk directory :trials 1)))))
+
 (test rows.with-characters-that-no-text-has-are-damaged
   (define-walk)
   (dolist (char (list (code-char 0) (code-char 27) (code-char #x9B)))

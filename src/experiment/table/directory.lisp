@@ -96,12 +96,22 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
   '("condition" "seed" "trial" "milliseconds" "worker" "process" "host")
   "The columns of the table of what differs from run to run.")
 
+(defun open-machine-table (directory)
+  "Return a stream that appends to the table of what differs from run to run. Signals
+DAMAGED-TABLE."
+  (let ((file (machine-file directory)))
+    (handler-case (open-table file *machine-columns*)
+      (damaged-table (condition)
+        (reject-table file (damaged-table-line condition)
+                      "~A Or delete this file: it only says how long each trial took, and where."
+                      (damaged-table-trouble condition))))))
+
 (defun call-with-store (function experiment directory)
   (let ((store (make-store directory experiment)))
     (unwind-protect
          (progn
            (setf (store-rows store) (open-table (rows-file directory) (columns experiment))
-                 (store-machine store) (open-table (machine-file directory) *machine-columns*))
+                 (store-machine store) (open-machine-table directory))
            (when (experiment-series experiment)
              (setf (store-series store)
                    (open-table (series-file directory) (series-columns experiment))))
