@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(fluent-pulses make-watcher watcher watcher-client watcher-wake watcher-pending
-          watcher-fluent watcher-p define-membership home-forked-p))
+(export '(make-watcher watcher watcher-p define-membership home-forked-p))
 
 ;;; A base fluent is set. A derived fluent is computed from others, its sources. While nobody
 ;;; uses it, it is computed on demand and its sources do not know of it; its first user (a watcher,
@@ -11,64 +10,64 @@
 ;;; to go undoes that, so that nothing leaks. HEIGHT is the longest way down to a base fluent.
 
 (public fluent)
-(defstruct (fluent (:include entity) (:constructor %make-fluent (name now)) (:copier nil))
+(addition fluent-p)
+(define-record (fluent (:include entity) (:constructor %make-fluent (name now))
+                       (:predicate fluent-p "True of fluents, networks included."))
   "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
-  (name nil :read-only t)
-  (now nil)
-  ;; Whether somebody has looked at it: see LOOKED-AT-P.
-  (looked nil :type (member nil :once :always))
-  (home nil :type (or null home))
-  (height 0 :type fixnum)
-  ;; How often it was set to another value, and pulsed: see views.lisp.
-  (sets 0 :type fixnum)
-  (pulses 0 :type fixnum)
-  (first-watcher nil :type (or null watcher))
-  (last-watcher nil :type (or null watcher))
-  (first-link nil :type (or null link))
-  (last-link nil :type (or null link)))
+  (name nil t "the name that the fluent was created with; of a network, its operator" :addition)
+  (now nil t :writable)
+  (looked nil (member nil :once :always)
+          "whether somebody has looked at it: see LOOKED-AT-P" :writable)
+  (home nil (or null home) :writable)
+  (height 0 fixnum :writable)
+  (sets 0 fixnum "how often it was set to another value: see views.lisp" :writable)
+  (pulses 0 fixnum "how often the fluent, a base fluent, was pulsed" :writable :export)
+  (first-watcher nil (or null watcher) :writable)
+  (last-watcher nil (or null watcher) :writable)
+  (first-link nil (or null link) :writable)
+  (last-link nil (or null link) :writable))
 
-(defstruct (derived (:include fluent) (:constructor %make-derived (name operator sources height))
-                    (:copier nil))
-  "A fluent whose value is what OPERATOR returns for the values of SOURCES, fluents and others.
-TROUBLE is the error that it met when it was last computed. QUEUED says how it is to be renewed."
-  (operator #'list :type function :read-only t)
-  (sources '() :type list :read-only t)
-  (users 0 :type fixnum)
-  (links '() :type list)
-  (trouble nil :type (or null condition))
-  (queued nil :type (member nil t :pulsed))
-  (successor nil :type (or null derived)))
+(define-record (derived (:include fluent)
+                        (:constructor %make-derived (name operator sources height)))
+  "A fluent whose value is what OPERATOR returns for the values of SOURCES, fluents and others."
+  (operator #'list function)
+  (sources '() list)
+  (users 0 fixnum :writable)
+  (links '() list :writable)
+  (trouble nil (or null condition)
+           "the error that it met when it was last computed, or NIL" :writable)
+  (queued nil (member nil t :pulsed) "how it is to be computed anew, NIL if it is not" :writable)
+  (successor nil (or null derived) :writable))
 
-(defstruct (watcher (:constructor make-watcher (fluent wake client)) (:copier nil))
+(define-record (watcher (:constructor make-watcher (fluent wake client)))
   "Somebody who wants to know when FLUENT changes to something true: WAKE is called with the
-watcher, the value, and NIL or the error met in computing it. PENDING counts events not yet heard."
-  (fluent nil :type fluent :read-only t)
-  (wake #'list :type function :read-only t)
-  (client nil :read-only t)
-  (pending 0 :type fixnum)
-  (previous nil :type (or null watcher))
-  (next nil :type (or null watcher)))
+watcher, the value, and NIL or the error met in computing it."
+  (fluent nil fluent "the fluent that the watcher watches" :export)
+  (wake #'list function
+        "the function that is called when the fluent is heard to be true: see WATCHER" :export)
+  (client nil t "on whose behalf the watcher watches, such as a task" :export)
+  (pending 0 fixnum "how many events the watcher has been told of that nobody has
+answered" :writable :export)
+  (previous nil (or null watcher) :writable)
+  (next nil (or null watcher) :writable))
 
-(defstruct (link (:constructor make-link (source dependent)) (:copier nil))
+(define-record (link (:constructor make-link (source dependent)))
   "Says that DEPENDENT is to be computed anew when SOURCE changes."
-  (source nil :type fluent :read-only t)
-  (dependent nil :type derived :read-only t)
-  (previous nil :type (or null link))
-  (next nil :type (or null link)))
+  (source nil fluent)
+  (dependent nil derived)
+  (previous nil (or null link) :writable)
+  (next nil (or null link) :writable))
 
-(defstruct (view (:include derived)
-                 (:constructor %make-view (name operator sources height bases memory always-p
-                                           test key))
-                 (:copier nil))
-  "A network that remembers: see views.lisp. BASES are the base fluents that it is of, MEMORY is
-what was the case when it was read last: how often these were set or pulsed and, of a view of
-changes, what TEST compares, KEY of the value, behind it in a cons. ALWAYS-P says whether each event
-counts."
-  (bases '() :type list :read-only t)
-  (memory nil)
-  (always-p nil :read-only t)
-  (test nil :type (or null function) :read-only t)
-  (key nil :type (or null function) :read-only t))
+(define-record (view (:include derived)
+                     (:constructor %make-view (name operator sources height bases memory always-p
+                                               test key)))
+  "A network that remembers: see views.lisp."
+  (bases '() list "the base fluents that it is of")
+  (memory nil t "what was the case when it was read last: how often its bases were set or pulsed
+and, of a view of changes, what TEST compares, KEY of the value, behind it in a cons" :writable)
+  (always-p nil t "each event counts")
+  (test nil (or null function))
+  (key nil (or null function)))
 
 (declaim-final view derived watcher link fluent)
 (define-shared-slots fluent name)
@@ -110,21 +109,6 @@ counts."
     (or (null home)
         (< (realm-made realm) (home-born home))
         (member home (realm-sources realm) :key #'weak-value :test #'eq))))
-
-(document-functions
- make-watcher "Return somebody who is to be told of a fluent by a function, on behalf of a client."
- fluent-pulses "Return how often the fluent, a base fluent, was pulsed."
- watcher-p "True of watchers."
- watcher-fluent "Return the fluent that the watcher watches."
- watcher-wake "Return the function that is called when the fluent is heard to be true: see WATCHER."
- watcher-client "Return on whose behalf the watcher watches, such as a task."
- watcher-pending "Return how many events the watcher has been told of that nobody has answered.")
-
-(addition fluent-p fluent-name)
-(setf (documentation 'fluent-name 'function)
-      "Return the name that the fluent was created with; of a network, its operator."
-      (documentation 'fluent-p 'function)
-      "True of fluents, networks included.")
 
 (public create-fluent)
 (defun create-fluent (name &optional value)

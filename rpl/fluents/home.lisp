@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*runner* *interface* home-in-use note-outside-change home home-closed-p home-born
-          home-on-change at-home call-at-home in-use-p post next-entry posted-p))
+(export '(*runner* *interface* home-in-use note-outside-change home at-home call-at-home in-use-p
+          post next-entry posted-p))
 
 ;;; A fluent that somebody waits for has a home, the plan runner of those who wait. One thread at a
 ;;; time has a home; what others want to change meanwhile they post, and it is heard in the order of
@@ -15,27 +15,26 @@
   (tails (make-array 8 :initial-element nil) :type simple-vector)
   (highest 0 :type fixnum))
 
-(defstruct (home (:constructor make-home ()) (:copier nil))
-  "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post.
-ATTENDED-P says whether a thread is there that will hear what is posted. LEFT-P is true while a
-thread has it, and afterwards if that has left it in the middle of something: then REPAIRER is
-called with it before anything else is done. CLOSED-P says that it hears nothing any more. BORN is a
-token, given when it was made.
-For whoever keeps a trace, ON-CHANGE is called with
-:SET or :PULSE, a base fluent and its value, before anybody hears of that, and WRAPPER with each
-entry: it returns what is posted instead."
-  (holder nil :type t)
-  (backlog (make-backlog) :type backlog :read-only t)
-  (inbox '() :type t)
-  (outbox '() :type list)
-  (on-post #'list :type function)
-  (attended-p (constantly nil) :type function)
-  (left-p nil :type boolean)
-  (closed-p nil :type boolean)
-  (born (next-token) :type (integer 0))
-  (repairer #'identity :type function)
-  (on-change nil :type (or null function))
-  (wrapper nil :type (or null function)))
+(define-record (home (:constructor make-home ()))
+  "Where changes are heard."
+  (holder nil t "the thread that has it, or NIL" :writable)
+  (backlog (make-backlog) backlog)
+  (inbox '() t :writable)
+  (outbox '() list :writable)
+  (on-post #'list function "the function that is called after each post" :writable)
+  (attended-p (constantly nil) function "the function that says whether a thread is there that will
+hear what is posted" :writable)
+  (left-p nil boolean
+          "a thread has it, or the last one left it in the middle of something" :writable)
+  (closed-p nil boolean "the home hears nothing any more. Can be set" :writable :export)
+  (born (next-token) (integer 0)
+        "a number that is greater for homes that were made later. Can be set" :writable :export)
+  (repairer #'identity function "the function that is called with the home in that case, before
+anything else is done" :writable)
+  (on-change nil (or null function) "the function that is told of changes before anybody hears of
+them, or NIL: of :SET or :PULSE, a base fluent and its value. Can be set" :writable :export)
+  (wrapper nil (or null function) "the function of an entry that returns what is posted instead, for
+whoever keeps a trace; or NIL" :writable))
 
 (defvar *runner* nil
   "The plan runner that this thread has, while plans run.")
@@ -126,7 +125,3 @@ or else NIL. An interrupt may come at any point."
   "True if something posted to HOME has not been heard yet."
   (and (or (home-outbox home) (home-inbox home)) t))
 
-(document-functions
-  home-born "Return a number that is greater for homes that were made later. Can be set."
-  home-closed-p "True if the home hears nothing any more. Can be set."
-  home-on-change "Return the function that is told of changes, or NIL. Can be set.")

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*realm* +root+ fork-realm leave-realm realm-sources source-realm entity entity-realm
-          entity-like here fresh-twin foreign-p next-token))
+(export '(*realm* +root+ fork-realm leave-realm source-realm entity entity-like here fresh-twin
+          foreign-p next-token))
 
 ;;; A fluent is an identity: plans, vectors, networks and global variables lead to it. A fork has
 ;;; states of its own for all of them. So each object that is an ENTITY belongs to a realm, and has
@@ -13,23 +13,22 @@
 ;;; fork: before an entity changes, the forks made since its last change (SEEN counts them) get
 ;;; their twins.
 
-(defstruct (realm (:constructor make-realm (parent number)) (:copier nil))
+(define-record (realm (:constructor make-realm (parent number)))
   "What belongs to one fork, number NUMBER of those of PARENT; or, without one, to all runs that are
-no forks. TWINS has entities by token, FORKS is a list (number . weak realm), the newest first, of
-COUNT there have been; there is ROOM for so many more before those that are gone are left out.
-MADE is a token, given when it was made. SOURCES lead to the homes that the run had then of which
-this is a fork. LEFT-P says that another fork goes on in the place of this one, which is over."
-  (parent nil :type (or null realm))
-  (number 0 :type fixnum)
-  (twins (make-hash-table :test 'eq :size 100) :type hash-table :read-only t)
-  (lock (make-lock "realm") :read-only t)
-  (forks '() :type list)
-  (room 16 :type fixnum)
-  (count 0 :type fixnum)
-  (made 0 :type (integer 0))
-  (sources '() :type list)
-  (left-p nil :type boolean)
-  (tokens 0 :type atomic-count))
+no forks."
+  (parent nil (or null realm) :writable)
+  (number 0 fixnum :writable)
+  (twins (make-hash-table :test 'eq :size 100) hash-table "entities by token")
+  (lock (make-lock "realm") t)
+  (forks '() list "a list (number . weak realm), the newest first" :writable)
+  (room 16 fixnum
+        "for how many more forks there is room before those that are gone are left out" :writable)
+  (count 0 fixnum "how many forks there have been" :writable)
+  (made 0 (integer 0) "a token, given when it was made" :writable)
+  (sources '() list "weak references to the homes, when the realm was made, of what it is a fork of.
+Can be set" :writable :export)
+  (left-p nil boolean "another fork goes on in the place of this one, which is over" :writable)
+  (tokens 0 atomic-count :writable))
 
 (define-global +root+ (make-realm nil 0)
   "The realm of all runs that are no forks.")
@@ -42,13 +41,12 @@ this is a fork. LEFT-P says that another fork goes on in the place of this one, 
 (defvar *realm* +root+
   "The realm of the run that this thread works in.")
 
-(defstruct (entity (:constructor nil) (:copier nil))
-  "What has a twin in each fork: a fluent or a valve. FIRST leads, weakly, to the first of all
-twins, once there are any."
-  (realm *realm* :type realm)
-  (token 0 :type fixnum)
-  (seen 0 :type fixnum)
-  (first nil))
+(define-record (entity (:constructor nil))
+  "What has a twin in each fork: a fluent or a valve."
+  (realm *realm* realm "the realm that the entity belongs to" :writable :export)
+  (token 0 fixnum :writable)
+  (seen 0 fixnum :writable)
+  (first nil t "what leads, weakly, to the first of all twins, once there are any" :writable))
 
 (define-shared-slots entity first)
 
@@ -104,11 +102,6 @@ the place of that."
                 (entity-first twin) (entity-first entity)
                 (entity-seen twin) 0
                 (gethash token (realm-twins realm)) twin)))))
-
-(document-functions
-  entity-realm "Return the realm that the entity belongs to."
-  realm-sources "Return weak references to the homes, when the realm was made, of what it is a fork
-of. Can be set.")
 
 ;;; Forking.
 
