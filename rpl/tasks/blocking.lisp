@@ -8,13 +8,11 @@
 ;;; and it runs again when nobody blocks it any longer. The expressions that it is at may want to do
 ;;; something when that happens: those whose frame's DATA is a HEED.
 
-(defstruct (heed (:constructor make-heed (function)) (:copier nil))
-  "What an expression does when its task is blocked: FUNCTION takes the task and the frame."
-  (function #'list :type function :read-only t))
+(define-record (heed (:constructor make-heed (function)))
+  "What an expression does when its task is blocked: FUNCTION is called with the task and the
+frame."
+  (function #'list function))
 (declaim-final heed)
-
-(document-functions
-  make-heed "Return what lets a function of task and frame be called when the task is blocked.")
 
 (defun tell-blocked (task)
   "Let the parts of TASK, newest first, and then its own expressions, innermost first, know that

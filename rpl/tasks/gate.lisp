@@ -2,18 +2,15 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(gate gate-holds hold-back release-hold spawn-gated))
+(export '(gate hold-back release-hold spawn-gated))
 
 ;;; A task with a gate is at a frame of its own before its first expression, and goes on when
 ;;; nothing holds the gate any more. Its status is :created until then.
 
-(defstruct (gate (:constructor make-gate (task)) (:copier nil))
-  "What keeps TASK from starting: HOLDS, any objects."
-  (task nil :type task :read-only t)
-  (holds '() :type list))
-
-(document-functions
-  gate-holds "Return what keeps the gate closed.")
+(define-record (gate (:constructor make-gate (task)))
+  "What keeps TASK from starting."
+  (task nil task)
+  (holds '() list "what keeps the gate closed" :writable :export))
 
 (defstruct (gate-node (:include node (step #'step-gate)) (:copier nil))
   "The place of a task before its first expression.")

@@ -2,39 +2,27 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(+nothing+ +parked+ bundle-p bundle-values call-leaf completion-p enter escape-p
-          escape-target escape-value leaf-function leaf-p make-bundle make-completion make-escape
-          make-leaf park required-slot single-value wake))
+(export '(+nothing+ +parked+ bundle-p call-leaf completion-p enter escape-p leaf-p make-bundle
+          make-completion make-escape make-leaf park required-slot single-value wake))
 
 ;;; A signal is what can happen to a task other than going on: a PLAN-FAILURE; an ESCAPE to an
 ;;; enclosing node, perhaps of an enclosing task; the word :EVAPORATE; or a COMPLETION, by which
 ;;; the construct that the task waits in ends well. A task that has children takes a signal only
 ;;; when the last child is gone.
 
-(defstruct (escape (:constructor make-escape (target value)) (:copier nil))
-  "A way out to the node TARGET, which knows what to do with VALUE."
-  (target nil :type node :read-only t)
-  (value nil :read-only t))
+(define-record (escape (:constructor make-escape (target value)))
+  "A signal to leave for the node TARGET, which knows what to do with VALUE."
+  (target nil node "the node that the escape leaves for" :export)
+  (value nil t "the value that the escape brings" :export))
 
-(defstruct (completion (:constructor make-completion (value)) (:copier nil))
-  "The end of a construct, with VALUE."
-  (value nil :read-only t))
+(define-record (completion (:constructor make-completion (value)))
+  "The signal by which a construct ends well, with VALUE."
+  (value nil t))
 
-(defstruct (bundle (:constructor make-bundle (values)) (:copier nil))
-  "Several values on their way from a leaf to whoever wants several."
-  (values '() :type list :read-only t))
+(define-record (bundle (:constructor make-bundle (values)))
+  "Several values on their way from a leaf to whoever wants several, as one object."
+  (values '() list "the list of values in the bundle" :export))
 (declaim-final escape completion bundle)
-
-(document-functions
- make-escape "Return a signal to leave for a node, with a value for it."
- escape-p "True of signals to leave for a node."
- escape-target "Return the node that the escape leaves for."
- escape-value "Return the value that the escape brings."
- make-completion "Return the signal by which a construct ends well, with a value."
- completion-p "True of signals by which a construct ends well."
- make-bundle "Return a list of values as one object."
- bundle-p "True of several values as one object."
- bundle-values "Return the list of values in the bundle.")
 
 (declaim (inline single-value))
 (defun single-value (value)
@@ -47,9 +35,12 @@
   "Signal MISUSE: a node was made without its SLOT."
   (reject-use "A plan's node was made without its ~(~A~)." slot))
 
-(defstruct (leaf (:include node (step #'step-leaf)) (:copier nil))
-  "An expression that cannot wait: FUNCTION takes the environment."
-  (function (required-slot 'function) :type function))
+(define-record (leaf (:include node (step #'step-leaf))
+                     (:constructor make-leaf "Return a leaf for a source form and a function of the
+environment."))
+  "An expression that cannot wait."
+  (function (required-slot 'function) function
+            "the function of the environment that does what the leaf does" :writable :export))
 (declaim-final leaf)
 
 (defvar *leaves-offer-restarts* nil
@@ -81,11 +72,6 @@
           :report (lambda (stream) (format stream "Let ~A return a value." text))
           :interactive read-leaf-value
           (return value))))))
-
-(document-functions
- make-leaf "Return a leaf for a source form and a function of the environment."
- leaf-p "True of leaves: nodes that cannot wait."
- leaf-function "Return the function of the environment that does what the leaf does.")
 
 (defun step-leaf (node task frame value)
   (declare (ignore task value))

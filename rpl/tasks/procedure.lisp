@@ -4,41 +4,28 @@
 
 (export '(entry-for declared-names known-lambda-list reject-lisp-call procedures-to-offer
           anonymous-procedure declare-procedure defined-p ensure-procedure enter-plan
-          install-procedure make-procedure procedure procedure-body procedure-entry
-          check-arguments procedure-name-p))
+          install-procedure make-procedure procedure check-arguments procedure-name-p))
 
 ;;; A name that a plan calls leads to a cell, whether or not there is a procedure of that name yet.
 ;;; So procedures can be defined in any order, and defined anew while plans run: a call takes what
 ;;; is in the cell when it happens. Calls go by the very symbol. Who asks for a procedure by name,
 ;;; as RUN-PLAN does, need not know the package that it was defined in.
 
-(defstruct (procedure (:constructor make-procedure (name)) (:copier nil))
-  "A plan with parameters. ENTRY takes the arguments and returns the environment to run BODY in;
-it is NIL as long as there is only the name. STUB is what Lisp code gets that calls the name. LEAST
-and MOST say how many arguments it takes, KEYS-P whether there are keywords among them."
-  (name nil :type symbol :read-only t)
-  (lambda-list '() :type list)
-  (least 0 :type fixnum)
-  (most most-positive-fixnum :type fixnum)
-  (keys-p nil :type boolean)
-  (entry nil :type (or null function))
-  (source nil :type list)
-  (body nil :type (or null node))
-  (stub nil :type (or null function)))
-(document-functions
- make-procedure "Return a procedure by name that is yet to be defined."
- procedure-entry "Return the function of the arguments that returns an environment, or NIL."
- procedure-body "Return the node that the procedure runs, or NIL.")
-
-(addition procedure-p procedure-name procedure-lambda-list procedure-source)
-(setf (documentation 'procedure-p 'function) "True of plan procedures."
-      (documentation 'procedure-name 'function)
-      "Return the name of a plan procedure, NIL for one made by INTERP-LAMBDA."
-      (documentation 'procedure-source 'function)
-      "Return the text of a plan procedure as data: (def-interp-proc name parameters form...), or
-(interp-lambda parameters form...)."
-      (documentation 'procedure-lambda-list 'function)
-      "Return the lambda list of a plan procedure.")
+(addition procedure-p)
+(define-record (procedure (:constructor make-procedure (name)
+                          "Return a procedure by name that is yet to be defined."))
+  "A plan with parameters."
+  (name nil symbol "the name of a plan procedure, NIL for one made by INTERP-LAMBDA" :addition)
+  (lambda-list '() list "the lambda list of a plan procedure" :writable :addition)
+  (least 0 fixnum "how many arguments it takes at least" :writable)
+  (most most-positive-fixnum fixnum "how many arguments it takes at most" :writable)
+  (keys-p nil boolean "there are keywords among them" :writable)
+  (entry nil (or null function)
+         "the function of the arguments that returns an environment, or NIL" :writable :export)
+  (source nil list "the text of a plan procedure as data: (def-interp-proc name parameters form...),
+or (interp-lambda parameters form...)" :writable :addition)
+  (body nil (or null node) "the node that the procedure runs, or NIL" :writable :export)
+  (stub nil (or null function) "what Lisp code gets that calls the name" :writable))
 
 (define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms ("PLAN")
   :finder registered-procedure :lister registered-procedures :internal t)

@@ -3,10 +3,8 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(*runaway-limit* alone-p blocked-p make-ready plan-runner plan-runner-steps counted-steps
-          plan-runner-tasks plan-runner-tick runner-blocks runner-dice runner-lisps-dice
-          runner-tick runner-ticks-per-second runner-timers runner-stepper runner-note
-          runner-serial runner-alive client-forked-p call-with-client-still hear-of-trouble
-          note-seen runner-trace runner-client runner-charged-p all-tasks task-numbered))
+          plan-runner-tasks plan-runner-tick runner-note client-forked-p call-with-client-still
+          hear-of-trouble note-seen all-tasks task-numbered))
 
 ;;; Ready tasks queue first-in first-out by level; the highest level runs first. MASK has bit n set
 ;;; while somebody of level n may be queued, and the bit +INTERRUPT+, above all of these, when the
@@ -31,60 +29,59 @@ posted meanwhile is heard although some of them have not waited yet.")
   "How many tasks of a robot's plans, or of another plan runner, may be under way at once. To start
 one more fails with class :TOO-MANY-TASKS.")
 
-(defstruct (plan-runner (:include home) (:constructor %make-plan-runner) (:copier nil)
-                        (:conc-name runner-))
-  "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside. PAUSE
-is the number of steps at which the running task is to pause, LIMIT that at which the reaction is to
-end. SPENT are the ready tasks that have used their slice in this ROUND, the last one first.
-ALIVE is how many tasks are not over. BUDGET is how many steps a reaction may take, NIL for as many
-as it needs. CLIENT is on whose behalf all this is."
-  (rings (coerce (loop repeat +levels+ collect (make-ring)) 'simple-vector)
-   :type (simple-vector 8) :read-only t)
-  (mask 0 :type fixnum)
-  (current nil :type (or null task))
-  (roots '() :type list)
-  (held '() :type list)
-  (blocks 0 :type fixnum)
-  (tick 0 :type real)
-  (timers (make-timers) :type timers :read-only t)
-  (serial 0 :type fixnum)
-  (alive 0 :type fixnum)
-  (client nil :read-only t)
-  (steps 0 :type (unsigned-byte 62))
-  (pause 0 :type (unsigned-byte 62))
-  (limit 0 :type (unsigned-byte 62))
-  (slice +slice+ :type fixnum)
-  (round 0 :type fixnum)
-  (spent '() :type list)
-  (exhausted nil :type boolean)
-  (courtesies '() :type list)
-  (doomed '() :type t)
-  (budget nil :type (or null (integer 1)))
+(define-record (plan-runner (:include home) (:constructor %make-plan-runner) (:conc-name runner-))
+  "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside."
+  (rings (coerce (loop repeat +levels+ collect (make-ring)) 'simple-vector) (simple-vector 8))
+  (mask 0 fixnum :writable)
+  (current nil (or null task) :writable)
+  (roots '() list :writable)
+  (held '() list :writable)
+  (blocks 0 fixnum "how many blocks of tasks of the plan runner there are" :writable :export)
+  (tick 0 real "the tick that it is for the plan runner" :writable :export)
+  (timers (make-timers) timers "the timers of the plan runner" :export)
+  (serial 0 fixnum "the number of the task of the plan runner that began last" :writable :export)
+  (alive 0 fixnum "how many tasks of the plan runner are not over" :writable :export)
+  (client nil t "on whose behalf the plan runner runs plans, as MAKE-PLAN-RUNNER was told" :export)
+  (steps 0 (unsigned-byte 62) :writable)
+  (pause 0 (unsigned-byte 62) "the number of steps at which the running task is to pause" :writable)
+  (limit 0 (unsigned-byte 62) "the number of steps at which the reaction is to end" :writable)
+  (slice +slice+ fixnum :writable)
+  (round 0 fixnum :writable)
+  (spent '() list
+         "the ready tasks that have used their slice in this round, the last one first" :writable)
+  (exhausted nil boolean :writable)
+  (courtesies '() list :writable)
+  (doomed '() t :writable)
+  (budget nil (or null (integer 1))
+          "how many steps a reaction may take, NIL for as many as it needs" :writable)
   ;; What thinking costs; see charging.lisp.
-  (charged-p nil :type boolean)
-  (allotted nil :type (or null real))
-  (debt 0 :type (integer 0))
-  (still-until nil :type (or null real))
-  (uncounted 0 :type (integer 0))
-  ;; How many steps count that are not among STEPS; less than 0 if some of those do not.
-  (uncovered 0 :type integer)
-  (broken-off-p nil :type boolean)
-  (heard-at 0 :type (unsigned-byte 62))
-  (ticks-per-second 20 :type (real (0)))
-  (dice nil :type (or null dice))
-  ;; What plans roll by CL:RANDOM, or NIL if that is what the thread rolls in which they react.
-  (lisps-dice nil :type (or null random-state))
-  (trace nil :type (or null chronicle))
-  (clock nil :type (or null function))
-  (stepper nil :type (or null function))
-  (slow 0.1d0 :type real)
-  ;; Whether somebody has sat at a debugger in the step under way.
-  (looked-at nil :type boolean)
-  (warned '() :type list)
-  ;; What constructs keep for all tasks, a plist.
-  (notes '() :type list)
-  (busy-p (constantly nil) :type function)
-  (on-end #'identity :type function))
+  (charged-p nil boolean "thoughts of the plan runner's tasks that say what they cost take
+ticks" :writable :export)
+  (allotted nil (or null real) :writable)
+  (debt 0 (integer 0) :writable)
+  (still-until nil (or null real) :writable)
+  (uncounted 0 (integer 0) :writable)
+  (uncovered 0 integer "how many steps count that are not among STEPS; less than 0 if some of those
+do not" :writable)
+  (broken-off-p nil boolean :writable)
+  (heard-at 0 (unsigned-byte 62) :writable)
+  (ticks-per-second 20 (real (0))
+                    "how many ticks are a second for the plan runner's tasks" :writable :export)
+  (dice nil (or null dice)
+        "the dice by which the plan runner's tasks choose, or NIL" :writable :export)
+  (lisps-dice nil (or null random-state) "what plans of the runner roll by CL:RANDOM; NIL: what all
+programs do" :writable :export)
+  (trace nil (or null chronicle)
+         "the trace of the plan runner as it is kept, or NIL: see PLAN-TRACE" :writable :export)
+  (clock nil (or null function) :writable)
+  (stepper nil (or null function) "the function, of task and frame, that is called before each step,
+or NIL" :writable :export)
+  (slow 0.1d0 real :writable)
+  (looked-at nil boolean "true if somebody has sat at a debugger in the step under way" :writable)
+  (warned '() list :writable)
+  (notes '() list "what constructs keep for all tasks, a plist" :writable)
+  (busy-p (constantly nil) function :writable)
+  (on-end #'identity function :writable))
 
 (define-shared-slots plan-runner warned)
 
@@ -128,18 +125,6 @@ care of; or, if FAILURE is NIL, TASK is a part of a plan that somebody has just 
 
 (defun (setf runner-note) (value runner key)
   (setf (getf (runner-notes runner) key) value))
-
-(document-functions
- runner-tick "Return the tick that it is for the plan runner."
- runner-charged-p "True if thoughts of the plan runner's tasks that say what they cost take ticks."
- runner-timers "Return the timers of the plan runner."
- runner-alive "Return how many tasks of the plan runner are not over."
- runner-blocks "Return how many blocks of tasks of the plan runner there are."
- runner-serial "Return the number of the task of the plan runner that began last."
- runner-client "Return on whose behalf the plan runner runs plans, as MAKE-PLAN-RUNNER was told."
- runner-lisps-dice "Return what plans of the runner roll by CL:RANDOM; NIL: what all programs do."
- runner-dice "Return the dice by which the plan runner's tasks choose, or NIL."
- runner-ticks-per-second "Return how many ticks are a second for the plan runner's tasks.")
 
 (defun plan-runner-tick (&optional (runner *runner*))
   "Return the tick that it is for RUNNER."

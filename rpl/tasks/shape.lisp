@@ -2,20 +2,16 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(shape-of shape-fixed shape-keys shape-text keyword-slip misfit))
+(export '(shape-of shape-text keyword-slip misfit))
 
-(defstruct (shape (:constructor make-shape (least most fixed keys open)) (:copier nil))
-  "How many arguments something takes, LEAST to MOST, of which FIXED are no keywords. KEYS are
-keywords; :NONE if there is no &KEY. OPEN is true if other keywords do as well."
-  (least 0 :type fixnum :read-only t)
-  (most most-positive-fixnum :type fixnum :read-only t)
-  (fixed 0 :type fixnum :read-only t)
-  (keys :none :type (or list (eql :none)) :read-only t)
-  (open nil :read-only t))
-
-(document-functions
-  shape-fixed "Return how many of the arguments are no keywords."
-  shape-keys "Return the list of the keywords, or :NONE if there is no &KEY.")
+(define-record (shape (:constructor make-shape (least most fixed keys open)))
+  "How many arguments something takes, LEAST to MOST."
+  (least 0 fixnum)
+  (most most-positive-fixnum fixnum)
+  (fixed 0 fixnum "how many of the arguments are no keywords" :export)
+  (keys :none (or list (eql :none))
+        "the list of the keywords, or :NONE if there is no &KEY" :export)
+  (open nil t "true if other keywords do as well"))
 
 (defun keyword-of (parameter)
   "Return the keyword that PARAMETER, after &KEY in a lambda list or a function type, goes by."

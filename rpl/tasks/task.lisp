@@ -2,12 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(current-form form-text whole-form-text forms-under-way frame-runs frame frame-counter
-          frame-data frame-environment frame-node frame-state frame-up make-frame make-task node
-          node-form task-awaiting task-cleaning task-frame task-index task-label task-level
-          task-newest-child task-runner task-signal task-status-fluent task-timer evaporating-p
-          part-of-p lineage frame-chain frames-around under-way-p frame-p node-names task-doomed
-          task-uncounted-p task-older))
+(export '(current-form form-text whole-form-text forms-under-way frame-runs frame frame-state
+          make-frame make-task node task-label evaporating-p part-of-p lineage frame-chain
+          frames-around under-way-p frame-p))
 
 ;;; A plan is a graph of nodes, its expressions. A task runs one of them as a chain of frames, the
 ;;; innermost of which is the task's own FRAME. Everything that a task knows is in its frames and
@@ -16,31 +13,32 @@
 ;;;
 ;;; An environment is a vector: element 0 is the environment around it, the others are variables.
 
-(defstruct (node (:constructor nil) (:copier nil))
-  "An expression of a plan. STEP takes the node, task, frame and the value of the inner expression
-that has ended, and returns the frame to go on with and a value for it. UNWIND is called with the
-same arguments but a signal when a signal passes the frame, and returns a frame that takes care of
-it, or NIL and, if another signal is to go on instead, that. CHILD-ENDED is called with node, task,
-frame, child, the child's state and its result. STATES are the names of what a frame may be in,
-NAMES those of the variables in the environment that it runs in: a list for each level of that,
-innermost first. WHOSE says whether forks of a run share it, once somebody has found that out."
-  (form nil)
-  (names '() :type list)
-  (states #() :type simple-vector)
-  (step #'list :type function)
-  (unwind nil :type (or null function))
-  (child-ended nil :type (or null function))
-  (whose :unknown :type (member :unknown :everybodys :a-runs)))
+(define-record (node (:constructor nil))
+  "An expression of a plan."
+  (form nil t "the source of the expression that the node stands for" :writable :export)
+  (names '() list "the names of the variables that the node sees: a list for each level, innermost
+first" :writable :export)
+  (states #() simple-vector "the names of what a frame may be in" :writable)
+  (step #'list function "the function of the node, task, frame and the value of the inner expression
+that has ended, which returns the frame to go on with and a value for it" :writable)
+  (unwind nil (or null function) "the function of the same arguments, but a signal, that is called
+when a signal passes the frame, or NIL. It returns a frame that takes care of it, or NIL and, if
+another signal is to go on instead, that" :writable)
+  (child-ended nil (or null function) "the function of node, task, frame, child, the child's state
+and its result, or NIL" :writable)
+  (whose :unknown (member :unknown :everybodys :a-runs)
+         "whether forks of a run share it, once somebody has found that out" :writable))
 
 (declaim (inline make-frame))
-(defstruct (frame (:constructor make-frame (node environment up)) (:copier nil))
-  "One run of NODE on behalf of the frame UP. COUNTER, the number of a state, and DATA are the
-node's business."
-  (node nil :type node)
-  (environment #() :type simple-vector)
-  (up nil :type (or null frame))
-  (counter 0 :type fixnum)
-  (data nil))
+(define-record (frame (:constructor make-frame (node environment up)))
+  "One run of NODE, in ENVIRONMENT, on behalf of the frame UP or of none."
+  (node nil node "the node that the frame runs" :writable :export)
+  (environment #() simple-vector "the vector of the variables that the node sees, and of those
+around it" :writable :export)
+  (up nil (or null frame) "the frame that gets the value, or NIL" :writable :export)
+  (counter 0 fixnum
+           "the number of the state that the frame is in: see FRAME-STATE" :writable :export)
+  (data nil t "what the frame has to remember: in DEFINE-EXPRESSION, its MEMORY" :writable :export))
 
 (defun frame-state (frame)
   "Return the name of the state that FRAME is in, a keyword; a number of parts begun, if its node
@@ -50,42 +48,50 @@ has no states."
         (svref states (frame-counter frame))
         (frame-counter frame))))
 
-(addition task)
-(defstruct (task (:constructor make-task (name node)) (:copier nil))
-  "One incarnation of a plan's expression. FRAME and VALUE say how it will go on; SIGNAL, if any,
-what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards.
-SLICE is how many steps it may still take in the ROUND of that number. BLOCKED is how many keep it
-from running, SUSPENSIONS how many of these are so called, SUSPENDED whether SUSPEND is one. GATE is
-what it waits for before it starts, VARIABLES what it has set."
-  (name nil)
-  (node nil :type node)
-  (runner nil)
-  (serial 0 :type fixnum)
-  (state :created :type keyword)
-  (doomed nil :type boolean)
-  (level 0 :type (integer 0 7))
-  (index 0 :type fixnum)
-  (frame nil :type (or null frame))
-  (value nil)
-  (signal nil)
-  (awaiting nil)
-  (since 0 :type real)
-  (timer nil :type (or null timer))
-  (cleaning '() :type list)
-  (blocked 0 :type fixnum)
-  (round 0 :type fixnum)
-  (slice 0 :type fixnum)
-  (result nil)
-  (status-fluent nil :type (or null fluent))
-  (parent nil :type (or null task))
-  (suspensions 0 :type fixnum)
-  (suspended nil :type boolean)
-  (uncounted-p nil :type boolean)
-  (gate nil)
-  (variables '() :type list)
-  (newest-child nil :type (or null task))
-  (older nil :type (or null task))
-  (newer nil :type (or null task)))
+(addition task task-p)
+(define-record (task (:constructor make-task (name node)
+                     "Return a task by name and node that has not started: see SPAWN."))
+  "One incarnation of a plan's expression."
+  (name nil t "what the task is called: its tag, its procedure, or NIL" :writable :addition)
+  (node nil node "the expression that it runs" :writable)
+  (runner nil t "the plan runner that the task belongs to" :writable :export)
+  (serial 0 fixnum "the number of the task within its plan runner" :writable :addition)
+  (state :created keyword "the task's state: :created, :ready, :running, :waiting, and when it is
+over :succeeded, :failed or :evaporated" :writable :addition)
+  (doomed nil boolean "true if the task is to evaporate" :writable :export)
+  (level 0 (integer 0 7) "the level of the task: 0 for the plan proper, for a policy one above what
+it guards" :writable :export)
+  (index 0 fixnum
+         "which of the parts of the task around it the task is, from 0 on" :writable :export)
+  (frame nil (or null frame) "the innermost frame of the task, NIL if it is over" :writable :export)
+  (value nil t "the value with which its innermost frame goes on" :writable)
+  (signal nil t "what will happen to the task instead of going on, or NIL" :writable :export)
+  (awaiting nil t "what the task waits for: a watcher, a timer, a valve, a text; or
+NIL" :writable :export)
+  (since 0 real "the tick at which the task began to wait, or did so last" :writable :addition)
+  (timer nil (or null timer)
+         "the timer that ends the task's wait at the latest, or NIL" :writable :export)
+  (cleaning '() list "the frames of the task that clean up, innermost first" :writable :export)
+  (blocked 0 fixnum "how many keep it from running" :writable)
+  (round 0 fixnum "in which round of its plan runner it used its slice last" :writable)
+  (slice 0 fixnum "how many steps it may still take in that round" :writable)
+  (result nil t
+          "the value of a task that succeeded, the failure of one that failed" :writable :addition)
+  (status-fluent nil (or null fluent) "the fluent that follows the task's status, or NIL: see
+TASK-STATUS" :writable :export)
+  (parent nil (or null task)
+          "the task that the task is part of, or NIL" :writable :addition)
+  (suspensions 0 fixnum "how many of those that keep it from running are suspensions" :writable)
+  (suspended nil boolean "true if SUSPEND is one of them" :writable)
+  (uncounted-p nil boolean "the task's steps are not charged for, as what it does has a
+price" :writable :export)
+  (gate nil t "what it waits for before it starts, or NIL" :writable)
+  (variables '() list "what it has set" :writable)
+  (newest-child nil (or null task) "that part of the task which started last of those not over, or
+NIL" :writable :export)
+  (older nil (or null task)
+         "the part of the same task that started before the task, or NIL" :writable :export)
+  (newer nil (or null task) :writable))
 (declaim-final frame task)
 
 (defmethod copy-plan-value ((task task) fork)
@@ -95,40 +101,6 @@ what it waits for before it starts, VARIABLES what it has set."
 
 (defmethod asker-forked-p ((task task))
   t)
-
-(document-functions
- node-form "Return the source of the expression that the node stands for."
- make-frame "Return a frame for one run of a node, in an environment, on behalf of a frame or NIL."
- frame-node "Return the node that the frame runs."
- frame-environment "Return the vector of the variables that the node sees, and of those around it."
- frame-up "Return the frame that gets the value, or NIL."
- frame-counter "Return the number of the state that the frame is in: see FRAME-STATE."
- frame-data "Return what the frame has to remember: in DEFINE-EXPRESSION, its MEMORY."
- make-task "Return a task by name and node that has not started: see SPAWN."
- task-runner "Return the plan runner that the task belongs to."
- task-level "Return the level of the task: 0, or how many policies it is a part of."
- task-index "Return which of the parts of the task around it the task is, from 0 on."
- task-frame "Return the innermost frame of the task, NIL if it is over."
- task-signal "Return what will happen to the task instead of going on, or NIL."
- task-awaiting "Return what the task waits for: a watcher, a timer, a valve, a text; or NIL."
- task-timer "Return the timer that ends the task's wait at the latest, or NIL."
- task-cleaning "Return the frames of the task that clean up, innermost first."
- task-uncounted-p "True if the task's steps are not charged for, as what it does has a price."
- task-status-fluent "Return the fluent that follows the task's status, or NIL: see TASK-STATUS."
- task-older "Return the part of the same task that started before the task, or NIL."
- task-newest-child "Return that part of the task which started last of those not over, or NIL.")
-
-(addition task-p task-name task-state task-serial task-parent task-result task-since)
-(loop for (reader text) in
-      '((task-name "Return what the task is called: its tag, its procedure, or NIL.")
-        (task-state "Return the task's state: :created, :ready, :running, :waiting, and when it is
-over :succeeded, :failed or :evaporated.")
-        (task-serial "Return the number of the task within its plan runner.")
-        (task-since "Return the tick at which the task began to wait, or did so last.")
-        (task-parent "Return the task that the task is part of, or NIL.")
-        (task-result "Return the value of a task that succeeded, the failure of one that failed.")
-        (task-p "True of tasks."))
-      do (setf (documentation reader 'function) text))
 
 (declaim (inline task-over-p))
 (addition task-over-p)

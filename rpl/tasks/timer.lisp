@@ -2,26 +2,24 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(cancel-timer set-timer timer timer-client))
+(export '(cancel-timer set-timer timer))
 
 ;;; Timers due at the same tick come in the order in which they were set. A timer knows its place
 ;;; in the heap, so that one that is no longer wanted leaves at once.
 
-(defstruct (timer (:constructor make-timer (due serial wake client)) (:copier nil))
+(define-record (timer (:constructor make-timer (due serial wake client)))
   "At tick DUE, WAKE is to be called with this timer."
-  (due 0 :type real :read-only t)
-  (serial 0 :type fixnum :read-only t)
-  (wake #'list :type function :read-only t)
-  (client nil :read-only t)
-  (place nil :type (or null fixnum)))
+  (due 0 real)
+  (serial 0 fixnum)
+  (wake #'list function)
+  (client nil t "on whose behalf the timer was set, such as a task" :export)
+  (place nil (or null fixnum) :writable))
 
 (defstruct (timers (:constructor make-timers ()) (:copier nil))
   "A heap of timers, the earliest at 0."
   (heap (make-array 16 :adjustable t :fill-pointer 0) :type (and vector (not simple-array)))
   (count 0 :type fixnum))
 (declaim-final timer timers)
-
-(document-functions timer-client "Return on whose behalf the timer was set, such as a task.")
 
 (defun earlier-p (a b)
   (or (< (timer-due a) (timer-due b))

@@ -2,61 +2,45 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(agent-text answer-p answer-error answer-issue issue-arguments issue-name issue-task
-          trace-entry-agent trace-entry-subject trace-so-far))
+(export '(agent-text answer-p trace-so-far))
 
 ;;; A trace names tasks by number and holds no clock time, so that it is the same on every replay.
 ;;; An entry keeps things, not words: what is written of it is made when somebody reads it.
 
-(defstruct (trace-entry (:constructor make-trace-entry (tick event task form subject value agent))
-                        (:copier nil))
-  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, by the
-doing of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE
-are: :start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and
-the value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse:
+(define-record (trace-entry (:constructor make-trace-entry
+                                (tick event task form subject value agent)))
+  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, by the doing
+of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE are:
+:start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and the
+value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse:
 fluent and value; :command: an ISSUE and, for the task
 and each that it is part of, the expressions under way; :answer: the ISSUE and the error code;
 :evaporate, :clean, :cleaned, :block and :unblock: nothing."
-  (tick 0 :type real :read-only t)
-  (event :start :type keyword :read-only t)
-  (task 0 :type fixnum :read-only t)
-  (form nil :read-only t)
-  (subject nil :read-only t)
-  (value nil :read-only t)
-  (agent nil :read-only t))
+  (tick 0 real "the tick of a trace entry" :addition)
+  (event :start keyword "what happened: :start, :wait, :wake, :succeed, :fail, :evaporate, :failure
+(whatever becomes of it), :clean (a cleanup begins), :cleaned (no cleanup is under way any more),
+:block or :unblock; :set or :pulse (a fluent), :command or :answer" :addition)
+  (task 0 fixnum "the number of the task that it happened to, or that did it; 0: none" :addition)
+  (form nil t "the plan's expression that the task was at" :addition)
+  (subject nil t "what it is about, an object that depends on the event" :export)
+  (value nil t "what a task succeeded with; the value that a fluent was given; the error code of an
+answer; for a command the expressions under way, a list for the task and each that it is part of;
+the number of the task that a task is part of when it starts" :addition)
+  (agent nil t "by whose doing it happened: a task's number, an answer, or an asker" :export))
 (declaim-final trace-entry)
 
-(defstruct (issue (:constructor make-issue (name arguments task)) (:copier nil))
-  "That the task number TASK asked somebody outside of the plans for NAME, with ARGUMENTS."
-  (name nil :type symbol :read-only t)
-  (arguments '() :type list :read-only t)
-  (task 0 :type fixnum :read-only t))
+(define-record (issue (:constructor make-issue (name arguments task)))
+  "That a task asked somebody outside of the plans for something."
+  (name nil symbol "the plan function by which a command was issued" :export)
+  (arguments '() list "the list of what it was called with" :export)
+  (task 0 fixnum "the number of the task that issued the command" :export))
 
-(defstruct (answer (:constructor make-answer (issue error)) (:copier nil))
-  "What came of ISSUE: ERROR, or NIL if all went well."
-  (issue nil :type issue :read-only t)
-  (error nil :read-only t))
+(define-record (answer (:constructor make-answer (issue error)))
+  "What came of a command."
+  (issue nil issue "the record of the command that an answer is for" :export)
+  (error nil t "the error code of an answer, or NIL" :export))
 
-(addition trace-entry-tick trace-entry-event trace-entry-task trace-entry-form trace-entry-value
-          trace-entry-detail)
-(document-functions
-  trace-entry-tick "Return the tick of a trace entry."
-  trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail, :evaporate,
-:failure (whatever becomes of it), :clean (a cleanup begins), :cleaned (no cleanup is under way any
-more), :block or :unblock; :set or :pulse (a fluent), :command or :answer."
-  trace-entry-task "Return the number of the task that it happened to, or that did it; 0: none."
-  trace-entry-form "Return the plan's expression that the task was at."
-  trace-entry-subject "Return what it is about, an object that depends on the event."
-  trace-entry-agent "Return by whose doing it happened: a task's number, an answer, or an asker."
-  trace-entry-value "Return what a task succeeded with; the value that a fluent was given; the error
-code of an answer; for a command the expressions under way, a list for the task and each that it is
-part of; the number of the task that a task is part of when it starts."
-  issue-name "Return the plan function by which a command was issued."
-  issue-arguments "Return the list of what it was called with."
-  issue-task "Return the number of the task that issued the command."
-  answer-p "True of answers to commands."
-  answer-issue "Return the record of the command that an answer is for."
-  answer-error "Return the error code of an answer, or NIL.")
+(addition trace-entry-detail)
 
 (defun issue-text (issue)
   (form-text (cons (issue-name issue) (issue-arguments issue))))

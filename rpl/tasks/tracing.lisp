@@ -98,11 +98,3 @@ error code ERROR; note that in the trace."
 (defmacro with-answer ((issue error) &body body)
   "Run BODY as CALL-WITH-ANSWER would a function."
   `(call-with-answer ,issue ,error (lambda () ,@body)))
-
-(document-functions
-  runner-trace "Return the trace of the plan runner as it is kept, or NIL: see PLAN-TRACE."
-  runner-stepper "Return the function, of task and frame, that is called before each step, or NIL."
-  frame-p "True of frames."
-  frame-node "Return the node that the frame runs."
-  node-names "Return the names of the variables that the node sees: a list for each level."
-  task-doomed "True if the task is to evaporate.")

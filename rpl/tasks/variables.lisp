@@ -9,13 +9,10 @@
 ;;; TASK-BINDINGS as their DATA, in what it has set, in the frames of the task around it, and so on.
 ;;; Nothing is left of a binding when its frame is gone.
 
-(defstruct (task-bindings (:constructor make-task-bindings (cells)) (:copier nil))
-  "What a frame binds: CELLS, conses (name . value)."
-  (cells '() :type list :read-only t))
+(define-record (task-bindings (:constructor make-task-bindings (cells)))
+  "What a frame that binds task variables has as its data: CELLS, conses (name . value)."
+  (cells '() list))
 (declaim-final task-bindings)
-
-(document-functions
-  make-task-bindings "Return what a frame that binds the task variables of CELLS has as its data.")
 
 (defvar *defaults* (make-hash-table :test 'eq :synchronized t)
   "The values of task variables where no task says otherwise.")
