@@ -29,8 +29,8 @@
     (enter result environment frame))
    (getting-result (unwind task frame (make-escape target value)))))
 
-(document-functions
- make-leave "Return a node that leaves for its target with the value of its result, both nodes.")
+(setf (documentation 'make-leave 'function)
+      "Return a node that leaves for its target with the value of its result, both nodes.")
 
 (defun block-code (name form scope coder)
   "Return the code that CODER returns for a scope in which a block called NAME, whose source is

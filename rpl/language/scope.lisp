@@ -2,35 +2,29 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(inner-scope scope scope-blocks scope-retry single-scope variable-scope scope-environment
-          scope-variables scope))
+(export '(inner-scope scope single-scope variable-scope scope-variables scope))
 
 ;;; Variables that a plan binds live in environments, vectors linked by element 0. A leaf is a Lisp
 ;;; function of the environment at its place; within it each visible variable is a symbol macro for
 ;;; its element. Local functions live in environments too.
 
-(defstruct (scope (:copier copy-scope))
-  "What is visible at a place in a plan. VARIABLE is what leaves call their environment; it is one
-procedure's own, so that plans can be written in the leaves of others. LAYERS tell, innermost first,
-how leaves get to see what is visible. The others map names to the variables, in the code that
-builds the plan, that hold their nodes."
-  (variable (gensym "ENVIRONMENT") :type symbol)
-  (environment nil)
-  (level 0 :type fixnum)
-  (layers '() :type list)
-  (blocks '() :type list)
-  (tags '() :type list)
-  (procedures '() :type list)
-  (retry nil :type symbol)
-  (task-tags '() :type list)
-  ;; Those variables that are known to hold fluents.
-  (fluents '() :type list)
-  (several nil :type boolean))
-
-(document-functions
- scope-environment "Return the Lisp environment at the place."
- scope-blocks "Return an alist from the names of the blocks around to the variables of their nodes."
- scope-retry "Return the variable that holds the node to begin anew at (retry), NIL outside.")
+(define-record (scope (:copier copy-scope))
+  "What is visible at a place in a plan. The slots that say nothing else map names to the variables,
+in the code that builds the plan, that hold their nodes."
+  (variable (gensym "ENVIRONMENT") symbol "what leaves call their environment; it is one procedure's
+own, so that plans can be written in the leaves of others" :writable)
+  (environment nil t "the Lisp environment at the place" :writable :export)
+  (level 0 fixnum :writable)
+  (layers '() list "how leaves get to see what is visible, innermost first" :writable)
+  (blocks '() list "an alist from the names of the blocks around to the variables of their
+nodes" :writable :export)
+  (tags '() list :writable)
+  (procedures '() list :writable)
+  (retry nil symbol
+         "the variable that holds the node to begin anew at (retry), NIL outside" :writable :export)
+  (task-tags '() list :writable)
+  (fluents '() list "the variables that are known to hold fluents" :writable)
+  (several nil boolean :writable))
 
 (defmacro inner-scope (scope &rest changes)
   "Return a copy of SCOPE in which the slots named in CHANGES, a property list, have new values."

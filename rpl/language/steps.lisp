@@ -23,8 +23,8 @@
          (enter (the node (svref parts i)) environment frame)
          (enter-last (the node (svref parts i)) environment frame)))))
 
-(document-functions
-  steps-parts "Return the vector of the nodes that are run one after the other.")
+(setf (documentation 'steps-parts 'function)
+      "Return the vector of the nodes that are run one after the other.")
 
 (defmethod current-form ((node steps) frame)
   (let ((i (frame-counter frame)))
