@@ -19,10 +19,12 @@
   (:documentation "The plan for a goal has ended, but what it was for is not believed."))
 
 (addition failed-goal failed-goal-operator unknown-goal-known)
-(document-functions
- failed-goal "Return the goal that cannot be had, such as (on a b)."
- failed-goal-operator "Return what was to be done for it: ACHIEVE, PERCEIVE or BELIEF."
- unknown-goal-known "Return the patterns of the goals that there are, a list.")
+(setf (documentation 'failed-goal 'function)
+      "Return the goal that cannot be had, such as (on a b)."
+      (documentation 'failed-goal-operator 'function)
+      "Return what was to be done for it: ACHIEVE, PERCEIVE or BELIEF."
+      (documentation 'unknown-goal-known 'function)
+      "Return the patterns of the goals that there are, a list.")
 
 (defmethod write-failure ((failure unknown-goal) stream)
   (format stream "No def-goal matches (~A). ~:[There is none for ~A~;Known: ~:*~{~A~^, ~}~*~]"

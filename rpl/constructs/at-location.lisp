@@ -47,9 +47,10 @@ a fluent: the stays under way."
   (:documentation "AT-LOCATION lost its place more often than it was to go there again."))
 
 (addition lost-place lost-attempts)
-(document-functions
- lost-place "Return the place that was lost."
- lost-attempts "Return how often it was gone to anew.")
+(setf (documentation 'lost-place 'function)
+      "Return the place that was lost."
+      (documentation 'lost-attempts 'function)
+      "Return how often it was gone to anew.")
 
 (defmethod write-failure ((failure location-lost) stream)
   (format stream "Not to be kept at ~A: it was gone to anew ~D time~:P"

@@ -9,20 +9,17 @@
 ;;; first. So it does not matter in which order files are loaded, as it does for CRAM, which
 ;;; takes the first that matches.
 
-(defstruct (goal (:constructor make-goal (operator pattern shape variables procedure documentation))
-                 (:copier nil))
-  "How to do OPERATOR, such as ACHIEVE, for what PATTERN matches: by PROCEDURE of VARIABLES."
-  (operator nil :type symbol)
-  (pattern nil)
-  (shape nil)
-  (variables '() :type list)
-  (procedure nil :type (or null procedure))
-  (documentation nil :type (or null string)))
-(addition goal-p goal-operator goal-pattern)
-(document-functions
- goal-p "True of what DEF-GOAL defines."
- goal-operator "Return what the goal's plan does for it: ACHIEVE, PERCEIVE or BELIEF."
- goal-pattern "Return the pattern of the goal, as it was defined.")
+(addition goal-p)
+(define-record (goal (:constructor make-goal
+                         (operator pattern shape variables procedure documentation)))
+  "How to do something for what a pattern matches, as DEF-GOAL defines it."
+  (operator nil symbol
+            "what the goal's plan does for it: ACHIEVE, PERCEIVE or BELIEF" :writable :addition)
+  (pattern nil t "the pattern of the goal, as it was defined" :writable :addition)
+  (shape nil t :writable)
+  (variables '() list :writable)
+  (procedure nil (or null procedure) "the procedure of VARIABLES that does it, or NIL" :writable)
+  (documentation nil (or null string) :writable))
 
 (defun goal-text (operator pattern)
   (format nil "~A ~A" (plain-name operator) (pattern-text pattern)))

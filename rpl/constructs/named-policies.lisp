@@ -5,20 +5,16 @@
 ;;; The clauses of a policy are plans without a name. All take the policy's parameters, and before
 ;;; them its use: what is remembered from clause to clause while it is in force once.
 
-(defstruct (policy (:constructor %make-policy (name lambda-list init check recover clean-up))
-                   (:copier nil))
+(addition policy-p)
+(define-record (policy (:constructor %make-policy (name lambda-list init check recover clean-up)))
   "What is to hold while a part of a plan runs, and what to do about it."
-  (name nil :type symbol)
-  (lambda-list '() :type list)
-  (init nil :type (or null procedure))
-  (check nil :type (or null procedure))
-  (recover nil :type (or null procedure))
-  (clean-up nil :type (or null procedure)))
-(addition policy-p policy-name policy-lambda-list)
-(document-functions
- policy-p "True of policies."
- policy-name "Return the symbol that the policy is called, NIL if MAKE-POLICY made it."
- policy-lambda-list "Return the lambda list of the policy's clauses.")
+  (name nil symbol
+        "the symbol that the policy is called, NIL if MAKE-POLICY made it" :writable :addition)
+  (lambda-list '() list "the lambda list of the policy's clauses" :writable :addition)
+  (init nil (or null procedure) :writable)
+  (check nil (or null procedure) :writable)
+  (recover nil (or null procedure) :writable)
+  (clean-up nil (or null procedure) :writable))
 
 (defmethod print-object ((policy policy) stream)
   (print-unreadable-object (policy stream)

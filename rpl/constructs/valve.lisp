@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-(export '(claim-p claim-valves valve))
+(export '(claim-p valve))
 
 ;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted,
 ;;; the newest first. A part of a task that holds a valve may hold it as well, one part at a time.
@@ -15,25 +15,23 @@
 ;;; they want. To queue, to leave, and to be next take the same time however many wait in a line,
 ;;; and grow with the logarithm of the number of lines.
 
-(defstruct (valve (:include entity) (:constructor %make-valve (name)) (:copier nil))
-  "What guarantees that one task at a time has a resource. LINES, a tree, are of those that wait for
-it, COUNT is how many lines there ever were."
-  (name nil :read-only t)
-  (claims '() :type list)
-  (lines nil)
-  (count 0 :type fixnum))
+(addition valve-p)
+(define-record (valve (:include entity) (:constructor %make-valve (name)))
+  "What guarantees that one task at a time has a resource."
+  (name nil t "the name that the valve was made with" :addition)
+  (claims '() list :writable)
+  (lines nil t "a tree of the lines of those that wait for it" :writable)
+  (count 0 fixnum "how many lines there ever were" :writable))
 
-(defstruct (claim (:constructor make-claim (task valves priority)) (:copier nil))
-  "That TASK wants or has VALVES. TAKEN are those that it has, LOST those of them that have been
-taken from it. OUTER are conses of one of TAKEN and the claim around this one. TURNS are its places
-in the lines of VALVES while it waits."
-  (task nil :type task :read-only t)
-  (valves '() :type list :read-only t)
-  (priority 0 :type real :read-only t)
-  (taken '() :type list)
-  (lost '() :type list)
-  (outer '() :type list)
-  (turns '() :type list))
+(define-record (claim (:constructor make-claim (task valves priority)))
+  "That TASK wants or has VALVES: what it waits for, or has in a frame."
+  (task nil task)
+  (valves '() list "the valves that the claim is to" :export)
+  (priority 0 real)
+  (taken '() list "the valves that it has" :writable)
+  (lost '() list "those of them that have been taken from it" :writable)
+  (outer '() list "conses of one of the valves taken and the claim around this one" :writable)
+  (turns '() list "its places in the lines of the valves while it waits" :writable))
 
 (defstruct (line (:constructor make-line (valve priority level)) (:copier nil))
   "The turns of claims of one PRIORITY to VALVE, by tasks of one LEVEL, first come first. As a part
@@ -62,19 +60,12 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
   (declare (ignore realm))
   (%make-valve (valve-name valve)))
 
-(document-functions
-  claim-p "True of claims: what tasks that want or have valves wait for, or have in a frame."
-  claim-valves "Return the valves that the claim is to.")
-
 (addition make-valve)
 (defun make-valve (name)
   "Return a new valve called NAME, that nobody owns."
   (%make-valve name))
 
-(addition valve-p valve-name valve-owner valve-requests valve-losers)
-(document-functions
-  valve-p "True of valves."
-  valve-name "Return the name that the valve was made with.")
+(addition valve-owner valve-requests valve-losers)
 
 (defun valve-owner (valve)
   "Return the task that has VALVE, or NIL; if a part of that has claimed it too, the part."
