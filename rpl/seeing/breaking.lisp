@@ -20,8 +20,8 @@ step."))
   "True of breaks of plans."
   (typep object 'plan-break))
 
-(document-functions
-  plan-break-task "Return the task that stopped.")
+(setf (documentation 'plan-break-task 'function)
+      "Return the task that stopped.")
 
 (defparameter *longest-stack* 12 "How many expressions of a plan a break shows at most.")
 

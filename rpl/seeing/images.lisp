@@ -2,60 +2,35 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(image-of-tasks runner-mark task-image task-image-serial task-image-depth task-image-look
-          task-image-state task-image-name task-image-form task-image-calls task-image-awaits
-          task-image-since task-image-path task-image-parts task-image-folded-p tree-image-tick
-          tree-image-rows tree-image-plans tree-image-tasks))
+(export '(image-of-tasks runner-mark task-image))
 
 ;;; An image is made where no plan goes on, as between two ticks; whoever draws from it may do so in
 ;;; any thread. It has the rows that are to be seen, from top to bottom, and no more than so many of
 ;;; them: what is left out, or folded away, is only counted.
 
-(defstruct (task-image (:copier nil))
-  "What is to be seen of a task. LOOK is :running, :waiting, :blocked, :cleaning, :ending or
-:stepped; STATE says it in words. CALLS are the calls of plans that it is in the middle of, as
-texts, outermost first. PARTS is how many tasks it consists of; if it is FOLDED-P, they are not
-among the rows."
-  (serial 0 :type fixnum :read-only t)
-  (depth 0 :type fixnum :read-only t)
-  (look :running :type keyword :read-only t)
-  (state "" :type string :read-only t)
-  (name nil :type (or null string) :read-only t)
-  (form "" :type string :read-only t)
-  (calls '() :type list :read-only t)
-  (awaits nil :type (or null string) :read-only t)
-  (since 0 :type real :read-only t)
-  (path '() :type list :read-only t)
-  (parts 0 :type fixnum :read-only t)
-  (folded-p nil :type boolean :read-only t))
+(define-record task-image
+  "What is to be seen of a task."
+  (serial 0 fixnum "the number of the task" :export)
+  (depth 0 fixnum "of how many tasks the task is part" :export)
+  (look :running keyword "how the task is, as a keyword: :running, :waiting, :blocked, :cleaning,
+:ending or :stepped" :export)
+  (state "" string "in words how the task is" :export)
+  (name nil (or null string) "what the task is called, or NIL" :export)
+  (form "" string "the expression that the task is at, as text" :export)
+  (calls '() list "the calls of plans that the task is in the middle of, as texts, outermost first;
+of many the innermost" :export)
+  (awaits nil (or null string) "in words what the task waits for, or NIL" :export)
+  (since 0 real "the tick at which the task began to wait" :export)
+  (path '() list "the labels of the tasks from the top of the plan to the task" :export)
+  (parts 0 fixnum "how many tasks the task consists of" :export)
+  (folded-p nil boolean "the parts of the task are folded away" :export))
 
-(defstruct (tree-image (:copier nil))
-  "The tasks of a plan runner at TICK: ROWS are the images of those to be seen, each before its
-parts, PLANS how many plans there are, TASKS how many tasks in all."
-  (tick 0 :type real :read-only t)
-  (rows '() :type list :read-only t)
-  (plans 0 :type fixnum :read-only t)
-  (tasks 0 :type fixnum :read-only t))
-
-(document-functions
-  task-image-serial "Return the number of the task."
-  task-image-depth "Return of how many tasks the task is part."
-  task-image-look "Return how the task is, as a keyword: :running, :waiting, :blocked, :cleaning,
-:ending or :stepped."
-  task-image-state "Return in words how the task is."
-  task-image-name "Return what the task is called, or NIL."
-  task-image-form "Return the expression that the task is at, as text."
-  task-image-calls "Return the calls of plans that the task is in the middle of, as texts, outermost
-first; of many the innermost."
-  task-image-awaits "Return in words what the task waits for, or NIL."
-  task-image-since "Return the tick at which the task began to wait."
-  task-image-path "Return the labels of the tasks from the top of the plan to the task."
-  task-image-parts "Return how many tasks the task consists of."
-  task-image-folded-p "True if the parts of the task are folded away."
-  tree-image-tick "Return the tick of the image."
-  tree-image-rows "Return the images of the tasks to be seen, each before its parts."
-  tree-image-plans "Return how many plans are under way."
-  tree-image-tasks "Return how many tasks there are, those included that are not to be seen.")
+(define-record tree-image
+  "The tasks of a plan runner at one tick."
+  (tick 0 real "the tick of the image" :export)
+  (rows '() list "the images of the tasks to be seen, each before its parts" :export)
+  (plans 0 fixnum "how many plans are under way" :export)
+  (tasks 0 fixnum "how many tasks there are, those included that are not to be seen" :export))
 
 ;;; A task.
 

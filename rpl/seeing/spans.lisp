@@ -2,59 +2,38 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(bar bar-call-p bar-commands bar-depth bar-end bar-failure bar-form bar-label
-          bar-name bar-outcome bar-parts bar-serial bar-spans bar-start bars span
-          span-error span-end span-kind span-start span-text))
+(export '(bar bar-label bars span))
 
-(defstruct (span (:constructor make-span (kind start text &optional end)) (:copier nil))
-  "From tick START to END of a task: KIND is :waiting (for what TEXT says), :parts (waiting for
-them), :blocked, :cleaning, :failure (TEXT says which; it takes no time) or :command (TEXT was under
-way; ERROR is what it was answered with, CALLS the calls of procedures that it was issued in,
-outermost first)."
-  (kind :waiting :type keyword :read-only t)
-  (start 0 :type real :read-only t)
-  (text nil :read-only t)
-  (end nil :type (or null real))
-  (error nil)
-  (calls '() :type list))
+(define-record (span (:constructor make-span (kind start text &optional end)))
+  "What a task waited for, or did, from tick START to END."
+  (kind :waiting keyword "what a span is of: :waiting, :parts (waiting for them), :blocked,
+:cleaning, :failure (it takes no time) or :command" :export)
+  (start 0 real "the tick at which a span begins" :export)
+  (text nil t "what was waited for, which failure it was, or the command that was under way, as
+text" :export)
+  (end nil (or null real) "the tick at which a span ends" :writable :export)
+  (error nil t "the error code that ended a command, or NIL" :writable :export)
+  (calls '() list
+         "the calls of procedures that the command was issued in, outermost first" :writable))
 
-(defstruct (bar (:constructor make-bar (serial parent name form start depth)) (:copier nil))
-  "The life of the task SERIAL, at DEPTH, part of the bar PARENT. OUTCOME is :succeeded, :failed,
-:evaporated, or NIL if it goes on; then END is the tick of the trace's end. If CALL-P, it is a call
-of a procedure within the task, as far as commands were issued in it."
-  (serial 0 :type fixnum :read-only t)
-  (parent nil :type (or null bar) :read-only t)
-  (name nil :read-only t)
-  (form nil :read-only t)
-  (start 0 :type real :read-only t)
-  (depth 0 :type fixnum :read-only t)
-  (end nil :type (or null real))
-  (outcome nil :type symbol)
-  (failure nil)
-  (spans '() :type list)
-  (commands '() :type list)
-  (parts '() :type list)
-  (call-p nil :type boolean))
-
-(document-functions
-  span-kind "Return what a span is of: :waiting, :parts, :blocked, :cleaning, :failure or
-:command."
-  span-start "Return the tick at which a span begins."
-  span-end "Return the tick at which a span ends."
-  span-text "Return what was waited for, or the command that was under way, as text."
-  span-error "Return the error code that ended a command, or NIL."
-  bar-serial "Return the number of the task."
-  bar-name "Return the name of the task, or NIL."
-  bar-form "Return the expression that the task ran."
-  bar-depth "Return of how many tasks the task is part."
-  bar-start "Return the tick at which the task started."
-  bar-end "Return the tick at which the task ended, or the trace."
-  bar-outcome "Return how the task ended, as TASK-STATE says it; NIL if it goes on."
-  bar-failure "Return the failure of a task that failed, or NIL."
-  bar-spans "Return the spans of the task, oldest first."
-  bar-commands "Return the spans of the commands that the task issued, oldest first."
-  bar-call-p "True if the bar is of a call of a procedure, within a task."
-  bar-parts "Return the bars of the tasks that the task consisted of, oldest first.")
+(define-record (bar (:constructor make-bar (serial parent name form start depth)))
+  "The life of a task; or a call of a procedure within it, as far as commands were issued there."
+  (serial 0 fixnum "the number of the task" :export)
+  (parent nil (or null bar) "the bar that it is part of, or NIL")
+  (name nil t "the name of the task, or NIL" :export)
+  (form nil t "the expression that the task ran" :export)
+  (start 0 real "the tick at which the task started" :export)
+  (depth 0 fixnum "of how many tasks the task is part" :export)
+  (end nil (or null real) "the tick at which the task ended, or the trace" :writable :export)
+  (outcome nil symbol
+           "how the task ended, as TASK-STATE says it; NIL if it goes on" :writable :export)
+  (failure nil t "the failure of a task that failed, or NIL" :writable :export)
+  (spans '() list "the spans of the task, oldest first" :writable :export)
+  (commands '() list
+            "the spans of the commands that the task issued, oldest first" :writable :export)
+  (parts '() list
+         "the bars of the tasks that the task consisted of, oldest first" :writable :export)
+  (call-p nil boolean "the bar is of a call of a procedure, within a task" :writable :export))
 
 (defun bar-label (bar &optional (text #'form-text))
   "Return what says which task BAR is of, or which call within a task: a short text, unless the
