@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-pictures)
 
-(export '(draw-task-tree fold-mark fold-mark-serial))
+(export '(draw-task-tree fold-mark))
 
 (defconstant +indent+ 12 "How far the parts of a task are to the right of it, in pixels.")
 (defconstant +deepest+ 14 "From what depth on parts are indented no further.")
@@ -14,13 +14,10 @@
     (:stepped #x8C3CB4 "stops at each expression"))
   "Lists (look color text): the marks of tasks, and what the legend says.")
 
-(defstruct (fold-mark (:constructor make-fold-mark (serial folded-p)) (:copier nil))
-  "What folds the parts of the task SERIAL away, or shows them again."
-  (serial 0 :type fixnum :read-only t)
-  (folded-p nil :type boolean :read-only t))
-
-(document-functions
-  fold-mark-serial "Return the number of the task whose parts a mark folds away.")
+(define-record (fold-mark (:constructor make-fold-mark (serial folded-p)))
+  "What folds the parts of a task away, or shows them again."
+  (serial 0 fixnum "the number of the task whose parts a mark folds away" :export)
+  (folded-p nil boolean "the parts are to be folded away"))
 
 (defmethod subject-title ((mark fold-mark))
   (format nil "~:[Fold the parts of task ~D away~;Show the parts of task ~D~]"

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-pictures)
 
-(export '(make-page page-end page-start scale-for draw-page))
+(export '(make-page scale-for draw-page))
 
 (defun draw-axis (canvas scale top bottom)
   "Draw lines at round ticks from TOP down to BOTTOM, and the numbers of these above and below."
@@ -98,16 +98,12 @@ for them to be WIDTH pixels wide; and how high these are together."
 
 ;;; As a page.
 
-(defstruct (page (:constructor %make-page (rows unseen start end)) (:copier nil))
-  "ROWS to be drawn from tick START to END; UNSEEN is how many more there would be."
-  (rows '() :type list :read-only t)
-  (unseen 0 :type fixnum :read-only t)
-  (start 0 :type real :read-only t)
-  (end 0 :type real :read-only t))
-
-(document-functions
-  page-start "Return the tick with which a page begins."
-  page-end "Return the tick with which a page ends.")
+(define-record (page (:constructor %make-page (rows unseen start end)))
+  "ROWS to be drawn from tick START to END."
+  (rows '() list)
+  (unseen 0 fixnum "how many more rows there would be")
+  (start 0 real "the tick with which a page begins" :export)
+  (end 0 real "the tick with which a page ends" :export))
 
 (defun make-page (bars most)
   "Return a page of BARS, of top-level tasks, with at most MOST rows."
