@@ -2,22 +2,15 @@
 
 (in-package :ars-magna.rpl-projecting)
 
-(addition projection-p projection-text projection-rollouts projection-horizon projection-tick)
-(defstruct (projection (:constructor make-projection (text tick horizon rollouts)) (:copier nil))
-  "What may become of a plan, or a branch of one, that TEXT names, as it was seen at TICK."
-  (text "" :type string :read-only t)
-  (tick 0 :type real :read-only t)
-  (horizon 0 :type real :read-only t)
-  (rollouts '() :type list :read-only t))
+(addition projection-p)
+(define-record (projection (:constructor make-projection (text tick horizon rollouts)))
+  "What may become of a plan, or a branch of one, as PROJECT returns it."
+  (text "" string "a text that says what was projected" :addition)
+  (tick 0 real "the tick from which it was projected" :addition)
+  (horizon 0 real "how many ticks each rollout was given" :addition)
+  (rollouts '() list "the list of its rollouts, in order of their trials" :addition))
 
 (define-shared projection)
-
-(document-functions
-  projection-p "True of projections, as PROJECT returns them."
-  projection-text "Return a text that says what was projected."
-  projection-tick "Return the tick from which it was projected."
-  projection-horizon "Return how many ticks each rollout was given."
-  projection-rollouts "Return the list of its rollouts, in order of their trials.")
 
 (addition projection-successes)
 (defun projection-successes (projection)

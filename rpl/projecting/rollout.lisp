@@ -9,32 +9,24 @@ its answer, by taking its BRANCH, a number; or, without a MOMENT, in a world bel
   (moment nil :read-only t)
   (branch 0 :type fixnum :read-only t))
 
-(addition rollout-p rollout-seed rollout-state rollout-ticks rollout-cost)
-(defstruct (rollout (:constructor make-rollout
-                        (scene trial seed state result ticks cost steps ways &optional broken))
-                    (:copier nil))
-  "One trial, number TRIAL, of what a projection is about. RESULT is a value or a failure, STEPS how
-many steps of plans count, WAYS where robots went. BROKEN is the option, :COST or :WORLD, of whose
-function the failure is an error."
-  (scene nil :type scene :read-only t)
-  (trial 0 :type fixnum :read-only t)
-  (seed 0 :type integer :read-only t)
-  (state :limit :type keyword :read-only t)
-  (result nil :read-only t)
-  (ticks 0 :type real :read-only t)
-  (cost nil :type (or null real) :read-only t)
-  (steps 0 :type integer :read-only t)
-  (ways '() :type list :read-only t)
-  (broken nil :type (or null keyword) :read-only t))
-
-(document-functions
-  rollout-p "True of rollouts: trials of a plan that a projection has made."
-  rollout-seed "Return the integer from which all chance in the rollout came."
-  rollout-state "Return how the rollout ended: :succeeded, :failed, :evaporated, :deadlock,
+(addition rollout-p)
+(define-record (rollout (:constructor make-rollout
+                            (scene trial seed state result ticks cost steps ways &optional broken)))
+  "One trial of what a projection is about."
+  (scene nil scene)
+  (trial 0 fixnum "the number of the trial")
+  (seed 0 integer "the integer from which all chance in the rollout came" :addition)
+  (state :limit keyword "how the rollout ended: :succeeded, :failed, :evaporated, :deadlock,
 :stopped; :limit, if its horizon came first; or :runaway, if plans took a million steps in a tick
-without waiting."
-  rollout-ticks "Return how many ticks the rollout took."
-  rollout-cost "Return the number that the function :cost returned at the end, or NIL without one.")
+without waiting" :addition)
+  (result nil t "a value or a failure")
+  (ticks 0 real "how many ticks the rollout took" :addition)
+  (cost nil (or null real)
+        "the number that the function :cost returned at the end, or NIL without one" :addition)
+  (steps 0 integer "how many steps of plans count")
+  (ways '() list "where robots went")
+  (broken nil (or null keyword)
+          "the option, :COST or :WORLD, of whose function the failure is an error, or NIL"))
 
 (define-shared scene rollout)
 
