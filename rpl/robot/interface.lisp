@@ -69,9 +69,6 @@ been told since which robot it commands")
    (hog nil (or null task)
         "the task that was seen to be at Lisp code that does not return, or NIL")))
 
-(document-functions
-  interface-p "True of interfaces: what runs the plans that drive a robot.")
-
 (defmethod print-object ((interface interface) stream)
   (print-unreadable-object (interface stream :type t)
     (princ (interface-robot interface) stream)))

@@ -2,22 +2,19 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(wish wish-task wish-interface serve-wish add-wish forget-wish grant-wish wishes-in-tick
-          fork-at-rest unwanted-wish-p call-apart))
+(export '(wish serve-wish add-wish forget-wish grant-wish wishes-in-tick fork-at-rest
+          unwanted-wish-p call-apart))
 
 ;;; A run cannot be forked at a plan's own step: what that is about to do is on Lisp's stack. So a
 ;;; task that wants it done leaves a wish, waits, and goes on in the same tick with what came of it.
 ;;; Wishes are served one at a time, the oldest first, when the reaction has come to rest; after
 ;;; each the plans react anew. What a wish is about is in the wish, so that a fork has its twin.
 
-(defstruct (wish (:copier nil))
+(define-record wish
   "What TASK of INTERFACE waits for; without a task, what somebody outside wants of a fork."
-  (task nil :type (or null task) :read-only t)
-  (interface nil :type (or null interface) :read-only t))
-
-(document-functions
-  wish-task "Return the task that waits for the wish to be served, or NIL if none does."
-  wish-interface "Return the interface that has the wish.")
+  (task nil (or null task)
+        "the task that waits for the wish to be served, or NIL if none does" :export)
+  (interface nil (or null interface) "the interface that has the wish" :export))
 
 (defgeneric serve-wish (wish)
   (:documentation "Do what WISH is about and let its task go on by GRANT-WISH. Called while all
