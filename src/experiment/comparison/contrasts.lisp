@@ -2,53 +2,37 @@
 
 (in-package :ars-magna.experiment)
 
-(defstruct (contrast (:constructor make-contrast (where first second)) (:copier nil))
-  "Two conditions or versions, called FIRST and SECOND; WHERE says what they have in common."
-  (where nil :type (or null string) :read-only t)
-  (first "" :type string :read-only t)
-  (second "" :type string :read-only t)
-  (trials 0 :type integer)
-  ;; How many trials of each have no counterpart, and how many of those that have broke off.
-  (alone-first 0 :type integer)
-  (alone-second 0 :type integer)
-  (errors-first 0 :type integer)
-  (errors-second 0 :type integer)
-  (same 0 :type integer)
-  (differences '() :type list))
+(addition contrast-p)
+(define-record (contrast (:constructor make-contrast (where first second)))
+  "Two conditions, or versions, that have been compared."
+  (where nil (or null string) "what both have in common, a string, or NIL" :addition)
+  (first "" string "what the first is called, a string" :addition)
+  (second "" string "what the second is called, a string" :addition)
+  (trials 0 integer "how many pairs of trials with equal seeds there are" :writable :addition)
+  (alone-first 0 integer "how many trials of the first have no counterpart" :writable)
+  (alone-second 0 integer "how many trials of the second have no counterpart" :writable)
+  (errors-first 0 integer "how many trials of the first that have one broke off" :writable)
+  (errors-second 0 integer "how many trials of the second that have one broke off" :writable)
+  (same 0 integer "in how many pairs both trials are the same run to the last bit, with equal
+rows" :writable :addition)
+  (differences '() list "a list of the differences in success, ticks and what was measured; none if
+all pairs are the same runs" :writable :addition))
 
-(defstruct (comparison (:constructor make-comparison
-                           (experiment sides kind contrasts &key overall changes notes))
-                       (:copier nil))
-  "Conditions of EXPERIMENT side by side, or two versions of it: KIND is :CONDITIONS or :VERSIONS.
-SIDES says which, in words, or is NIL. OVERALL are contrasts over several conditions."
-  (experiment "" :type string :read-only t)
-  (sides nil :type (or null string) :read-only t)
-  (kind :conditions :type keyword :read-only t)
-  (contrasts '() :type list :read-only t)
-  (overall '() :type list :read-only t)
-  ;; Sentences on what decides the trials of one version but not of the other.
-  (changes '() :type list :read-only t)
-  (notes '() :type list :read-only t))
-
-(addition contrast-p contrast-first contrast-second contrast-where contrast-trials contrast-same
-          contrast-differences comparison-p comparison-contrasts comparison-overall
-          comparison-changes)
-(document-functions
-  contrast-p "True of two conditions, or versions, that have been compared."
-  contrast-first "Return what the first is called, a string."
-  contrast-second "Return what the second is called, a string."
-  contrast-where "Return what both have in common, a string, or NIL."
-  contrast-trials "Return how many pairs of trials with equal seeds there are."
-  contrast-same "Return in how many pairs both trials are the same run to the last bit, with equal
-rows."
-  contrast-differences "Return a list of the differences in success, ticks and what was measured;
-none if all pairs are the same runs."
-  comparison-p "True of what COMPARE-CONDITIONS, COMPARE-LEVELS and COMPARE-RESULTS return."
-  comparison-contrasts "Return a list of the pairs of conditions, or versions, that were compared."
-  comparison-overall "Return a list of the contrasts over several conditions, one for each two
-values, or for the two versions; each seed counts once in them."
-  comparison-changes "Return a list of sentences on what, by the texts beside the tables, decides
-the trials of one version but not of the other; NIL of conditions.")
+(addition comparison-p)
+(define-record (comparison (:constructor make-comparison
+                               (experiment sides kind contrasts &key overall changes notes)))
+  "Conditions of an experiment side by side, or two versions of it, as COMPARE-CONDITIONS,
+COMPARE-LEVELS and COMPARE-RESULTS return them."
+  (experiment "" string)
+  (sides nil (or null string) "what they are, in words, or NIL")
+  (kind :conditions keyword ":CONDITIONS or :VERSIONS")
+  (contrasts '() list
+             "a list of the pairs of conditions, or versions, that were compared" :addition)
+  (overall '() list "a list of the contrasts over several conditions, one for each two values, or
+for the two versions; each seed counts once in them" :addition)
+  (changes '() list "a list of sentences on what, by the texts beside the tables, decides the trials
+of one version but not of the other; NIL of conditions" :addition)
+  (notes '() list))
 
 (defmethod print-object ((contrast contrast) stream)
   (print-unreadable-object (contrast stream)

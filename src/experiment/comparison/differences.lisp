@@ -6,49 +6,41 @@
 ;;; taken seed by seed: what is easy for both, or hard, falls out of it. Rates are compared by
 ;;; Newcombe's interval and the exact McNemar test, means by Student's and a permutation test.
 
-(defstruct (paired-difference (:conc-name paired-)
-                              (:constructor make-difference
-                                  (measure kind trials first second low high p
-                                   &optional table rounding))
-                              (:copier nil))
-  "How two conditions differ in MEASURE, a KIND of number: :RATE or :MEAN."
-  (measure "" :type string :read-only t)
-  (kind :mean :type (member :rate :mean) :read-only t)
-  (trials 0 :type integer :read-only t)
-  (first nil :read-only t)
-  (second nil :read-only t)
-  (low nil :read-only t)
-  (high nil :read-only t)
-  (p nil :read-only t)
-  (table '() :type list :read-only t)
-  ;; The largest difference in any pair, if rounding explains all; 0 if all pairs are equal; or NIL.
-  (rounding nil :type (or null real) :read-only t)
-  ;; How many pairs are not counted, as one of both has no number.
-  (left-out 0 :type integer)
-  ;; As one of how many tests it counts, and what P is worth as that.
-  (tests 1 :type integer)
-  (adjusted-p nil))
+(addition paired-difference-p)
+(define-record (paired-difference (:conc-name paired-)
+                                  (:constructor make-difference
+                                      (measure kind trials first second low high p
+                                       &optional table rounding)))
+  "How two conditions differ in one thing."
+  (measure "" string
+           "what is compared: success, ticks or the name of a measure, a string" :addition)
+  (kind :mean (member :rate :mean) "which sort of number it is, :RATE or :MEAN")
+  (trials 0 integer "how many pairs of trials are counted" :addition)
+  (first nil t "the rate, from 0 to 1, or mean of the first; NIL of no trials" :addition)
+  (second nil t "the rate, from 0 to 1, or mean of the second; NIL of no trials" :addition)
+  (low nil t
+       "the lower end of the 95 % interval of the difference; NIL of too few trials" :addition)
+  (high nil t
+        "the upper end of the 95 % interval of the difference; NIL of too few trials" :addition)
+  (p nil t
+     "the probability of as large a difference, or larger, if there is none; or NIL" :addition)
+  (table '() list "in how many pairs a rate was so for both, only for the first, only for the
+second, and for neither, a list of four; NIL of a mean, or over several conditions" :addition)
+  (rounding nil (or null real) "the largest difference in any pair, if rounding explains all; 0 if
+all pairs are equal; or NIL")
+  (left-out 0 integer "how many pairs are not counted, as one of both has no number" :writable)
+  (tests 1 integer "as one of how many tests it counts" :writable)
+  (adjusted-p nil t :writable :addition))
 
+(addition paired-estimate)
 (defun paired-estimate (difference)
   "Return by how much the first rate or mean of DIFFERENCE is above the second, or NIL."
   (and (paired-first difference)
        (number-less (paired-first difference) (paired-second difference))))
 
-(addition paired-difference-p paired-measure paired-trials paired-first paired-second
-          paired-estimate paired-low paired-high paired-p paired-adjusted-p paired-table)
-(document-functions
-  paired-difference-p "True of how two conditions differ in one thing."
-  paired-measure "Return what is compared: success, ticks or the name of a measure, a string."
-  paired-trials "Return how many pairs of trials are counted."
-  paired-first "Return the rate, from 0 to 1, or mean of the first; NIL of no trials."
-  paired-second "Return the rate, from 0 to 1, or mean of the second; NIL of no trials."
-  paired-low "Return the lower end of the 95 % interval of the difference; NIL of too few trials."
-  paired-high "Return the upper end of the 95 % interval of the difference; NIL of too few trials."
-  paired-p "Return the probability of as large a difference, or larger, if there is none; or NIL."
-  paired-adjusted-p "Return PAIRED-P as it counts among all tests of the comparison (Holm), or NIL.
-Those over several conditions, and those of single ones, count apart."
-  paired-table "Return, of a rate, in how many pairs it was so for both, only for the first, only
-for the second, and for neither, a list of four; of a mean, or over several conditions, NIL.")
+(setf (documentation 'paired-adjusted-p 'function)
+      "Return PAIRED-P as it counts among all tests of the comparison (Holm), or NIL. Those over
+several conditions, and those of single ones, count apart.")
 
 (defmethod print-object ((difference paired-difference) stream)
   (print-unreadable-object (difference stream)

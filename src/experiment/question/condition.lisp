@@ -2,35 +2,27 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(condition-name))
-
 ;;; What varies is a factor: a parameter, a variable of the experiment's forms, the thinking mode,
 ;;; or the robots, and with them the world. A condition gives each factor a value. Conditions are
 ;;; all combinations of the factors' values, or a list of named cases, or each case with each
 ;;; combination. What a design samples varies together: its factors are one axis. An axis is a list
 ;;; (names choices): the names of factors that vary together, and lists of settings (name value).
 
-(defstruct (trial-condition (:conc-name condition-) (:constructor %make-condition) (:copier nil))
+(define-record (trial-condition (:conc-name condition-) (:constructor %make-condition))
   "What the trials of one condition have in common."
-  ;; What it is called, and how its values stand in a table.
-  (name "" :type string)
-  (texts '() :type list)
-  ;; Lists (factor-name value).
-  (settings '() :type list)
-  (robots '() :type list)
-  (thinking :free)
-  ;; The values of all parameters, and those of the variables of the experiment's forms, in order.
-  (parameters #() :type simple-vector)
-  (arguments '() :type list)
-  ;; What decides its trials, as far as that has been looked up.
-  (fingerprint nil :type (or null string))
-  ;; Lists (symbol value): users' special variables that its trials can reach, and their values.
-  (variables '() :type list)
-  ;; Parts, as of a fingerprint, for what these hold weakly: the keys of a table.
-  (weak-parts (make-hash-table :test 'equal) :type hash-table))
-
-(document-functions
-  condition-name "Return what the condition is called, a string.")
+  (name "" string "what the condition is called, a string" :writable :export)
+  (texts '() list "how its values stand in a table" :writable)
+  (settings '() list "lists (factor-name value)" :writable)
+  (robots '() list :writable)
+  (thinking :free t :writable)
+  (parameters #() simple-vector "the values of all parameters" :writable)
+  (arguments '() list "the values of the variables of the experiment's forms, in order" :writable)
+  (fingerprint nil (or null string)
+               "what decides its trials, as far as that has been looked up" :writable)
+  (variables '() list "lists (symbol value): users' special variables that its trials can reach, and
+their values" :writable)
+  (weak-parts (make-hash-table :test 'equal) hash-table "parts, as of a fingerprint, for what these
+hold weakly: the keys of a table" :writable))
 
 (defmethod print-object ((condition trial-condition) stream)
   (print-unreadable-object (condition stream)

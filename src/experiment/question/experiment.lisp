@@ -2,47 +2,34 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(experiment-package experiment-limit experiment-documentation trial-seed))
+(export '(trial-seed))
 
-(defstruct (experiment (:constructor %make-experiment) (:copier nil))
+(addition experiment-p)
+(define-record (experiment (:constructor %make-experiment))
   "A question: what is done in a trial, under which conditions, and what is measured."
-  (name nil :type symbol)
-  (documentation nil :type (or null string))
-  (package *package* :type package)
-  (robots '() :type list)
-  (thinking :free)
-  (axes '() :type list)
-  ;; Lists (name settings), where settings are lists (factor-name value).
-  (cases '() :type list)
-  (conditions '() :type list)
-  (trials 100 :type (integer 1))
-  (seed 0 :type integer)
-  (limit 100000 :type (integer 1))
-  ;; How many seconds a trial may take, or NIL.
-  (time-limit nil :type (or null real))
-  ;; Functions of the variables' values, or NIL.
-  (run nil :type (or null function))
-  (until nil :type (or null function))
-  (success nil :type (or null function))
-  ;; Lists (name function): what is measured at the end of a trial, and from tick to tick.
-  (measures '() :type list)
-  (series '() :type list)
-  (variables '() :type list)
-  ;; All of its text, and what of it decides a trial.
-  (form '() :type list)
-  (deciding '() :type list)
-  ;; What came of it when it was run last in this Lisp, or NIL.
-  (results nil))
-
-(addition experiment-p experiment-name experiment-conditions experiment-trials)
-(document-functions
-  experiment-p "True of an experiment."
-  experiment-name "Return the symbol that the experiment is called."
-  experiment-conditions "Return a list of the experiment's conditions."
-  experiment-trials "Return how many trials of each condition there are unless somebody says."
-  experiment-documentation "Return what the experiment asks, a string, or NIL."
-  experiment-limit "Return for how many ticks a trial may go on."
-  experiment-package "Return the package in which the experiment was written.")
+  (name nil symbol "the symbol that the experiment is called" :writable :addition)
+  (documentation nil (or null string)
+                 "what the experiment asks, a string, or NIL" :writable :export)
+  (package *package* package "the package in which the experiment was written" :writable :export)
+  (robots '() list :writable)
+  (thinking :free t :writable)
+  (axes '() list :writable)
+  (cases '() list :writable)
+  (conditions '() list "a list of the experiment's conditions" :writable :addition)
+  (trials 100 (integer 1)
+          "how many trials of each condition there are unless somebody says" :writable :addition)
+  (seed 0 integer :writable)
+  (limit 100000 (integer 1) "for how many ticks a trial may go on" :writable :export)
+  (time-limit nil (or null real) "how many seconds a trial may take, or NIL" :writable)
+  (run nil (or null function) "a function of the variables' values, or NIL" :writable)
+  (until nil (or null function) "a function of the variables' values, or NIL" :writable)
+  (success nil (or null function) "a function of the variables' values, or NIL" :writable)
+  (measures '() list "what is measured at the end of a trial, lists (name function)" :writable)
+  (series '() list "what is measured from tick to tick, lists (name function)" :writable)
+  (variables '() list :writable)
+  (form '() list "all of its text" :writable)
+  (deciding '() list "what of it decides a trial" :writable)
+  (results nil t "what came of it when it was run last in this Lisp, or NIL" :writable))
 
 (defmethod print-object ((experiment experiment) stream)
   (print-unreadable-object (experiment stream :type t)

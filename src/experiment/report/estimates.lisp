@@ -6,32 +6,23 @@
 ;;; their mean: what else there is besides is left out, and counted. Else it is texts. This goes by
 ;;; all conditions together, so that the same is said of each. :NONE was not measured.
 
-(defstruct (estimate (:constructor make-estimate
-                         (name kind count &key value low high (left-out 0) texts))
-                     (:copier nil))
-  "What COUNT values of NAME come to, a KIND: :RATE, :MEAN, :MEDIAN, :TEXTS, or :NOTHING."
-  (name "" :type string :read-only t)
-  (kind :nothing :type (member :rate :mean :median :texts :nothing) :read-only t)
-  (count 0 :type integer :read-only t)
-  (value nil :type (or null real) :read-only t)
-  (low nil :type (or null real) :read-only t)
-  (high nil :type (or null real) :read-only t)
-  (left-out 0 :type integer :read-only t)
-  (texts '() :type list :read-only t))
-
-(addition estimate-p estimate-name estimate-kind estimate-count estimate-value estimate-low
-          estimate-high estimate-left-out estimate-texts)
-(document-functions
-  estimate-p "True of what a column of the table comes to under one condition."
-  estimate-name "Return what was measured, a string: success, ticks, or the name of a measure."
-  estimate-kind "Return :RATE of what was always true or false, :MEAN of numbers, :MEDIAN of ticks,
-:TEXTS of all else, and :NOTHING of what was never measured, under any condition."
-  estimate-count "Return how many trials it was measured in; of ticks, how many succeeded."
-  estimate-value "Return the rate, from 0 to 1, the mean or the median; NIL of none, and of texts."
-  estimate-low "Return the low bound of the interval; NIL if there are too few values."
-  estimate-high "Return the high bound of the interval; NIL if there are too few values."
-  estimate-left-out "Return how many values beside numbers are no numbers, and left out."
-  estimate-texts "Return an alist from texts to how often there are such, commonest first.")
+(addition estimate-p)
+(define-record (estimate (:constructor make-estimate
+                             (name kind count &key value low high (left-out 0) texts)))
+  "What a column of the table comes to under one condition."
+  (name "" string "what was measured, a string: success, ticks, or the name of a measure" :addition)
+  (kind :nothing (member :rate :mean :median :texts :nothing) ":RATE of what was always true or
+false, :MEAN of numbers, :MEDIAN of ticks, :TEXTS of all else, and :NOTHING of what was never
+measured, under any condition" :addition)
+  (count 0 integer "how many trials it was measured in; of ticks, how many succeeded" :addition)
+  (value nil (or null real)
+         "the rate, from 0 to 1, the mean or the median; NIL of none, and of texts" :addition)
+  (low nil (or null real)
+       "the low bound of the interval; NIL if there are too few values" :addition)
+  (high nil (or null real)
+        "the high bound of the interval; NIL if there are too few values" :addition)
+  (left-out 0 integer "how many values beside numbers are no numbers, and left out" :addition)
+  (texts '() list "an alist from texts to how often there are such, commonest first" :addition))
 
 (defmethod print-object ((estimate estimate) stream)
   (print-unreadable-object (estimate stream)

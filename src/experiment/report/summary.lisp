@@ -5,38 +5,22 @@
 ;;; An error in a trial's own code counts as no success. Where trials were added until intervals
 ;;; were narrow, all intervals of a condition have the confidence of the look that it stopped at.
 
-(defstruct (summary (:copier nil))
-  "What came of the trials of one condition."
-  (condition "" :type string :read-only t)
-  (texts '() :type list :read-only t)
-  (trials 0 :type integer :read-only t)
-  (failures 0 :type integer :read-only t)
-  (limits 0 :type integer :read-only t)
-  (errors 0 :type integer :read-only t)
-  (timeouts 0 :type integer :read-only t)
-  (confidence .95d0 :type double-float :read-only t)
-  (success nil :type estimate :read-only t)
-  (ticks nil :type estimate :read-only t)
-  (measures '() :type list :read-only t)
-  (reasons '() :type list :read-only t))
-
-(addition summary-p summary-condition summary-texts summary-trials summary-failures summary-limits
-          summary-errors summary-confidence summary-success summary-ticks summary-measures
-          summary-reasons)
-(document-functions
-  summary-p "True of what SUMMARIZE-RESULTS says of a condition."
-  summary-condition "Return what the condition is called, a string."
-  summary-texts "Return the values of what varies, strings as they stand in the table."
-  summary-trials "Return how many trials there are."
-  summary-failures "Return how many trials failed."
-  summary-limits "Return how many trials came to the limit of ticks."
-  summary-errors "Return how many trials broke off with an error."
-  summary-confidence "Return which confidence the intervals have, .95 as a rule."
-  summary-success "Return the estimate of how often trials succeed."
-  summary-ticks "Return the estimate of how many ticks those trials take that succeed."
-  summary-measures "Return a list of the estimates of what was measured, in the table's order."
-  summary-reasons "Return an alist from the reasons of failure to how often each was, commonest
-first.")
+(addition summary-p)
+(define-record summary
+  "What came of the trials of one condition, as SUMMARIZE-RESULTS says it."
+  (condition "" string "what the condition is called, a string" :addition)
+  (texts '() list "the values of what varies, strings as they stand in the table" :addition)
+  (trials 0 integer "how many trials there are" :addition)
+  (failures 0 integer "how many trials failed" :addition)
+  (limits 0 integer "how many trials came to the limit of ticks" :addition)
+  (errors 0 integer "how many trials broke off with an error" :addition)
+  (timeouts 0 integer "how many trials took too long by the clock")
+  (confidence .95d0 double-float "which confidence the intervals have, .95 as a rule" :addition)
+  (success nil estimate "the estimate of how often trials succeed" :addition)
+  (ticks nil estimate "the estimate of how many ticks those trials take that succeed" :addition)
+  (measures '() list "a list of the estimates of what was measured, in the table's order" :addition)
+  (reasons '() list
+           "an alist from the reasons of failure to how often each was, commonest first" :addition))
 
 (defmethod print-object ((summary summary) stream)
   (print-unreadable-object (summary stream)

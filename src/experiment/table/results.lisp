@@ -5,53 +5,38 @@
 ;;; Text becomes what it stands for: numbers, T and NIL, :NONE where nothing was measured, and else
 ;;; strings, of which equal ones are the same.
 
-(defstruct (sample (:constructor make-sample (experiment fingerprint condition texts))
-                   (:copier nil))
+(addition sample-p)
+(define-record (sample (:constructor make-sample (experiment fingerprint condition texts)))
   "What came of the trials of one condition, in order of their numbers: vectors of equal length."
-  (experiment "" :type string :read-only t)
-  (fingerprint "" :type string :read-only t)
-  (condition "" :type string :read-only t)
-  (texts '() :type list :read-only t)
-  (seeds (column) :read-only t)
-  (trials (column) :read-only t)
-  (outcomes (column) :read-only t)
-  (reasons (column) :read-only t)
-  (ticks (column) :read-only t)
-  ;; A list of a vector for each measure.
-  (measures '() :type list)
-  ;; Integers, or NIL; trials whose digests are equal have been the same run.
-  (digests (column) :read-only t)
-  (errors (column) :read-only t))
+  (experiment "" string "what the experiment is called, a string" :addition)
+  (fingerprint "" string)
+  (condition "" string "what the condition is called, a string" :addition)
+  (texts '() list "the values of what varies, strings as they stand in the table" :addition)
+  (seeds (column) t)
+  (trials (column) t
+          "a vector of the numbers of the trials; the other vectors are in its order" :addition)
+  (outcomes (column) t
+            "a vector of \"success\", \"failure\", \"limit\", \"error\" and \"timeout\"" :addition)
+  (reasons (column) t "a vector of strings that say why trials failed" :addition)
+  (ticks (column) t
+         "a vector of the ticks that passed in each trial; :NONE where its time was up" :addition)
+  (measures '() list "a list of a vector for each measure" :writable)
+  (digests (column) t
+           "a vector of integers, or NIL; trials whose digests are equal have been the same run")
+  (errors (column) t
+          "a vector of what errors there were, strings; \"\" where there was none" :addition))
 
-(defstruct (results (:constructor %make-results (columns)) (:copier nil))
+(addition results-p)
+(define-record (results (:constructor %make-results (columns)))
   "What came of an experiment: a sample for each condition, in order."
-  (columns '() :type list :read-only t)
-  (samples '() :type list)
-  ;; Where the table is, or NIL if it has not been kept.
-  (directory nil :type (or null pathname))
-  ;; How wide intervals were to be, if trials were added until they were so narrow.
-  (until nil :type (or null real))
-  ;; The names of the conditions that the experiment has now; NIL if that is not known.
-  (conditions '() :type list))
-
-(addition results-p results-samples results-directory
-          sample-p sample-experiment sample-condition sample-texts sample-trials
-          sample-outcomes sample-reasons sample-ticks sample-errors)
-(document-functions
-  results-p "True of what came of an experiment."
-  results-samples "Return a list of what came of the trials of each condition."
-  results-directory "Return the path of the directory where the table is, or NIL."
-  sample-p "True of what came of the trials of one condition."
-  sample-experiment "Return what the experiment is called, a string."
-  sample-condition "Return what the condition is called, a string."
-  sample-texts "Return the values of what varies, strings as they stand in the table."
-  sample-trials "Return a vector of the numbers of the trials; the other vectors are in its order."
-  sample-outcomes "Return a vector of \"success\", \"failure\", \"limit\", \"error\" and
-\"timeout\"."
-  sample-reasons "Return a vector of strings that say why trials failed."
-  sample-ticks "Return a vector of the ticks that passed in each trial; :NONE where its time
-was up."
-  sample-errors "Return a vector of what errors there were, strings; \"\" where there was none.")
+  (columns '() list)
+  (samples '() list "a list of what came of the trials of each condition" :writable :addition)
+  (directory nil (or null pathname)
+             "the path of the directory where the table is, or NIL" :writable :addition)
+  (until nil (or null real) "how wide intervals were to be, if trials were added until they were so
+narrow; or NIL" :writable)
+  (conditions '() list "the names of the conditions that the experiment has now; NIL if that is not
+known" :writable))
 
 (defun column ()
   (make-array 16 :adjustable t :fill-pointer 0))

@@ -2,36 +2,24 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(result-trial result-seed result-outcome result-reason result-ticks result-digest
-          result-error))
-
 ;;; An outcome is "success", "failure", "limit" (no more ticks were left), "error" (the trial's
 ;;; own code broke off) or "timeout" (it took too long by the clock). A failure has a reason, a word
 ;;; or two that others may share.
 
-(defstruct (result (:constructor make-result (condition trial seed)) (:copier nil))
+(define-record (result (:constructor make-result (condition trial seed)))
   "What came of a trial."
-  (condition nil :type trial-condition :read-only t)
-  (trial 0 :type integer :read-only t)
-  (seed 0 :type integer :read-only t)
-  (outcome "error" :type string)
-  (reason "" :type string)
-  (ticks 0 :type (or null integer))
-  (measures '() :type list)
-  ;; Lists (tick text...), what was recorded from tick to tick.
-  (series '() :type list)
-  (digest nil :type (or null integer))
-  (error "" :type string))
-
-(document-functions
-  result-trial "Return the number of the trial."
-  result-seed "Return the seed of the trial."
-  result-outcome "Return \"success\", \"failure\", \"limit\", \"error\" or
-\"timeout\"."
-  result-reason "Return why the trial failed, a string."
-  result-ticks "Return how many ticks passed, or NIL if the trial's time was up."
-  result-digest "Return the digest of the state at the end, or NIL."
-  result-error "Return what error there was, a string; \"\" if none.")
+  (condition nil trial-condition)
+  (trial 0 integer "the number of the trial" :export)
+  (seed 0 integer "the seed of the trial" :export)
+  (outcome "error" string
+           "\"success\", \"failure\", \"limit\", \"error\" or \"timeout\"" :writable :export)
+  (reason "" string "why the trial failed, a string" :writable :export)
+  (ticks 0 (or null integer)
+         "how many ticks passed, or NIL if the trial's time was up" :writable :export)
+  (measures '() list :writable)
+  (series '() list "what was recorded from tick to tick, lists (tick text...)" :writable)
+  (digest nil (or null integer) "the digest of the state at the end, or NIL" :writable :export)
+  (error "" string "what error there was, a string; \"\" if none" :writable :export))
 
 (defparameter *plan-states* '(:succeeded :failed :evaporated :deadlock :limit :stopped)
   "What RUN-PLAN returns as its second value.")
