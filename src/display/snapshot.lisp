@@ -2,92 +2,103 @@
 
 (in-package :ars-magna.display)
 
-(export '(snapshot take-snapshot snapshot-of snapshot-tick snapshot-map snapshot-things
-          snapshot-robots snapshot-robot thing-image robot-image robot-image-name robot-image-x
-          robot-image-y robot-image-designators thing-image-location camera-image
-          camera-image-index hand-image hand-image-index bin-image bin-image-index
-          designator-image in-part shown-part thing-image-thing thing-image-attributes
-          robot-image-angle robot-image-cameras robot-image-hands robot-image-bins
-          camera-image-track hand-image-contents hand-image-location bin-image-closed-p
-          bin-image-contents designator-image-number designator-image-denotation snapshot-part
-          thing-image-x thing-image-y))
+(export '(snapshot take-snapshot snapshot-of snapshot-robot thing-image robot-image camera-image
+          hand-image bin-image designator-image in-part shown-part))
 
 ;;; A snapshot is made where the world stands still, and never changes; whoever draws, in whatever
 ;;; thread, draws from one. An image is what it knows of a thing, a robot or a part. The image of a
 ;;; thing that has not changed since the snapshot before is the same object.
 
-(defmacro define-image (name documentation &rest slots)
-  "Define NAME as a structure with SLOTS, (name default), that are never changed."
-  `(defstruct (,name (:copier nil))
-     ,documentation
-     ,@(loop for (slot default) in slots collect `(,slot ,default :read-only t))))
+(define-record snapshot
+  "What a world looks like at one moment."
+  (tick 0 t "the tick at which the snapshot was taken" :export)
+  (map nil t "the map of the world in the snapshot" :export)
+  (things #() t "a vector of the images of the things on the floor, by serial number" :export)
+  (robots '() t "a list of the images of the robots" :export)
+  (part nil t
+        "what is to be shown of the map, (left top right bottom) in cells, or NIL for all" :export))
 
-(define-image snapshot "What a world looks like at one moment; PART is what is to be shown of its
-map, a list (left top right bottom) in cells, or NIL for all."
-  (tick 0) (map nil) (things #()) (robots '()) (part nil))
+(define-record thing-image
+  "What a snapshot knows of a thing."
+  (thing nil t "the thing itself" :export)
+  (x 0d0 t "the thing's x coordinate, in metres" :export)
+  (y 0d0 t "the thing's y coordinate, in metres" :export)
+  (location nil t "in words what the thing is in, as `in hand 0 of ROBBIE', or NIL" :export)
+  (attributes '() t "a list (name value) for each attribute of the thing" :export)
+  (color 0 t "the colour of the display")
+  (size 0d0 t)
+  (obsmove-p nil t)
+  (obsview-p nil t)
+  (container-p nil t)
+  (moving-p nil t "the thing has kickers")
+  (draw-function nil t))
 
-(define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display.
-LOCATION says in words what it is in, or is NIL. It is MOVING-P if it has kickers."
-  (thing nil) (x 0d0) (y 0d0) (location nil) (attributes '()) (color 0) (size 0d0)
-  (obsmove-p nil) (obsview-p nil) (container-p nil) (moving-p nil) (draw-function nil))
+(define-record robot-image
+  "What a snapshot knows of a robot."
+  (name nil t "the symbol that the robot is called" :export)
+  (position 0 t "the robot's position among those of its world, which decides what it looks like")
+  (x 0d0 t "the robot's x coordinate, in metres" :export)
+  (y 0d0 t "the robot's y coordinate, in metres" :export)
+  (angle 0d0 t "the robot's heading, in radians" :export)
+  (speed 0d0 t)
+  (place nil t)
+  (under-way nil t)
+  (interruption nil t)
+  (cameras '() t "a list of the images of the robot's cameras" :export)
+  (hands '() t "a list of the images of the robot's hands" :export)
+  (bins '() t "a list of the images of the robot's storage bins" :export)
+  (designators '() t "a list of the images of the robot's designators, by number" :export)
+  (odometer nil t)
+  (trail '() t)
+  (planned-way '() t)
+  (notes '() t "what the :note of layers returned, by their names"))
 
-(define-image robot-image "What a snapshot knows of a robot, which is at POSITION among those of its
-world: that decides what it looks like. NOTES has by the names of layers what their :note returned."
-  (name nil) (position 0) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil)
-  (under-way nil) (interruption nil)
-  (cameras '()) (hands '()) (bins '())
-  (designators '()) (odometer nil) (trail '()) (planned-way '()) (notes '()))
+(define-record camera-image
+  "What a snapshot knows of a camera."
+  (index 0 t "the number of the camera" :export)
+  (angle 0d0 t "the angle of the camera relative to the robot, in radians")
+  (field-of-view 1d0 t)
+  (view '() t "the camera's last view")
+  (view-age 0 t "how many ticks ago that was taken")
+  (track nil t "the image of the designator that the camera tracks, or NIL" :export)
+  (location nil t)
+  (look nil t))
 
-(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. Its
-last VIEW was taken VIEW-AGE ticks ago."
-  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (view-age 0) (track nil)
-  (location nil) (look nil))
+(define-record hand-image
+  "What a snapshot knows of a hand."
+  (index 0 t "the number of the hand" :export)
+  (strength 0d0 t)
+  (contents nil t "the image of the thing that the hand holds, or NIL" :export)
+  (location nil t "what the hand is inside of: the image of a thing, a string, or NIL" :export))
 
-(define-image hand-image "What a snapshot knows of a hand."
-  (index 0) (strength 0d0) (contents nil) (location nil))
+(define-record bin-image
+  "What a snapshot knows of a storage bin."
+  (index 0 t "the number of the storage bin" :export)
+  (capacity 0d0 t)
+  (closed-p nil t "the storage bin is closed" :export)
+  (contents '() t "a list of the images of the things in the storage bin" :export))
 
-(define-image bin-image "What a snapshot knows of a storage bin."
-  (index 0) (capacity 0d0) (closed-p nil) (contents '()))
+(define-record designator-image
+  "What a snapshot knows of a designator."
+  (number 0 t "the number of the designator" :export)
+  (type nil t)
+  (angle 0d0 t)
+  (distance 0d0 t)
+  (denotation nil t
+              "the image of the thing that it denotes, or the name of a place type, or NIL" :export)
+  (x nil t "where the denotation is, the x coordinate in metres")
+  (y nil t "where the denotation is, the y coordinate in metres"))
 
-(define-image designator-image "What a snapshot knows of a designator. DENOTATION is the image of a
-thing, the name of a place type, or NIL if the designator is false; X and Y are where that is."
-  (number 0) (type nil) (angle 0d0) (distance 0d0) (denotation nil) (x nil) (y nil))
-
-(define-image odometer-image "What a snapshot knows of an odometer: where, seen from outside, it
-puts the robot, and how uncertain it is."
-  (x 0d0) (y 0d0) (heading 0d0) (width 0d0) (height 0d0) (axis 0d0) (spread 0d0))
-
-(document-functions
-  snapshot-tick "Return the tick at which the snapshot was taken."
-  snapshot-map "Return the map of the world in the snapshot."
-  snapshot-part
-  "Return what is to be shown of the map, (left top right bottom) in cells, or NIL for all."
-  snapshot-things "Return a vector of the images of the things on the floor, by serial number."
-  snapshot-robots "Return a list of the images of the robots."
-  robot-image-name "Return the symbol that the robot is called."
-  robot-image-x "Return the robot's x coordinate, in metres."
-  robot-image-y "Return the robot's y coordinate, in metres."
-  robot-image-designators "Return a list of the images of the robot's designators, by number."
-  thing-image-thing "Return the thing itself."
-  thing-image-x "Return the thing's x coordinate, in metres."
-  thing-image-y "Return the thing's y coordinate, in metres."
-  thing-image-location "Return in words what the thing is in, as `in hand 0 of ROBBIE', or NIL."
-  thing-image-attributes "Return a list (name value) for each attribute of the thing."
-  robot-image-angle "Return the robot's heading, in radians."
-  robot-image-cameras "Return a list of the images of the robot's cameras."
-  robot-image-hands "Return a list of the images of the robot's hands."
-  robot-image-bins "Return a list of the images of the robot's storage bins."
-  camera-image-index "Return the number of the camera."
-  camera-image-track "Return the image of the designator that the camera tracks, or NIL."
-  hand-image-index "Return the number of the hand."
-  hand-image-contents "Return the image of the thing that the hand holds, or NIL."
-  hand-image-location "Return what the hand is inside of: the image of a thing, a string, or NIL."
-  bin-image-contents "Return a list of the images of the things in the storage bin."
-  bin-image-index "Return the number of the storage bin."
-  bin-image-closed-p "True if the storage bin is closed."
-  designator-image-number "Return the number of the designator."
-  designator-image-denotation
-  "Return the image of the thing that it denotes, or the name of a place type, or NIL.")
+(define-record odometer-image
+  "What a snapshot knows of an odometer: where, seen from outside, it puts the robot, and how
+uncertain it is."
+  (x 0d0 t)
+  (y 0d0 t)
+  (heading 0d0 t)
+  (width 0d0 t)
+  (height 0d0 t)
+  (axis 0d0 t)
+  (spread 0d0 t))
 
 ;;; Things.
 

@@ -14,7 +14,7 @@
   (robots '() list :writable)
   (thinking :free t :writable)
   (axes '() list :writable)
-  (cases '() list :writable)
+  (cases '() list "lists (name settings), settings are lists (factor-name value)" :writable)
   (conditions '() list "a list of the experiment's conditions" :writable :addition)
   (trials 100 (integer 1)
           "how many trials of each condition there are unless somebody says" :writable :addition)
