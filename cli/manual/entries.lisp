@@ -2,24 +2,18 @@
 
 (in-package :ars-magna.manual)
 
-(export '(entry-name entry-chapter chapter-title))
+(export '(chapter-title))
 
-(defstruct (entry (:copier nil))
-  "What the reference says of NAME, as people write it. CHAPTER is a key of *CHAPTERS*, SECTION the
-heading that it is listed under there. USE is how it is written, FACTS lists (label text), TEXT what
-it is, FILE where it is defined."
-  (name "" :type string :read-only t)
-  (chapter nil :type keyword :read-only t)
-  (section "" :type string :read-only t)
-  (symbol nil :type symbol :read-only t)
-  (use "" :type string :read-only t)
-  (facts '() :type list :read-only t)
-  (text "" :type string :read-only t)
-  (file nil :type (or null string) :read-only t))
-
-(document-functions
-  entry-name "Return what the entry is about, as people write it."
-  entry-chapter "Return the key of the chapter that the entry is in.")
+(define-record entry
+  "What the reference says of a name."
+  (name "" string "what the entry is about, as people write it" :export)
+  (chapter nil keyword "the key of the chapter that the entry is in" :export)
+  (section "" string "the heading that it is listed under there")
+  (symbol nil symbol)
+  (use "" string "how it is written")
+  (facts '() list "lists (label text)")
+  (text "" string "what it is")
+  (file nil (or null string) "the file where it is defined, or NIL"))
 
 (defparameter *chapters*
   '((:commands "Commands" "What robots, cameras, hands and storage bins can be told to do.")

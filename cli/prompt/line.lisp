@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(line line-name line-parameters line-family line-action usage))
+(export '(line usage))
 
 ;;; The prompt's own commands are defined here and in the files that follow, each once, by
 ;;; DEFINE-LINE; the robot's come from the command layer (see robot-lines.lisp). HELP, the menus and
@@ -18,22 +18,15 @@ characters up to the next blank: :TOKEN, or what they stand for, such as :FILE (
   (text "" :type string :read-only t)
   (optional-p nil :type boolean :read-only t))
 
-(defstruct (line (:copier nil))
-  "A line command: ACTION is called with the session and the arguments, as read."
-  (name "" :type string :read-only t)
-  ;; The full name of the function that it stands for, or NIL.
-  (full-name nil :type (or null string) :read-only t)
-  (family nil :type symbol :read-only t)
-  (parameters '() :type list :read-only t)
-  (sentence "" :type string :read-only t)
-  (details '() :type list :read-only t)
-  (action nil :type function :read-only t))
-
-(document-functions
-  line-name "Return what the line command is called, in upper case."
-  line-parameters "Return the list of the line command's arguments."
-  line-family "Return where HELP lists the line command, a keyword."
-  line-action "Return the function of the session and the arguments that does it.")
+(define-record line
+  "A line command."
+  (name "" string "what the line command is called, in upper case" :export)
+  (full-name nil (or null string) "the full name of the function that it stands for, or NIL")
+  (family nil symbol "where HELP lists the line command, a keyword" :export)
+  (parameters '() list "the list of the line command's arguments" :export)
+  (sentence "" string)
+  (details '() list)
+  (action nil function "the function of the session and the arguments that does it" :export))
 
 (defmethod print-object ((line line) stream)
   (print-unreadable-object (line stream :type t) (write-string (line-name line) stream)))

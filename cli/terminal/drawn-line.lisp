@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(drawn-line-label drawn-line-text drawn-line-point drawn-line-shown rows-to-show))
+(export '(rows-to-show))
 
 ;;; The line stands below all that is written meanwhile: it is wiped out before something is
 ;;; written, and drawn again after that. It has as many rows as the window is wide for; of more
@@ -11,24 +11,15 @@
 ;;; may push the first of them out at its top: so the line is drawn again when the window has
 ;;; changed.
 
-(defstruct (drawn-line (:copier nil))
-  "A line that is being typed. It stands on the screen if SHOWN is true: as the list of label, text
-and point that it was drawn from."
-  ;; The prompt before the text.
-  (label "" :type string)
-  (text "" :type string)
-  ;; Where in the text the cursor is.
-  (point 0 :type (integer 0))
-  (shown nil :type list)
-  ;; The column of the cursor when it was drawn last, and how many the window had.
-  (column 0 :type (integer 0))
-  (columns nil :type (or null (integer 0))))
-
-(document-functions
-  drawn-line-label "Return the prompt that stands before the line. Can be set."
-  drawn-line-text "Return what has been typed of the line. Can be set."
-  drawn-line-point "Return where in the text of the line the cursor is. Can be set."
-  drawn-line-shown "Return what the line was drawn from, a list, or NIL. Can be set.")
+(define-record drawn-line
+  "A line that is being typed. It stands on the screen if SHOWN is true."
+  (label "" string "the prompt that stands before the line. Can be set" :writable :export)
+  (text "" string "what has been typed of the line. Can be set" :writable :export)
+  (point 0 (integer 0) "where in the text of the line the cursor is. Can be set" :writable :export)
+  (shown nil list "what the line was drawn from, a list of label, text and point, or NIL if it is
+not on the screen" :writable :export)
+  (column 0 (integer 0) "the column of the cursor when it was drawn last" :writable)
+  (columns nil (or null (integer 0)) "how many columns the window had then" :writable))
 
 ;;; Rows.
 
