@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.basics)
 
-(export '(document-functions document-restarts all-restarts restart-documentation public addition
-          settable settable-p addition-p public-symbols *marking-p*))
+(export '(document-restarts all-restarts restart-documentation public addition settable
+          settable-p addition-p public-symbols *marking-p*))
 
 ;;; A mark stands directly before the definition of a name: PUBLIC if the name is the manual's,
 ;;; ADDITION if it is ours. The packages that users see, the faces ARS and NISP, collect what is
@@ -79,12 +79,6 @@ what belongs to a run is changed by functions that its journal notes."
   "True if SYMBOL is marked as an addition to the manual."
   (let ((mark (find-mark symbol)))
     (and mark (mark-addition-p mark))))
-
-(defmacro document-functions (&rest names-and-texts)
-  "Give the functions NAMES the documentation TEXTS, alternating: for the readers of structures,
-which have no place of their own for it."
-  `(setf ,@(loop for (name text) on names-and-texts by #'cddr
-                 append `((documentation ',name 'function) ,text))))
 
 ;;; A restart has no place for its documentation in Lisp, so there is one here.
 
