@@ -65,14 +65,14 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
   "Return a new valve called NAME, that nobody owns."
   (%make-valve name))
 
-(addition valve-owner valve-requests valve-losers)
-
+(addition valve-owner)
 (defun valve-owner (valve)
   "Return the task that has VALVE, or NIL; if a part of that has claimed it too, the part."
   (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
   (let ((claims (valve-claims (here valve))))
     (and claims (claim-task (first claims)))))
 
+(addition valve-requests)
 (defun valve-requests (valve)
   "Return the tasks that wait for VALVE, the next to have it first."
   (let ((tasks '()))
@@ -96,6 +96,7 @@ innermost first."
         while claim
         when (member valve (claim-taken claim) :test #'eq) collect claim))
 
+(addition valve-losers)
 (defun valve-losers (valve)
   "Return the tasks from which VALVE was taken and which are to have it back, the next first."
   (let* ((valve (here valve)) (holders (holders valve)))

@@ -40,8 +40,6 @@ the number of the task that a task is part of when it starts" :addition)
   (issue nil issue "the record of the command that an answer is for" :export)
   (error nil t "the error code of an answer, or NIL" :export))
 
-(addition trace-entry-detail)
-
 (defun issue-text (issue)
   (form-text (cons (issue-name issue) (issue-arguments issue))))
 
