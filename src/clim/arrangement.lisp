@@ -9,21 +9,19 @@
 ;;; down beside the transcript, for else there would be room for few of their lines. Nothing here
 ;;; knows CLIM: a part is a name, a place is (name left top width height), in pixels.
 
-(define-constant +title-height+ 17 :documentation "How high titles of displays are, in pixels.")
-(define-constant +menus-height+ 20 :documentation "How high the bar of menus is, in pixels.")
-(define-constant +bar-height+ 26 :documentation "How high the tool bar is, in pixels.")
-(define-constant +strip-height+ 36 :documentation "How high the status strip is, in pixels.")
-(define-constant +prompt-rows+ 2 :documentation "How many rows the place to type in has at least.")
-(define-constant +prompt-height+ 36
-  :documentation "How high the place to type in is with these, in pixels.")
-(define-constant +splitter+ 6 :documentation "How thick splitters are, in pixels.")
-(define-constant +wide+ 1500
-  :documentation "From what width of a window on plans have a column of their own, in pixels.")
+(defconstant +title-height+ 17 "How high titles of displays are, in pixels.")
+(defconstant +menus-height+ 20 "How high the bar of menus is, in pixels.")
+(defconstant +bar-height+ 26 "How high the tool bar is, in pixels.")
+(defconstant +strip-height+ 36 "How high the status strip is, in pixels.")
+(defconstant +prompt-rows+ 2 "How many rows the place to type in has at least.")
+(defconstant +prompt-height+ 36 "How high the place to type in is with these, in pixels.")
+(defconstant +splitter+ 6 "How thick splitters are, in pixels.")
+(defconstant +wide+ 1500
+  "From what width of a window on plans have a column of their own, in pixels.")
 
-(define-constant +low+ 700
-  :documentation "Below what height of a window sections go on beside the transcript, in pixels.")
-(define-constant +edge+ 6
-  :documentation "How far below the top of a section its first line begins, in pixels.")
+(defconstant +low+ 700
+  "Below what height of a window sections go on beside the transcript, in pixels.")
+(defconstant +edge+ 6 "How far below the top of a section its first line begins, in pixels.")
 
 (define-constant +sections+ '(state designators cameras hands bins plan)
   :test #'equal

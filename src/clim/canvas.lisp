@@ -195,7 +195,7 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
         (let ((box (seen-part canvas (shifted canvas left top right bottom))))
           (when box (push (cons subject box) (canvas-subjects canvas))))))))
 
-(define-constant +aim+ 3 :documentation "By how many pixels a click may miss a subject.")
+(defconstant +aim+ 3 "By how many pixels a click may miss a subject.")
 
 (defun subjects-at (subjects x y)
   "Return what was drawn at X, Y, or near it, the smallest first. SUBJECTS are those of a canvas."

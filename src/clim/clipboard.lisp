@@ -7,11 +7,10 @@
 ;;; thread, for each that is held for others until another program copies something. What is long
 ;;; goes in pieces: he who fetches says that he has one by deleting it. X calls that INCR.
 
-(define-constant +piece+ 60000 :documentation "How many octets are handed over in one piece.")
-(define-constant +longest-paste+ 1000000
-  :documentation "How many octets a text that is pasted may have.")
-(define-constant +patience-with-others+ 2
-  :documentation "How long to wait for what another program hands over next, in seconds.")
+(defconstant +piece+ 60000 "How many octets are handed over in one piece.")
+(defconstant +longest-paste+ 1000000 "How many octets a text that is pasted may have.")
+(defconstant +patience-with-others+ 2
+  "How long to wait for what another program hands over next, in seconds.")
 
 (defun connect (port)
   (destructuring-bind (&key host display-id protocol &allow-other-keys)

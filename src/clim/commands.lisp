@@ -27,7 +27,7 @@ in the window."
 (define-window-command (com-pause-or-resume "Pause or go on") (window)
   (if (paused-here-p (window-simulation window)) (com-resume) (com-pause)))
 
-(define-constant +back+ 10 :documentation "How many ticks a step back is.")
+(defconstant +back+ 10 "How many ticks a step back is.")
 
 ;; It goes back some ticks, as the prompt's REWIND does, or to the first that there is.
 ;; Ticks that pass would undo it at once, so they do not, as after a step.

@@ -7,7 +7,7 @@
 ;;; neither { nor |. Nor does it put an accent on the character that follows a dead key. What it
 ;;; calls by name is a key symbol, a number, of X.
 
-(define-constant +altgr+ #x80 :documentation "The bit in the state of X's keyboard for AltGr.")
+(defconstant +altgr+ #x80 "The bit in the state of X's keyboard for AltGr.")
 
 (defun altgr-symbol (symbol-at state)
   "Return the symbol of a key that is pressed with AltGr, by STATE, or NIL if it has none of its
@@ -20,7 +20,7 @@ own. SYMBOL-AT is a function from the place of a symbol in X's list for the key.
          (eql (funcall symbol-at 0) (funcall symbol-at 2))
          (or (and (logtest 1 state) (own 5)) (own 4)))))
 
-(define-constant +euro-symbol+ #x20AC :documentation "X's symbol for the sign of the Euro.")
+(defconstant +euro-symbol+ #x20AC "X's symbol for the sign of the Euro.")
 
 (defun symbol-character (display symbol)
   "Return the character of a SYMBOL of X, or NIL."

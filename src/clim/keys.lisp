@@ -33,7 +33,7 @@
   (let ((shown (line-shown (window-conversation window))))
     (and shown (string/= "" (second shown)))))
 
-(define-constant +arrow-step+ 60 :documentation "How far an arrow moves the view, in pixels.")
+(defconstant +arrow-step+ 60 "How far an arrow moves the view, in pixels.")
 
 (defun arrow (key-name)
   "Return how far the key called KEY-NAME moves the view, in pixels, or NIL if it does not."

@@ -10,8 +10,7 @@
   :test #'equal
   :documentation "In how wide and high a window all is to be seen, in its pixels.")
 
-(define-constant +most-magnified+ 6
-  :documentation "How many of the screen's pixels one of a window's can be across.")
+(defconstant +most-magnified+ 6 "How many of the screen's pixels one of a window's can be across.")
 
 (defun magnification (pane)
   "Return how many of the screen's pixels one of PANE's is across."

@@ -88,8 +88,7 @@ would be cut; remember what was painted where."
 
 ;;; The mouse: see pointing.lisp.
 
-(define-constant +scroll-step+ (* 3 +line-height+)
-  :documentation "How far a turn of the wheel scrolls, in pixels.")
+(defconstant +scroll-step+ (* 3 +line-height+) "How far a turn of the wheel scrolls, in pixels.")
 
 (defgeneric press (pane button x y)
   (:documentation "The mouse's BUTTON, :LEFT, :MIDDLE or :RIGHT, was pressed at X, Y of PANE.")

@@ -8,11 +8,10 @@
 ;;; then, comes again. What looking costs, plans stand still for: so that is a tenth of the time at
 ;;; most.
 
-(define-constant +most-rows+ 300 :documentation "How many tasks or rows of a timeline are shown.")
-(define-constant +longest-trace+ 200000
-  :documentation "From how many entries of a trace on no timeline is made of it by itself.")
-(define-constant +idleness+ 9
-  :documentation "How many times as long as a look took plans are left alone after it.")
+(defconstant +most-rows+ 300 "How many tasks or rows of a timeline are shown.")
+(defconstant +longest-trace+ 200000
+  "From how many entries of a trace on no timeline is made of it by itself.")
+(defconstant +idleness+ 9 "How many times as long as a look took plans are left alone after it.")
 
 (defstruct (plan-look (:constructor make-plan-look ()) (:copier nil))
   "What is known of the plans of SIMULATION. VIEW is what is to be seen, :TREE or :TIMELINE;

@@ -5,7 +5,7 @@
 ;;; What is painted is what the watcher's look at the plans has (plan-look.lisp). A row of switches
 ;;; stays on top; below it the picture scrolls.
 
-(define-constant +plan-head+ 23 :documentation "How high the row of switches is, in pixels.")
+(defconstant +plan-head+ 23 "How high the row of switches is, in pixels.")
 
 (defclass plan-pane (display-pane) ()
   (:documentation "The pane that shows the plans of the run."))

@@ -70,7 +70,7 @@ or was being dragged, has gone."
   (select window subject)
   (describe-to window subject))
 
-(define-constant +shake+ 4 :documentation "By how many pixels the mouse may move in a click.")
+(defconstant +shake+ 4 "By how many pixels the mouse may move in a click.")
 
 (defun beyond-shake-p (x y from-x from-y)
   (> (max (abs (- x from-x)) (abs (- y from-y))) +shake+))

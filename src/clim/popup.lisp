@@ -13,7 +13,7 @@ away then unless STAYS-P. TICK, a function, says whether the row is ticked; NIL 
   (tick nil :type (or null function) :read-only t)
   (stays-p nil :read-only t))
 
-(define-constant +row-height+ 18 :documentation "How high a row is, in pixels.")
+(defconstant +row-height+ 18 "How high a row is, in pixels.")
 
 (defclass popup-pane (display-pane)
   ((rows :initform '() :accessor pane-rows)
@@ -136,8 +136,7 @@ so, a symbol, or the menu, or T."
 ;;; A click on a row may put other rows in the place of these. Who clicks twice, as elsewhere, has
 ;;; not seen those yet.
 
-(define-constant +double-click+ 500
-  :documentation "Within how many milliseconds two clicks are one deed.")
+(defconstant +double-click+ 500 "Within how many milliseconds two clicks are one deed.")
 
 (defmethod clim:handle-event :around ((pane popup-pane) (event clim:pointer-button-press-event))
   (let ((rows (pane-rows pane)) (turned (pane-turned pane)) (time (clim:event-timestamp event)))

@@ -86,7 +86,7 @@ had been; the tick and second from which on the rate is being measured, and that
           ((let ((*simulation* simulation)) (plans)) :waiting)
           (t :idle))))
 
-(define-constant +measure+ 10 :documentation "From how many ticks on a rate is measured.")
+(defconstant +measure+ 10 "From how many ticks on a rate is measured.")
 
 (defun begin-measuring (pulse tick seconds)
   (setf (pulse-tick pulse) tick

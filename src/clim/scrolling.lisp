@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.clim)
 
-(define-constant +scroll-bar+ 10 :documentation "How wide scroll bars are, in pixels.")
+(defconstant +scroll-bar+ 10 "How wide scroll bars are, in pixels.")
 
 (defgeneric scroll-state (pane)
   (:documentation "Return how far down PANE begins in what it shows, how much is in view, and how

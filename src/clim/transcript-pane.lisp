@@ -98,7 +98,7 @@ that is the newest: no line that is no longer kept, and a whole page of them."
     (:grey #x606060))
   "In which colours the transcript shows the inks of a terminal: dark ones, as it is white.")
 
-(define-constant +selection-color+ #xB4D5FE :documentation "What is behind selected text.")
+(defconstant +selection-color+ #xB4D5FE "What is behind selected text.")
 
 (defun column-x (column) (+ 4 (* column +character-width+)))
 

@@ -5,9 +5,8 @@
 ;;; Any thread may say something; lines are kept newest first, the last few thousand of them. Each
 ;;; has a number, counted from the first there was. Lines have colours in them as at a terminal.
 
-(define-constant +transcript-length+ 2000 :documentation "How many lines of a transcript are kept.")
-(define-constant +longest-line+ 4000
-  :documentation "How many characters a line has at most; what goes on is another.")
+(defconstant +transcript-length+ 2000 "How many lines of a transcript are kept.")
+(defconstant +longest-line+ 4000 "How many characters a line has at most; what goes on is another.")
 
 (defstruct (transcript (:constructor make-transcript (news)) (:copier nil))
   "Lines of text, newest first. NEWS is called, with no arguments, when there is more."

@@ -18,10 +18,8 @@
    (following-p :initform nil :accessor pane-following-p))
   (:documentation "A part of the world."))
 
-(define-constant +least-scale+ 1/16
-  :documentation "How many pixels a cell has at least in a window.")
-(define-constant +in-view+ 40
-  :documentation "How many pixels of the map stay in view, however it is moved.")
+(defconstant +least-scale+ 1/16 "How many pixels a cell has at least in a window.")
+(defconstant +in-view+ 40 "How many pixels of the map stay in view, however it is moved.")
 
 (defun window-map (window)
   (snapshot-map (window-snapshot window)))

@@ -10,10 +10,9 @@
 ;;; thing moved at the prompt) calls no observer, nor does a run that pauses; the pacer looks for
 ;;; such things twice a second.
 
-(define-constant +pause+ 0.028
-  :documentation "How long to wait after painting before wanting the next picture, in seconds.")
-(define-constant +patience+ 0.5
-  :documentation "How often to look for changes between ticks, in seconds.")
+(defconstant +pause+ 0.028
+  "How long to wait after painting before wanting the next picture, in seconds.")
+(defconstant +patience+ 0.5 "How often to look for changes between ticks, in seconds.")
 
 (defstruct (watcher (:constructor make-watcher (robot news &optional (gone #'values)))
                     (:copier nil))

@@ -8,10 +8,10 @@
 ;;; line meets the same cells for each. Distances along it are in lengths of its direction. All is
 ;;; inline, with VISIT a known function, so that nothing is called or allocated for a cell.
 
-(define-constant +endless+ 1d100
-  :documentation "A distance that stands for infinity, also when a rounding error multiplies it.")
-(define-constant +no-limit+ 32767
-  :documentation "How many columns and rows a walk crosses at most when nothing else ends it.")
+(defconstant +endless+ 1d100
+  "A distance that stands for infinity, also when a rounding error multiplies it.")
+(defconstant +no-limit+ 32767
+  "How many columns and rows a walk crosses at most when nothing else ends it.")
 
 (deftype grid-size ()
   "How many columns or rows a grid has, or one has to cross."

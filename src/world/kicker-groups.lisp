@@ -128,8 +128,8 @@
 
 ;; What lies far away is read ahead: a move in a large world takes 420 ns then, not 750;
 ;; but what kickers that move nothing never ask for would cost them as much.
-(define-constant +large-group+ 5000
-  :documentation "How many members of a group are more than a processor keeps near itself.")
+(defconstant +large-group+ 5000
+  "How many members of a group are more than a processor keeps near itself.")
 
 (defun read-group-ahead (group end dice)
   "Read what it takes to move the things of those before END in the row of GROUP whose trials will

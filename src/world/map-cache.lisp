@@ -10,9 +10,9 @@
 ;;; while a place type has a :checker, which is code that may look at anything. What is no cache,
 ;;; by its first word, or no file of bytes, or cannot be told is never written to.
 
-(define-constant +cache-magic+ #x4152534D41503031
-  :documentation "ARSMAP01 in ASCII; changes when the file's layout does.")
-(define-constant +cache-header+ 5 :documentation "How many words come before the cells.")
+(defconstant +cache-magic+ #x4152534D41503031
+  "ARSMAP01 in ASCII; changes when the file's layout does.")
+(defconstant +cache-header+ 5 "How many words come before the cells.")
 
 (deftype words () '(simple-array (unsigned-byte 64) (*)))
 

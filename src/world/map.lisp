@@ -12,15 +12,11 @@
 (setf (fdefinition 'map) #'cl:map
       (documentation 'map 'function) "Do as CL:MAP does. (As a type, MAP is a grid world.)")
 
-(define-constant +wall+ 1 :documentation "The flag of a cell filled by a wall.")
-(define-constant +obsmove+ 2
-  :documentation "The flag of a cell where a thing on the floor blocks movement.")
-(define-constant +obsview+ 4
-  :documentation "The flag of a cell where a thing on the floor blocks sight.")
-(define-constant +opaque+ (logior +wall+ +obsview+)
-  :documentation "The flags of a cell where sight ends.")
-(define-constant +occupied+ 8
-  :documentation "The flag of a cell where any thing lies on the floor.")
+(defconstant +wall+ 1 "The flag of a cell filled by a wall.")
+(defconstant +obsmove+ 2 "The flag of a cell where a thing on the floor blocks movement.")
+(defconstant +obsview+ 4 "The flag of a cell where a thing on the floor blocks sight.")
+(defconstant +opaque+ (logior +wall+ +obsview+) "The flags of a cell where sight ends.")
+(defconstant +occupied+ 8 "The flag of a cell where any thing lies on the floor.")
 
 (deftype octets () '(simple-array (unsigned-byte 8) (*)))
 (deftype doubles () '(simple-array double-float (*)))

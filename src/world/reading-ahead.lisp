@@ -8,7 +8,7 @@
 ;;; moves, one for each step of that chain. What they find decides nothing.
 
 ;; The more the better, as each loop ends with waiting, as long as a processor has room for it all.
-(define-constant +batch+ 512 :documentation "For how many moves memory is read at once.")
+(defconstant +batch+ 512 "For how many moves memory is read at once.")
 
 (deftype batch () '(simple-vector #.+batch+))
 (deftype batch-count () '(integer 0 #.+batch+))
