@@ -67,7 +67,7 @@
     :components ((:file "package") (:file "request") (:file "agenda")
                  (:file "interruptions") (:file "custody") (:file "phases") (:file "timeline")
                  (:file "thinking")
-                 (:file "asking") (:file "pacing") (:file "stopping") (:file "hogs")
+                 (:file "asking") (:file "pacing") (:file "stopping")
                  (:file "clock") (:file "schedule") (:file "soundness")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "planned-way")

@@ -167,10 +167,6 @@
           (action (funcall action window) t)
           (key (take-key window key) t))))
 
-(defmethod clim:handle-event ((pane interactor-pane) (event clim:key-press-event))
-  (with-guarded-command ((window-of pane) "That key")
-    (press-in-window (window-of pane) event)))
-
 ;;; CLIM has one place for the keys of all windows; they are to go to the window that has them.
 
 (defun robot-window-of (sheet)
@@ -234,8 +230,4 @@
   (wheel (pane-named (window-of pane) 'transcript) steps x y))
 
 (defmethod click :after ((pane transcript-pane) button x y)
-  (declare (ignore x y))
-  (let ((window (window-of pane)))
-    (type-into (pane-named window 'interactor))
-    (when (eq button :middle)
-      (with-guarded-command (window "Pasting") (paste-text window :primary)))))
+  (click (pane-named (window-of pane) 'interactor) button x y))

@@ -74,7 +74,7 @@
 (defmethod clim:handle-event ((pane display-pane) (event clim:key-press-event))
   (let ((window (window-of pane)))
     (with-guarded-command (window "That key")
-      (if (modified-p event)
+      (if (or (typep pane 'interactor-pane) (modified-p event))
           (press-in-window window event)
           (do-key window (clim:keyboard-event-key-name event)
             (clim:keyboard-event-character event))))))

@@ -40,11 +40,9 @@ where something is counted."
     (extend-line transcript (subseq part (if return (1+ return) 0)))))
 
 (defun add-text (transcript text)
-  (loop for start = 0 then (1+ end)
-        for end = (position #\Newline text :start start)
-        do (add-part transcript (subseq text start end))
-        while end
-        do (begin-line-of transcript)))
+  (loop for (part . more) on (uiop:split-string text :separator '(#\Newline))
+        do (add-part transcript part)
+           (when more (begin-line-of transcript))))
 
 (defun forget-lines (transcript)
   "Keep the newest lines of TRANSCRIPT, if there are many, and say in their first that others went."

@@ -47,17 +47,10 @@ MALFORMED-DEFINITION if that is nothing whole."
 
 ;;; ! and its forms.
 
-(defun split-path (token)
-  "Return the parts of TOKEN between its dots."
-  (loop for start = 0 then (1+ dot)
-        for dot = (position #\. token :start start)
-        collect (subseq token start dot)
-        while dot))
-
 (defun path-form (token)
   "Return the form for !>TOKEN: each slot of the path read from what comes before it."
-  (let ((parts (split-path token)))
-    (when (member "" parts :test #'string=)
+  (let ((parts (uiop:split-string token :separator ".")))
+    (when (or (null parts) (member "" parts :test #'string=))
       (reject-syntax (concatenate 'string "!>" token)
                      "a variable and slots, as in !>robot.cameras"))
     (reduce (lambda (object slot)

@@ -109,13 +109,10 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 
 ;; As reading 81 says.
 (defun claim (agenda event resource)
+  "Let EVENT, or none if it is NIL, be pending on RESOURCE."
   (cond ((null resource))
         ((resource-p resource) (setf (resource-event resource) event))
-        (t (setf (gethash resource (agenda-claims agenda)) event))))
-
-(defun unclaim (agenda resource)
-  (cond ((null resource))
-        ((resource-p resource) (setf (resource-event resource) nil))
+        (event (setf (gethash resource (agenda-claims agenda)) event))
         (t (remhash resource (agenda-claims agenda)))))
 
 ;;; Queueing and cancelling.
@@ -160,7 +157,7 @@ interrupted."
   "Make sure that EVENT, if pending, never runs. No handler is called."
   (when (event-pending-p event)
     (deactivate agenda event)
-    (unclaim agenda (event-resource event))))
+    (claim agenda nil (event-resource event))))
 
 (defun interrupt-event (agenda event)
   "Cancel EVENT and call its interrupt handler."
@@ -175,7 +172,7 @@ interrupted."
   (declare #.*hot* (type agenda agenda) (type event event))
   (deactivate agenda event)
   (let ((resource (event-resource event)))
-    (when resource (unclaim agenda resource)))
+    (when resource (claim agenda nil resource)))
   (funcall (event-function event) event))
 
 (defun run-if-pending (agenda event)

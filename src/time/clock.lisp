@@ -24,8 +24,7 @@
 
 (defun stands-still-p (simulation)
   "True if the live SIMULATION is paused, and passes no ticks that somebody has let it pass."
-  (let ((pacing (timeline-pacing (timeline-of simulation))))
-    (and pacing (held-p pacing))))
+  (if-paced (pacing simulation) (held-p pacing)))
 
 (defun standing-still-p (pacing)
   "True if no tick may pass, as somebody has told PACING to pause or to stop."

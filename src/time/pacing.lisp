@@ -54,15 +54,19 @@ what users' code the thread is in."
   "Return the real time, in seconds since some moment. No result may depend on it."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
+(defmacro if-paced ((pacing object) &body body)
+  "Run BODY with PACING bound to how the run of OBJECT is paced. NIL if it never was."
+  `(let ((,pacing (timeline-pacing (timeline-of ,object))))
+     (when ,pacing ,@body)))
+
 (defun timeline-thread (timeline)
   "Return the thread that paces TIMELINE, or NIL if none does, or it has been told to stop."
-  (let ((pacing (timeline-pacing timeline)))
-    (and pacing (not (pacing-stopping-p pacing)) (pacing-thread pacing))))
+  (if-paced (pacing timeline)
+    (and (not (pacing-stopping-p pacing)) (pacing-thread pacing))))
 
 (defun pacer-p (timeline)
   "True if this thread is the one that paces TIMELINE, or did last."
-  (let ((pacing (timeline-pacing timeline)))
-    (and pacing (eq (current-thread) (pacing-thread pacing)))))
+  (if-paced (pacing timeline) (eq (current-thread) (pacing-thread pacing))))
 
 (addition live-p)
 (defun live-p (&optional (simulation (current-simulation)))
@@ -72,21 +76,18 @@ what users' code the thread is in."
 (addition paused-p)
 (defun paused-p (&optional (simulation (current-simulation)))
   "True if the live SIMULATION has been told to pause."
-  (let ((pacing (timeline-pacing (timeline-of simulation))))
-    (and pacing (pacing-paused-p pacing))))
+  (if-paced (pacing simulation) (pacing-paused-p pacing)))
 
 (defvar *waits-while-paused-p* t
   "True if somebody sits where this thread waits, and may let a run go on that is paused.")
 
 (defun clock-trouble (simulation)
   "Return in words what the live SIMULATION has failed by, if it is paused for that; else NIL."
-  (let ((pacing (timeline-pacing (timeline-of simulation))))
-    (and pacing (pacing-trouble pacing))))
+  (if-paced (pacing simulation) (pacing-trouble pacing)))
 
 (defun pace (simulation)
   "Return the pace of SIMULATION: ticks per second, or :FREE; NIL if it never ran live."
-  (let ((pacing (timeline-pacing (timeline-of simulation))))
-    (and pacing (pacing-rate pacing))))
+  (if-paced (pacing simulation) (pacing-rate pacing)))
 
 ;;; Steering.
 
@@ -101,13 +102,12 @@ what users' code the thread is in."
 (defun steer (simulation paused-p steps)
   "Let SIMULATION be paused if PAUSED-P, but pass STEPS ticks, and wake it. Without effect if it
 never ran live."
-  (let ((pacing (timeline-pacing (timeline-of simulation))))
-    (when pacing
-      (setf (pacing-steps pacing) steps
-            (pacing-paused-p pacing) paused-p
-            (pacing-trouble pacing) nil)
-      (wake pacing))
-    (values)))
+  (if-paced (pacing simulation)
+    (setf (pacing-steps pacing) steps
+          (pacing-paused-p pacing) paused-p
+          (pacing-trouble pacing) nil)
+    (wake pacing))
+  (values))
 
 (addition pause)
 (defun pause (&optional (simulation (current-simulation)))
@@ -128,8 +128,7 @@ never ran live."
   "Set the pace of SIMULATION to RATE, from 0.001 to 1000000 ticks per second, or :FREE. Returns
 RATE. Signals WRONG-ARGUMENT."
   (check-rate rate)
-  (let ((pacing (timeline-pacing (timeline-of simulation))))
-    (when pacing
-      (setf (pacing-rate pacing) rate)
-      (wake pacing))
-    rate))
+  (if-paced (pacing simulation)
+    (setf (pacing-rate pacing) rate)
+    (wake pacing))
+  rate)

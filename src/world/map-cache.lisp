@@ -93,21 +93,17 @@ Signals an error if PATH is write-protected."
              (/= (aref words 4) (words-sum words)))
          "is damaged")))
 
-(defun check-number (number names)
-  "Signal an error unless NUMBER stands for an element of NAMES, the first of which is for none."
-  (unless (< 0 number (length names))
-    (error "no name has the number ~D" number)))
-
-(defun restore-wall (map index number value)
-  (check-number number (map-substance-types map))
-  (setf (aref (map-flags map) index) +wall+
-        (aref (map-substances map) index) number
-        (aref (map-parameters map) index) value))
-
-(defun restore-place (map index number value)
-  (check-number number (map-place-types map))
-  (setf (aref (map-places map) index) number
-        (aref (map-directions map) index) value))
+(defun restore-cell (map wall-p index number value)
+  "Let the cell INDEX of MAP be a wall of the substance with NUMBER if WALL-P, else a place of the
+type with that. Signals an error if there is none; 0 is of none."
+  (unless (< 0 number (length (if wall-p (map-substance-types map) (map-place-types map))))
+    (error "no name has the number ~D" number))
+  (if wall-p
+      (setf (aref (map-flags map) index) +wall+
+            (aref (map-substances map) index) number
+            (aref (map-parameters map) index) value)
+      (setf (aref (map-places map) index) number
+            (aref (map-directions map) index) value)))
 
 (defun restore-map (map words)
   "Fill the empty grid of MAP from WORDS. Signals an error if they stand for none."
@@ -115,11 +111,10 @@ Signals an error if PATH is write-protected."
   (clear-places map)
   (let ((walls-end (+ +cache-header+ (* 2 (aref words 2)))))
     (loop for position from +cache-header+ below (length words) by 2
-          do (funcall (if (< position walls-end) #'restore-wall #'restore-place)
-                      map
-                      (ldb (byte 32 0) (aref words position))
-                      (ldb (byte 32 32) (aref words position))
-                      (bits-to-double (aref words (1+ position))))))
+          do (restore-cell map (< position walls-end)
+                           (ldb (byte 32 0) (aref words position))
+                           (ldb (byte 32 32) (aref words position))
+                           (bits-to-double (aref words (1+ position))))))
   (note-walls map))
 
 (defun begins-as-cache-p (path)
