@@ -334,7 +334,7 @@
                  (:file "view") (:file "world-pane") (:file "transcript")
                  (:file "clipboard") (:file "transcript-pane")
                  (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
-                 (:file "splitters") (:file "bar") (:file "strip")
+                 (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
                  (:file "plan-mouse") (:file "world-mouse") (:file "keys")
                  (:file "keyboard")

@@ -47,10 +47,7 @@ the screen."
   (magnification nil :type (or null (integer 1))))
 
 (defun title-name (section)
-  (ecase section
-    (world 'world-title) (state 'state-title) (designators 'designators-title)
-    (cameras 'cameras-title) (hands 'hands-title) (bins 'bins-title) (plan 'plan-title)
-    (transcript 'transcript-title)))
+  (intern (format nil "~A-TITLE" (symbol-name section)) :ars-magna.clim))
 
 (defun plan-column-p (wishes width)
   "True if plans have a column of their own in a window WIDTH pixels wide."

@@ -9,18 +9,13 @@
 (defun give-keys-to-prompt (window)
   (type-into (pane-named window 'interactor)))
 
-(defgeneric take-keys (pane)
-  (:documentation "PANE was clicked: let what is typed go where it should from now on.")
-  (:method (pane) (declare (ignore pane)))
-  (:method ((pane world-pane)) (use-keys pane))
-  (:method ((pane detail-pane)) (use-keys pane))
-  (:method ((pane plan-pane)) (use-keys pane))
-  (:method ((pane transcript-pane)) (give-keys-to-prompt (window-of pane))))
-
-(defun use-keys (pane)
-  "Let keys do what they do in PANE, a display."
-  (setf (window-typing-p (window-of pane)) nil)
-  (focus-on pane))
+(defun take-keys (pane)
+  "PANE was clicked: let what is typed go where it should from now on."
+  (typecase pane
+    ((or world-pane detail-pane plan-pane)
+     (setf (window-typing-p (window-of pane)) nil)
+     (focus-on pane))
+    (transcript-pane (give-keys-to-prompt (window-of pane)))))
 
 (defun type-at-prompt (window character)
   "Let CHARACTER, and what is typed after it, go to the line of WINDOW that is typed."

@@ -6,6 +6,21 @@
 ;;; is handled; handling it paints the panes that have changed, as one picture. Everything in the
 ;;; window happens in its own thread.
 
+(defparameter *parts*
+  `((world world-pane) (state detail-pane :display :state)
+    (designators designators-pane :display :designators) (cameras detail-pane :display :cameras)
+    (hands detail-pane :display :hands) (bins detail-pane :display :bins) (plan plan-pane)
+    (transcript transcript-pane) (interactor interactor-pane) (strip strip-pane) (bar bar-pane)
+    (menus menu-pane)
+    ,@(loop for section in +titled+
+            collect (list (title-name section) 'title-pane :section section))
+    ,@(loop for name in +splitters+ collect (list name 'splitter-pane)))
+  "Lists (name class option...): the parts of a window but its popup, in the order of painting.")
+
+(defun make-parts ()
+  (loop for (name class . options) in *parts*
+        collect (apply #'clim:make-pane class :name name options)))
+
 (clim:define-application-frame robot-window ()
   ((watcher :initarg :watcher :accessor window-watcher)
    ;; Which layers its display of the world shows.
@@ -45,33 +60,9 @@
    (thread :initform nil :accessor window-thread))
   (:menu-bar nil)
   (:panes
-   (menus (clim:make-pane 'menu-pane :name 'menus))
-   (bar (clim:make-pane 'bar-pane :name 'bar))
-   (world (clim:make-pane 'world-pane :name 'world :display :world))
-   (state (clim:make-pane 'detail-pane :name 'state :display :state))
-   (designators (clim:make-pane 'designators-pane :name 'designators :display :designators))
-   (cameras (clim:make-pane 'detail-pane :name 'cameras :display :cameras))
-   (hands (clim:make-pane 'detail-pane :name 'hands :display :hands))
-   (bins (clim:make-pane 'detail-pane :name 'bins :display :bins))
-   (plan (clim:make-pane 'plan-pane :name 'plan :display :plan))
-   (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript))
-   (interactor (clim:make-pane 'interactor-pane :name 'interactor :display :interactor))
-   (strip (clim:make-pane 'strip-pane :name 'strip))
    (popup (clim:make-pane 'popup-pane :name 'popup :enabled-p nil)))
   (:layouts
-   (default
-    (clim:make-pane 'layout-pane
-                    :name 'layout
-                    :contents (list* menus bar world state designators cameras hands bins plan
-                                     transcript interactor strip popup
-                                     (append (loop for section in +titled+
-                                                   collect (clim:make-pane
-                                                            'title-pane
-                                                            :name (title-name section)
-                                                            :section section))
-                                             (loop for name in +splitters+
-                                                   collect (clim:make-pane 'splitter-pane
-                                                                           :name name)))))))
+   (default (clim:make-pane 'layout-pane :name 'layout :contents (cons popup (make-parts)))))
   (:documentation "The displays of a robot in a window."))
 
 (defun window-title (robot-name &optional place)
@@ -120,14 +111,8 @@ each snapshot."
 (defun window-simulation (window)
   (watcher-simulation (window-watcher window)))
 
-(defparameter *painted-parts*
-  (append '(world state designators cameras hands bins plan transcript interactor
-            strip bar menus)
-          (mapcar #'title-name +titled+) +splitters+)
-  "The names of the parts of the window that we paint.")
-
 (defun display-panes (window)
-  (loop for name in *painted-parts*
+  (loop for (name) in *parts*
         for pane = (pane-named window name)
         when pane collect pane))
 
