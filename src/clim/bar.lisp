@@ -41,12 +41,6 @@ whether the button is on."
         (make-button "Help" #\? 'com-help "Tell what keys and mouse do"))
   "The buttons of the tool bar, from left to right.")
 
-(defun button-text (button window)
-  (let ((label (button-label button)))
-    (if (stringp label) label (funcall label window))))
-
-(defun lit-p (button window) (and (funcall (button-lit-p button) window) t))
-
 ;;; The pane.
 
 (defclass bar-pane (display-pane) ()
@@ -56,7 +50,9 @@ whether the button is on."
 (defmethod pane-content ((pane bar-pane))
   (let ((window (window-of pane)))
     (loop for button in *buttons*
-          collect (list (button-text button window) (lit-p button window)))))
+          for label = (button-label button)
+          collect (list (if (stringp label) label (funcall label window))
+                        (and (funcall (button-lit-p button) window) t)))))
 
 (defmethod paint ((pane bar-pane))
   (painting (canvas pane)
