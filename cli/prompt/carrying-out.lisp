@@ -48,7 +48,10 @@ file and line. Do nothing elsewhere."
                                          (reading-place condition)
                                          (compiling-place))
       (cond ((null file))
-            ((placed-p condition) (funcall tell text))
+            ((or (typep condition 'file-trouble)
+                 (and (typep condition 'malformed-definition)
+                      (malformed-definition-place condition)))
+             (funcall tell text))
             (t (funcall tell (format nil "~A~@[, line ~D~]: ~A" file line text)))))))
 
 (defun tell-of-compiling (condition)
