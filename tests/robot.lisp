@@ -225,6 +225,26 @@
     (robot:set-robot-pose rover 15.5 5.5 0)
     (is (null (robot:drive-tick rover)) "its own cell never traps it")))
 
+(test motion.goes-backwards-where-limits-are-negative
+  "In 2,000 random steps back: as far as forwards, odometers tell truly, and walls stop it."
+  (let ((dice (base:make-dice 14)) (wrong 0))
+    (with-rover (:seed 14 :parameters '((motion-noise* 0.3)))
+      (let ((odometer (robot:robot-main-odometer rover)))
+        (dotimes (i 2000)
+          (let ((angle (base:roll-within pi dice)) (limit (base:roll-between 0.01 2 dice)))
+            (robot:set-robot-pose rover 5 9 angle)
+            (robot:reset-odometer odometer)
+            (robot:drive-tick rover (- limit))
+            (unless (and (odometer-right-p odometer rover 5 9 angle)
+                         (<= (* -1.3 (min limit 0.8)) (robot:robot-moved rover)
+                             (* -0.7 (min limit 0.8))))
+              (incf wrong))))))
+    (is (= 0 wrong)))
+  (with-rover (:clean t)
+    (robot:set-robot-pose rover 5.5 9.5 (/ pi -2))
+    (is (eq :wall (loop thereis (robot:drive-tick rover -1d0))))
+    (is (< 18.99999 (robot:robot-y rover) 19))))
+
 ;;; Simulations.
 
 (test with-simulation.is-fresh-each-time

@@ -90,7 +90,8 @@ So a robot can drive along the border of two cells, and stay in one of them."
 
 (declaim (inline count-distance))
 (defun count-distance (robot low high)
-  "Tell the odometers of ROBOT that it drove between LOW and HIGH metres."
+  "Tell the odometers of ROBOT that it drove between LOW and HIGH metres, both negative if it drove
+backwards."
   (declare #.*hot* (type robot robot) (type double-float low high))
   (dolist (odometer (robot-odometer-list robot))
     (odometer-drive odometer low high))
@@ -99,24 +100,27 @@ So a robot can drive along the border of two cells, and stay in one of them."
     (incf (robot-estimate-y robot) (* estimate (robot-sin robot)))))
 
 (defun drive-tick (robot &optional (limit +endless+))
-  "Drive ROBOT for one tick at its speed, but not much more than LIMIT metres. Return :WALL or
-:THING if that blocked it, else NIL. The distance is uniform within MOTION-NOISE* of the
-speed; the odometers read an interval that contains it (reading 96)."
+  "Drive ROBOT for one tick at its speed, but not much more than LIMIT metres; backwards if LIMIT is
+negative. Return :WALL or :THING if that blocked it, else NIL. The distance is uniform within
+MOTION-NOISE* of the speed; the odometers read an interval that contains it (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
-         (nominal (min limit (step-now robot)))
-         (noise (noise-of-step motion-noise* nominal (robot-speed-now robot)))
+         (step (step-now robot))
+         (nominal (max (- step) (min limit step)))
+         (noise (noise-of-step motion-noise* (abs nominal) (robot-speed-now robot)))
          (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (world-dice world :motion)))
                                                  1d0)))))
          (block (sweep robot distance))
-         (moved (robot-moved robot))
-         (expected (if block moved nominal))
-         (dice (world-dice world :odometry)))
-    (declare (type double-float noise nominal distance moved expected))
+         (moved (abs (robot-moved robot)))
+         (expected (if block moved (abs nominal)))
+         (dice (world-dice world :odometry))
+         (low (- moved (* (roll dice) (max 0d0 (- moved (* expected (- 1d0 noise)))))))
+         (high (+ moved (* (roll dice) (max 0d0 (- (* expected (+ 1d0 noise)) moved))))))
+    (declare (type double-float noise step nominal distance moved expected low high))
     (setf (robot-drove-tick robot) (world-tick world))
-    (count-distance robot
-                    (- moved (* (roll dice) (max 0d0 (- moved (* expected (- 1d0 noise))))))
-                    (+ moved (* (roll dice) (max 0d0 (- (* expected (+ 1d0 noise)) moved)))))
+    (if (minusp nominal)
+        (count-distance robot (- high) (- low))
+        (count-distance robot low high))
     block))
 
 (defun turn-tick (robot angle)

@@ -94,15 +94,22 @@ metres on the map, and the heading in radians. For displays: no program of the r
 
 (declaim (inline odometer-drive))
 (defun odometer-drive (odometer low high)
-  "Count a distance between LOW and HIGH, neither negative, along the heading (reading 97)."
+  "Count a distance between LOW and HIGH along the heading (reading 97); both are negative if the
+robot drove backwards."
   (declare (type odometer odometer) (type double-float low high))
-  (flet ((least (factor) (* factor (if (minusp factor) high low)))
-         (most (factor) (* factor (if (minusp factor) low high))))
-    (declare (inline least most))
-    (widen (odometer-x-min odometer) (least (odometer-cos-min odometer))
-           (odometer-x-max odometer) (most (odometer-cos-max odometer)))
-    (widen (odometer-y-min odometer) (least (odometer-sin-min odometer))
-           (odometer-y-max odometer) (most (odometer-sin-max odometer)))))
+  (labels ((least (factor) (* factor (if (minusp factor) high low)))
+           (most (factor) (* factor (if (minusp factor) low high)))
+           (count-by (least-cos most-cos least-sin most-sin)
+             (widen (odometer-x-min odometer) (least least-cos)
+                    (odometer-x-max odometer) (most most-cos))
+             (widen (odometer-y-min odometer) (least least-sin)
+                    (odometer-y-max odometer) (most most-sin))))
+    (declare (inline least most count-by))
+    (let ((cos-min (odometer-cos-min odometer)) (cos-max (odometer-cos-max odometer))
+          (sin-min (odometer-sin-min odometer)) (sin-max (odometer-sin-max odometer)))
+      (if (minusp low)
+          (count-by cos-max cos-min sin-max sin-min)
+          (count-by cos-min cos-max sin-min sin-max)))))
 
 (defun odometer-turn (odometer low high)
   "Count a turn between LOW and HIGH."

@@ -114,20 +114,25 @@ with LEFT to go; and go on if that only touches its way. Return what blocks it, 
     (incf (robot-moved robot) moved)))
 
 (defun leave-cell (robot)
-  "Move ROBOT out of its cell along its heading by ROBOT-MOVED metres, or to what blocks it. Leave
-the metres in ROBOT-MOVED; return :WALL, :THING or NIL. From outside the map there is no way."
+  "Move ROBOT out of its cell along its heading by ROBOT-MOVED metres, backwards if those are
+negative, or to what blocks it. Leave the metres in ROBOT-MOVED; return :WALL, :THING or NIL. From
+outside the map there is no way."
   (declare #.*hot* (type robot robot))
-  (let ((world (robot-world robot)))
+  (let ((world (robot-world robot)) (cos (robot-cos robot)) (sin (robot-sin robot))
+        (distance (robot-moved robot)))
     (declare (type world world))
-    (cond ((point-index (world-map world) (robot-x robot) (robot-y robot))
-           (pass-cells robot world (robot-cos robot) (robot-sin robot) (robot-moved robot)))
-          (t (setf (robot-moved robot) 0d0)
-             :wall))))
+    (cond ((null (point-index (world-map world) (robot-x robot) (robot-y robot)))
+           (setf (robot-moved robot) 0d0)
+           :wall)
+          ((minusp distance)
+           (prog1 (pass-cells robot world (- 0d0 cos) (- 0d0 sin) (- distance))
+             (setf (robot-moved robot) (- (robot-moved robot)))))
+          (t (pass-cells robot world cos sin distance)))))
 
 (declaim (inline sweep))
 (defun sweep (robot distance)
-  "Move ROBOT along its heading by DISTANCE, or to what blocks it. Leave the metres in
-ROBOT-MOVED; return :WALL, :THING or NIL (reading 100)."
+  "Move ROBOT along its heading by DISTANCE, backwards if that is negative, or to what blocks it.
+Leave the metres in ROBOT-MOVED; return :WALL, :THING or NIL (reading 100)."
   (declare #.*hot* (type robot robot) (type double-float distance))
   (let* ((x (robot-x robot)) (y (robot-y robot))
          (cell-x (whole-part x)) (cell-y (whole-part y))
