@@ -95,6 +95,16 @@
       (is (= 60 (experiment:estimate-value rough)))
       (is (null (experiment:estimate-low rough))))))
 
+(test statistics.are-one-form-each
+  (with-report (results '("noise") '() *two-noises*)
+    (let ((experiment::*statistics* experiment::*statistics*))
+      (eval '(experiment::define-statistic :range (numbers confidence)
+              (:heading ", range" :beside :median)
+              (declare (ignore confidence))
+              (values nil (reduce #'min numbers) (reduce #'max numbers))))
+      (is-true (has-words-p (report-text results) "ticks of successes, median"
+                            "ticks of successes, range" "- (40 to 40)" "- (60 to 60)")))))
+
 (defun measured-estimates (&rest columns)
   "Return the estimates of measures whose values are COLUMNS, lists of equally many."
   (let ((names (loop for nil in columns for i from 1 collect (format nil "m~D" i))))

@@ -118,16 +118,16 @@ with LEFT to go; and go on if that only touches its way. Return what blocks it, 
 negative, or to what blocks it. Leave the metres in ROBOT-MOVED; return :WALL, :THING or NIL. From
 outside the map there is no way."
   (declare #.*hot* (type robot robot))
-  (let ((world (robot-world robot)) (cos (robot-cos robot)) (sin (robot-sin robot))
+  (let ((world (robot-world robot)) (dx (robot-cos robot)) (dy (robot-sin robot))
         (distance (robot-moved robot)))
     (declare (type world world))
     (cond ((null (point-index (world-map world) (robot-x robot) (robot-y robot)))
            (setf (robot-moved robot) 0d0)
            :wall)
           ((minusp distance)
-           (prog1 (pass-cells robot world (- 0d0 cos) (- 0d0 sin) (- distance))
+           (prog1 (pass-cells robot world (- 0d0 dx) (- 0d0 dy) (- distance))
              (setf (robot-moved robot) (- (robot-moved robot)))))
-          (t (pass-cells robot world cos sin distance)))))
+          (t (pass-cells robot world dx dy distance)))))
 
 (declaim (inline sweep))
 (defun sweep (robot distance)

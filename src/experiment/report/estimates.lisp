@@ -8,12 +8,11 @@
 
 (addition estimate-p)
 (define-record (estimate (:constructor make-estimate
-                             (name kind count &key value low high (left-out 0) texts)))
+                             (name kind count &key value low high (left-out 0) texts beside)))
   "What a column of the table comes to under one condition."
   (name "" string "what was measured, a string: success, ticks, or the name of a measure" :addition)
-  (kind :nothing (member :rate :mean :median :texts :nothing) ":RATE of what was always true or
-false, :MEAN of numbers, :MEDIAN of ticks, :TEXTS of all else, and :NOTHING of what was never
-measured, under any condition" :addition)
+  (kind :nothing keyword ":RATE of what was always true or false, :MEAN of numbers, :MEDIAN of ticks,
+:TEXTS of all else, and :NOTHING of what was never measured, under any condition" :addition)
   (count 0 integer "how many trials it was measured in; of ticks, how many succeeded" :addition)
   (value nil (or null real)
          "the rate, from 0 to 1, the mean or the median; NIL of none, and of texts" :addition)
@@ -22,7 +21,8 @@ measured, under any condition" :addition)
   (high nil (or null real)
         "the high bound of the interval; NIL if there are too few values" :addition)
   (left-out 0 integer "how many values beside numbers are no numbers, and left out" :addition)
-  (texts '() list "an alist from texts to how often there are such, commonest first" :addition))
+  (texts '() list "an alist from texts to how often there are such, commonest first" :addition)
+  (beside '() list "estimates of the same values by other statistics"))
 
 (defmethod print-object ((estimate estimate) stream)
   (print-unreadable-object (estimate stream)
@@ -50,33 +50,57 @@ measured, under any condition" :addition)
             (or (> (cdr a) (cdr b))
                 (and (= (cdr a) (cdr b)) (string< (car a) (car b))))))))
 
-;;; Estimates.
+;;; Statistics: how a value and an interval are made of what was measured.
 
-(defun rate-estimate (name successes trials confidence)
-  (multiple-value-bind (low high) (wilson-interval successes trials :confidence confidence)
-    (make-estimate name :rate trials :value (if (zerop trials) nil (/ successes trials))
-                                     :low (if (zerop trials) nil low)
-                                     :high (if (zerop trials) nil high))))
+(defvar *statistics* '() "Lists (kind heading beside function), in order of definition.")
 
-(defun mean-estimate (name numbers left-out confidence)
+(defmacro define-statistic (kind (values confidence) (&key heading beside) &body body)
+  "Let BODY return, as three values, what estimates of KIND say of VALUES, a vector that is not
+empty: a value and the bounds of its interval at CONFIDENCE; any may be NIL. HEADING is said of it in
+tables of results, behind the name of what was measured. If BESIDE is a kind, each estimate of that
+has one of this, too, in a column beside its own. Return KIND."
+  `(progn
+     (setf *statistics*
+           (append (remove ,kind *statistics* :key #'first)
+                   (list (list ,kind ,heading ,beside (lambda (,values ,confidence) ,@body)))))
+     ,kind))
+
+(define-statistic :rate (truths confidence) (:heading " %")
+  (let ((true (count t truths)) (trials (length truths)))
+    (multiple-value-bind (low high) (wilson-interval true trials :confidence confidence)
+      (values (/ true trials) low high))))
+
+(define-statistic :mean (numbers confidence) (:heading ", mean")
   (let* ((scale (scale-for numbers))
          (sample (cl:map 'vector (lambda (number) (scaled number scale)) numbers)))
     (multiple-value-bind (low high) (student-interval sample :confidence confidence)
-      (make-estimate name :mean (length numbers) :value (unscaled (mean sample) scale)
-                                                 :low (unscaled low scale)
-                                                 :high (unscaled high scale)
-                                                 :left-out left-out))))
+      (values (unscaled (mean sample) scale) (unscaled low scale) (unscaled high scale)))))
 
-(defun median-estimate (name numbers confidence)
+(define-statistic :median (numbers confidence) (:heading ", median")
   (multiple-value-bind (low high) (median-interval numbers :confidence confidence)
-    (make-estimate name :median (length numbers) :value (median numbers) :low low :high high)))
+    (values (median numbers) low high)))
+
+(defun kind-heading (kind)
+  (second (assoc kind *statistics*)))
+
+(defun estimate-by (kind name values confidence &optional (left-out 0))
+  "Return the estimate of KIND of VALUES, of which LEFT-OUT more were no such values."
+  (multiple-value-bind (value low high)
+      (if (zerop (length values))
+          (values nil nil nil)
+          (funcall (fourth (assoc kind *statistics*)) values confidence))
+    (make-estimate name kind (length values)
+                   :value value :low low :high high :left-out left-out
+                   :beside (loop for (other nil beside) in *statistics*
+                                 when (eq kind beside)
+                                   collect (estimate-by other name values confidence)))))
 
 (defun estimate-of-values (name kind column confidence)
   (let ((values (remove :none column)))
     (ecase kind
       (:nothing (make-estimate name kind 0))
-      (:rate (rate-estimate name (count t values) (length values) confidence))
+      (:rate (estimate-by :rate name values confidence))
       (:mean (let ((numbers (remove-if-not #'finite-value-p values)))
-               (mean-estimate name numbers (- (length values) (length numbers)) confidence)))
+               (estimate-by :mean name numbers confidence (- (length values) (length numbers)))))
       (:texts (make-estimate name kind (length values)
                              :texts (tally (cl:map 'list #'value-text values)))))))

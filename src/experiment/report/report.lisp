@@ -50,16 +50,9 @@ they are too large or small for that."
           for estimate in estimates
           collect (format nil "~VA  n=~D" width text (estimate-count estimate)))))
 
-(defun kind-heading (estimate)
-  (ecase (estimate-kind estimate)
-    (:rate " %")
-    (:mean ", mean")
-    (:median " of successes, median")
-    ((:texts :nothing) "")))
-
-(defun estimates-column (estimates trials)
-  (let ((heading (format nil "~A~A" (cut (estimate-name (first estimates)) 60)
-                         (kind-heading (first estimates)))))
+(defun estimates-column (estimates trials name)
+  (let ((heading (format nil "~A~@[~A~]" (cut name 60)
+                         (kind-heading (estimate-kind (first estimates))))))
     (case (estimate-kind (first estimates))
       (:nothing (make-text-column heading (mapcar (constantly "-") estimates)))
       (:texts (make-text-column heading (loop for estimate in estimates
@@ -71,6 +64,12 @@ they are too large or small for that."
                                  texts
                                  (with-counts texts estimates))
                              :whole-p t))))))
+
+(defun estimates-columns (estimates trials &optional (name (estimate-name (first estimates))))
+  "Return the column of ESTIMATES, called NAME, and those of the estimates beside them."
+  (cons (estimates-column estimates trials name)
+        (apply #'mapcan (lambda (&rest beside) (estimates-columns beside trials name))
+               (mapcar #'estimate-beside estimates))))
 
 (defun count-column (heading counts)
   "Return a column of COUNTS in a list, or an empty list if all are 0."
@@ -101,12 +100,12 @@ name."
   (flet ((all (reader) (mapcar reader summaries)))
     (let ((trials (all #'summary-trials)))
       (append (unless (= 1 (length (remove-duplicates trials))) (count-column "trials" trials))
-              (list (estimates-column (all #'summary-success) trials))
+              (estimates-columns (all #'summary-success) trials)
               (count-column "limit" (all #'summary-limits))
               (count-column "timeout" (all #'summary-timeouts))
               (count-column "errors" (all #'summary-errors))
-              (list (estimates-column (all #'summary-ticks) trials))
-              (apply #'mapcar (lambda (&rest estimates) (estimates-column estimates trials))
+              (estimates-columns (all #'summary-ticks) trials "ticks of successes")
+              (apply #'mapcan (lambda (&rest estimates) (estimates-columns estimates trials))
                      (all #'summary-measures))))))
 
 (defun trials-text (summaries)

@@ -59,9 +59,10 @@ TEST."
      :failures (count-outcomes "failure" sample) :limits (count-outcomes "limit" sample)
      :errors (count-outcomes "error" sample) :timeouts (count-outcomes "timeout" sample)
      :confidence confidence
-     :success (rate-estimate "success" (count-outcomes "success" sample) trials confidence)
-     :ticks (median-estimate "ticks" (values-where #'success-p sample (sample-ticks sample))
-                             confidence)
+     :success (estimate-by :rate "success" (cl:map 'vector #'success-p (sample-outcomes sample))
+                           confidence)
+     :ticks (estimate-by :median "ticks" (values-where #'success-p sample (sample-ticks sample))
+                         confidence)
      :measures (loop for name in names
                      for kind in kinds
                      for column in (sample-measures sample)
