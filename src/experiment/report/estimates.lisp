@@ -11,8 +11,8 @@
                              (name kind count &key value low high (left-out 0) texts beside)))
   "What a column of the table comes to under one condition."
   (name "" string "what was measured, a string: success, ticks, or the name of a measure" :addition)
-  (kind :nothing keyword ":RATE of what was always true or false, :MEAN of numbers, :MEDIAN of ticks,
-:TEXTS of all else, and :NOTHING of what was never measured, under any condition" :addition)
+  (kind :nothing keyword ":RATE of what was always true or false, :MEAN of numbers, :MEDIAN of
+ticks, :TEXTS of all else, and :NOTHING of what was never measured, under any condition" :addition)
   (count 0 integer "how many trials it was measured in; of ticks, how many succeeded" :addition)
   (value nil (or null real)
          "the rate, from 0 to 1, the mean or the median; NIL of none, and of texts" :addition)
