@@ -56,9 +56,9 @@ ticks, :TEXTS of all else, and :NOTHING of what was never measured, under any co
 
 (defmacro define-statistic (kind (values confidence) (&key heading beside) &body body)
   "Let BODY return, as three values, what estimates of KIND say of VALUES, a vector that is not
-empty: a value and the bounds of its interval at CONFIDENCE; any may be NIL. HEADING is said of it in
-tables of results, behind the name of what was measured. If BESIDE is a kind, each estimate of that
-has one of this, too, in a column beside its own. Return KIND."
+empty: a value and the bounds of its interval at CONFIDENCE; any may be NIL. HEADING is said of it
+in tables of results, behind the name of what was measured. If BESIDE is a kind, each estimate of
+that has one of this, too, in a column beside its own. Return KIND."
   `(progn
      (setf *statistics*
            (append (remove ,kind *statistics* :key #'first)
