@@ -118,6 +118,19 @@ condition of ours that loading signals."
   (let ((outcome (loading-outcome file)))
     (says-p words outcome)))
 
+(test saved-forgery.of-steps-is-found-for-each-step
+  "Each step of ours says what it needs, but for those that need nothing."
+  (let ((steps '()))
+    (do-symbols (symbol :ars-magna.command)
+      (when (and (get symbol 'command::step)
+                 (eq (find-package :ars-magna.command) (symbol-package symbol)))
+        (pushnew symbol steps)))
+    (is (< 10 (length steps)))
+    (is (null (set-exclusive-or '(command::start-body command:succeed)
+                                (remove-if-not (lambda (step)
+                                                 (command::step-suits-p step 3 :nothing '()))
+                                               steps))))))
+
 (test saved-forgery.is-named
   (with-temporary-file (file)
     (with-rover (:seed 3 :journal t)

@@ -68,7 +68,7 @@ it (reading 111)."
            (cond (arrived (arrive operation camera designator))
                  (block (fail-with operation :robot-blocked camera designator)))))))
 
-(defun approach-on (operation)
+(define-step approach-on (operation robot designator camera)
   "Go on for a tick to the designator that is the subject of OPERATION."
   (approach-step operation (operation-resource operation)
                  (first (operation-arguments operation)) (operation-subject operation))

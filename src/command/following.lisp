@@ -49,7 +49,7 @@ then looks there, but for the error of turning."
                (once-more operation)
                (succeed operation)))))
 
-(defun follow-on (operation)
+(define-step follow-on (operation robot (cons integer (cons integer null)))
   "Follow the wall of OPERATION, whose subject is its side and the heading along it, for a tick."
   (let ((robot (operation-resource operation)))
     (destructuring-bind (side heading) (operation-subject operation)

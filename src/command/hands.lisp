@@ -103,7 +103,7 @@ designators silently."
 (defconstant +watch-period+ 1000
   "How long the event of a watch waits, in ticks, before it is queued anew.")
 
-(defun watch-grip (operation)
+(define-step watch-grip (operation hand)
   "Let OPERATION occupy its hand until that no longer holds its subject, what it held at
 first (reading 162)."
   (let ((hand (operation-resource operation)))

@@ -105,7 +105,7 @@ with :FAILED if it fails or is left."
       (progn (doubt-code operation (first results))
              (finish operation (first results) (second results))))))
 
-(defun carry-out (operation)
+(define-step carry-out (operation t manipulation-method)
   "Do what the method that is the subject of OPERATION does, if that is still possible and succeeds,
 and end OPERATION."
   (let ((method (operation-subject operation))

@@ -36,7 +36,10 @@ first are pushed out by the last."
         (succeed operation designator)
         (fail-with operation :designator-not-found))))
 
-(defun designate-found (operation)
+(defun sightings-p (object)
+  (proper-list-of-p #'sighting-p object))
+
+(define-step designate-found (operation camera (satisfies sightings-p))
   "End OPERATION with designators for all sightings that are its subject."
   (let ((designators (name-sightings (operation-resource operation) (operation-subject operation))))
     (if designators

@@ -4,25 +4,6 @@
 
 (export '(check-commands))
 
-(defparameter *step-needs*
-  '((turn-on robot t)
-    (drive-a-while robot t)
-    (drive-to-wall robot t)
-    (coast robot t)
-    (follow-on robot (cons integer (cons integer null)))
-    (approach-on robot designator)
-    (watch-grip hand t)
-    (carry-out t manipulation-method)
-    (designate-found camera list))
-  "What our own steps need, lists (step resource subject), with the types of these.")
-
-(defun step-fits-p (operation)
-  "True if the resource and subject of OPERATION are such as its step needs."
-  (let ((needs (rest (assoc (operation-step operation) *step-needs*))))
-    (or (null needs)
-        (and (typep (operation-resource operation) (first needs))
-             (typep (operation-subject operation) (second needs))))))
-
 (defun arguments-fit-p (operation)
   "True if OPERATION has arguments such as its command takes."
   (let ((command (operation-command operation)) (arguments (operation-arguments operation)))
@@ -44,10 +25,10 @@
     (must-hold (arguments-fit-p operation) "~(~A~) has not the arguments that it needs" name)
     (must-hold (or (null (operation-step operation)) (step-p (operation-step operation)))
                "~(~A~) would go on with what is no step of a command" name)
-    (must-hold (step-fits-p operation) "~(~A~) would go on with what it has not" name)
-    (must-hold (or (not (eq 'designate-found (operation-step operation)))
-                   (proper-list-of-p #'sighting-p (operation-subject operation)))
-               "~(~A~) would name what nobody has seen" name)
+    (must-hold (or (null (operation-step operation))
+                   (step-suits-p (operation-step operation) (operation-resource operation)
+                                 (operation-subject operation) (operation-arguments operation)))
+               "~(~A~) would go on with what it has not" name)
     (must-hold (eq (operation-timeline operation)
                    (timeline-of (resource-told operation)))
                "~(~A~) is under way in another run" name)))

@@ -6,10 +6,28 @@
 ;;; is may name what is a step, and no other function. What GO-ON is told of in a program's text is
 ;;; a step from when that is loaded.
 
+(defmacro define-step (name (operation &optional (resource t) (subject t) &rest arguments)
+                       &body body)
+  "Define the function NAME of OPERATION, a step of commands. RESOURCE and SUBJECT are types of what
+OPERATION has as such, ARGUMENTS of its first arguments: a saved run in which they are others is
+refused."
+  `(progn
+     (setf (get ',name 'step) '(,resource ,subject ,@arguments))
+     (defun ,name (,operation) ,@body)))
+
 (defun note-step (step)
-  "Let the function called STEP be one that carries an operation on. Return STEP."
-  (setf (get step 'step) t)
+  "Let the function called STEP be one that carries an operation on, if it is not yet. Return STEP."
+  (unless (get step 'step)
+    (setf (get step 'step) '(t t)))
   step)
+
+(defun step-suits-p (step resource subject arguments)
+  "True if RESOURCE, SUBJECT and ARGUMENTS of an operation are such as STEP needs."
+  (destructuring-bind (resource-type subject-type &rest types) (get step 'step)
+    (and (typep resource resource-type)
+         (typep subject subject-type)
+         (<= (length types) (length arguments))
+         (every #'typep arguments types))))
 
 (defun step-p (name)
   "True if the symbol NAME is that of a function which carries operations on."
