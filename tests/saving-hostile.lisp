@@ -131,6 +131,11 @@ condition of ours that loading signals."
                                                  (command::step-suits-p step 3 :nothing '()))
                                                steps))))))
 
+(test saved-objects.can-be-shown-before-they-are-filled
+  "An error about a forged file may show one."
+  (dolist (type (mapcar #'definitions:kind-name (definitions:all-kinds)))
+    (finishes (princ-to-string (copying:blank-object type (copying:fields-of-type type))))))
+
 (test saved-forgery.is-named
   (with-temporary-file (file)
     (with-rover (:seed 3 :journal t)

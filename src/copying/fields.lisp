@@ -44,10 +44,12 @@ signals an error if it is of the wrong type" :export)
                   unless (find name slots :key #'kind-slot-name)
                     collect (plain-field name slot-type)))))
 
-(defun blank-object (type)
-  "Return a new structure of TYPE, a symbol, in which nothing is yet what it should be: all of its
-fields are to be written before anybody looks at it."
-  (allocate-instance (find-class type)))
+(defun blank-object (type fields)
+  "Return a new structure of TYPE, a symbol, whose FIELDS are to be written. Until then there is in
+them what they begin with, if that may be: an error may show the object."
+  (let ((object (allocate-instance (find-class type))))
+    (dolist (field fields object)
+      (ignore-errors (funcall (field-writer field) (funcall (field-initial field)) object)))))
 
 ;;; Functions that objects hold, and that a file may name: none but these.
 

@@ -77,11 +77,12 @@ the fields, or NIL for what is beside the run."
               :element-type element-type :adjustable t
               :fill-pointer (first dimensions) initial)))))
 
-(defun new-object (shape loaded)
-  "Return a new object of SHAPE, (kind argument ...), in which nothing is as it should be yet."
+(defun new-object (shape fields loaded)
+  "Return a new object of SHAPE, (kind argument ...), perhaps with FIELDS, in which nothing is as it
+should be yet."
   (destructuring-bind (kind &optional first second third) shape
     (ecase kind
-      (:object (blank-object first))
+      (:object (blank-object first fields))
       (:array (new-array first second third loaded))
       (:table (make-hash-table :test first))
       (:dice (make-dice 0))
@@ -123,7 +124,7 @@ NAMES."
       (error "it speaks of more objects than it can say something of"))
     (let ((fields (and (eq :object kind) (fields-called (second shape) (third shape)))))
       (loop repeat count
-            do (add-loaded (new-object shape loaded) (cons shape fields) loaded)))))
+            do (add-loaded (new-object shape fields loaded) (cons shape fields) loaded)))))
 
 ;;; What is in them.
 
