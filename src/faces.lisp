@@ -11,11 +11,14 @@
   "What the documentation of names that the manual does not have ends with.")
 
 (defun tell-addition (symbol)
-  "Let each documentation of SYMBOL end with *ADDITION-SENTENCE*, on a line of its own."
+  "Let each documentation of SYMBOL end with *ADDITION-SENTENCE*, on a line of its own, instead of
+the chapter that its form names."
   (dolist (kind '(function variable type))
     (let ((text (documentation symbol kind)))
       (unless (or (null text) (search *addition-sentence* text))
-        (setf (documentation symbol kind) (format nil "~A~%~A" text *addition-sentence*))))))
+        (setf (documentation symbol kind)
+              (format nil "~A~%~A" (subseq text 0 (search " (Manual C.)" text))
+                      *addition-sentence*))))))
 
 ;;; Layers SETF what they read of a run; users must not, as no journal would know. So where a
 ;;; function can be set and is not marked as SETTABLE, a face has a symbol of its own for it.

@@ -30,9 +30,10 @@ The documentation of those that are pulsed, and never set, begins so. Return the
      (fluent-kind ',kind)
      ,@(loop for (name text) in definitions
              collect `(public ,name)
-             collect `(defvar ,name nil ,(format nil "~A~@[~A~] (Manual C.)" text
+             collect `(defvar ,name nil ,(format nil "~A~@[~A~]~:[~; (Manual C.)~]" text
                                                  (unless (same-name-p kind 'robot)
-                                                   (format nil " A vector, by ~(~A~)." kind))))
+                                                   (format nil " A vector, by ~(~A~)." kind))
+                                                 *marking-p*))
              collect `(note-fluent-variable ',name ',kind)
              collect `(declare-fluent-variable
                        ',name :kind ,(if (same-name-p kind 'robot) t (string-downcase kind))

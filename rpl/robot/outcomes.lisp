@@ -157,8 +157,8 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
                                          collect (fluent-in-plan fluent (first parameters))))
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
-                                      fluents. (Manual C.)"
-                                 sentence (remove-duplicates (clause-fluents clauses)))
+                                      fluents.~:[~; (Manual C.)~]"
+                                 sentence (remove-duplicates (clause-fluents clauses)) *marking-p*)
                         (command-in-plan ',name (find-command ',command-name)
                                          (lambda (resource err &optional ,@results &rest more)
                                            (declare (ignore more)

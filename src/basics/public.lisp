@@ -41,12 +41,14 @@
   "True while the simulator is being loaded. What is defined later is a user's, and not marked.")
 
 (defun mark-names (names addition-p)
-  "Mark each of NAMES, a symbol or a list (symbol face...), and export it."
+  "Mark each of NAMES, a symbol or a list (symbol face...), and export it. What is marked as an
+addition stays one."
   (when *marking-p*
     (dolist (name names)
       (destructuring-bind (symbol &rest faces) (ensure-list name)
         (export symbol (symbol-package symbol))
-        (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p))))))
+        (when (or addition-p (not (addition-p symbol)))
+          (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p)))))))
 
 (defmacro public (&rest names)
   "Mark NAMES, which are defined next, as names of the manual that users see. A name may be a list

@@ -159,7 +159,8 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
                                        without it the command is done in the next tick
   (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a
                                        function of the operation, for the error message
-  (:report lambda-list form)           what the message of success says, from the results
+  (:report lambda-list form)           what the message of success says, from the results; the
+                                       resource is (operation-resource OPERATION) there
   (:echo name...)                      those of RESULTS that the continuation gets after an
                                        interruption, too: parameters of the same names, or else
                                        the operation's subject, once it has begun

@@ -314,9 +314,10 @@ fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. O
 BODY sees these bindings: to another one that it starts, a name means the robot that it means at
 top level, so hand the robot to that; a command to the other one says so if it has no run. The
 integer SEED decides all chance. Parameters are bound to what they are here, or as the list
-PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
-journal, with KEEP forks, so that it can be rewound, see KEEP-FORKS. THINKING says how much time
-thinking costs, see SET-THINKING. Messages go to a queue of its own. When BODY has ended, the run is
+PARAMETERS of lists (name value) says; with CLEAN, CLEAN-SIMULATION is called then, which takes
+noise away that PARAMETERS asks for. With JOURNAL it keeps a journal, with KEEP forks, so that it
+can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see SET-THINKING.
+Messages go to a queue of its own. When BODY has ended, the run is
 over: what the robots are doing is interrupted, and they take no more commands. Return the values of
 BODY.
 
