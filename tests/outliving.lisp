@@ -222,3 +222,16 @@ far these have come to the east."
     (turn-and shrew (lambda () (error (make-condition 'condition))))
     (is (eql 20 (with-simple-restart (continue "Go on elsewhere.") (run:run-ticks 20))))
     (is-true (told-p "Break in the continuation of robot-turn"))))
+
+;;; Definitions that go.
+
+(test threads.begin-for-robots-whose-definitions-are-gone
+  "A thread of a live run may begin only after somebody has undefined its robot."
+  (with-own-definitions
+    (eval '(progn
+            (world:defmap short-lived (9 9))
+            (robot:defrobot mayfly (short-lived (4 4) 0))
+            (run:with-simulation (mayfly)
+              (base:undefine 'robot 'mayfly)
+              (is (eq (first (run:simulation-robots (time:current-simulation)))
+                      (run:call-as-owner (time:current-simulation) (lambda () mayfly)))))))))

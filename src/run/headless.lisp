@@ -288,7 +288,11 @@ over now.")
 
 (defun robots-meant (names)
   "Return the robots of the current simulation that NAMES, of any package, mean."
-  (loop for name in names collect (robot-of-blueprint (find-blueprint name) *world*)))
+  ;; Their definitions may be gone by now.
+  (loop with robots = (world-robots *world*)
+        for name in names
+        collect (or (find name robots :key #'robot-name :test #'eq)
+                    (find name robots :key #'robot-name :test #'same-name-p))))
 
 (defun retire-robots (robots reason)
   (dolist (robot robots) (retire-robot robot reason)))
