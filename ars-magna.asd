@@ -8,7 +8,7 @@
   :components
   ((:module "src/host" :serial t
     :components ((:file "package") (:file "versions") (:file "wrapping") (:file "reports")
-                 (:file "floats") (:file "policy") (:file "memory") (:file "globals")
+                 (:file "floats") (:file "memory") (:file "policy") (:file "globals")
                  (:file "tables") (:file "atomic") (:file "classes") (:file "packages")
                  (:file "files") (:file "processes") (:file "interrupts") (:file "instances")
                  (:file "interpreter") (:file "closures") (:file "code") (:file "environments")

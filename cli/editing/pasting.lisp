@@ -92,10 +92,6 @@ has any."
         (append (subseq lines 0 start) (typed-by-label (nthcdr start lines)))
         lines)))
 
-(defun lines-in (text)
-  "Return the lines of TEXT, at least one."
-  (or (uiop:split-string text :separator '(#\Newline)) (list "")))
-
 (defun answers-at-end (text)
   "Return how many lines of TEXT, as pasted, below the last with a prompt are left out as answers."
   (let* ((lines (lines-in text))

@@ -106,6 +106,9 @@ if it is an error or warning in a script, with the place of its line."
       (let ((waiting (assoc (line-of-message account message) (account-waiting account))))
         (when waiting (setf (third waiting) nil))))))
 
+(defgeneric error-counts-p (message listener)
+  (:documentation "True if LISTENER counts the error MESSAGE, and not what has caused it."))
+
 (defun messages-for (listener messages)
   "Count the errors among MESSAGES, and return those that LISTENER is to show."
   (dolist (message messages)

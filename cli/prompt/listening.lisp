@@ -63,8 +63,7 @@ and those that listen to its run; or if there is none, SESSION."
 ;;; What users' programs print in a simulator's thread, as continuations do, goes to the terminal,
 ;;; and to the windows of that simulation.
 
-(defun mirrors-of (console)
-  "Return the other consoles that show what this thread writes to CONSOLE."
+(defmethod mirrors-of ((console console))
   (when (and *simulation*
              (rest *sessions*)
              (not (find (current-thread) (sessions-at-work) :key #'session-thread)))

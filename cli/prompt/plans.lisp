@@ -96,8 +96,7 @@ be done, a list of two texts, or is NIL."
 
 ;; Those of a trial are the trial's, and those of commands that a plan, GO-TO or a program gives
 ;; that is told of them are its own.
-(defun error-counts-p (message session)
-  "True if SESSION counts the error MESSAGE, and not what has caused it."
+(defmethod error-counts-p (message (session session))
   (and (null (session-visit session))
        (or (verdict-p (first (message-items message)))
            (not (or (left-to-program-p message)

@@ -238,6 +238,9 @@ below.")
   (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
   (put-string text console stream))
 
+(defgeneric mirrors-of (console)
+  (:documentation "Return the other consoles that show what this thread writes to CONSOLE."))
+
 (defvar *in-mirrors-p* nil "True while what was written to a console is written to its mirrors.")
 
 (defun call-with-mirrors (function console)

@@ -25,6 +25,10 @@
 (defun ink-code (ink)
   (cdr (assoc (string ink) *inks* :test #'string-equal)))
 
+(defun lines-in (text)
+  "Return the lines of TEXT, at least one."
+  (or (uiop:split-string text :separator '(#\Newline)) (list "")))
+
 (defun paint (text ink)
   "Return TEXT as a terminal shows it in INK, the name of a colour, line by line; TEXT itself if INK
 is no ink."
