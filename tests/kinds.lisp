@@ -204,7 +204,8 @@
                                             (lambda (slot) (base:symbolicate 'call- slot))))))
 
 (test records.reject-what-makes-no-sense
-  (dolist (slot '(pitch (pitch) (pitch 0) (pitch 0 fixnum "high" :unheard) ("pitch" 0 fixnum)))
+  (dolist (slot '(pitch (pitch) (pitch 0) (pitch 0 :writable)
+                  (pitch 0 fixnum "high" :unheard) ("pitch" 0 fixnum)))
     (signals base:malformed-definition
       (macroexpand-1 `(base:define-record bat-call "It." ,slot)))))
 

@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(define-record reader-text function-texts set-documentations
-          reader-marks))
+(export '(define-record reader-text function-texts set-documentations reader-marks))
 
 ;;; One form says of a structure what it is, what is in its slots, and who may read them. From that
 ;;; follow the documentation of its functions and the marks of its readers. Objects that belong to a
@@ -59,6 +58,7 @@ with it; without any, that of DEFAULT."
 (defun check-record-slot (name slot)
   "Signal MALFORMED-DEFINITION unless SLOT of the record NAME makes sense."
   (unless (and (proper-list-p slot) (<= 3 (length slot)) (symbolp (first slot))
+               (not (keywordp (third slot)))
                (subsetp (remove (slot-text slot) (nthcdr 3 slot)) '(:writable :export :addition)))
     (error 'malformed-definition
            :definition (format nil "define-record ~(~A~)" name) :clause slot
