@@ -91,9 +91,7 @@ it (reading 111)."
     ((camera "the camera")
      (designator "the designator that it tracked"))
     ((:family :moving) (:section "3.5") (:delay robot-move-delay*) (:echo camera designator)
-     (:errors (:not-tracking (lambda (operation)
-                               (format nil "~A is not tracking anything"
-                                       (first (operation-arguments operation)))))
+     (:errors (:not-tracking (text-of "~*~A is not tracking anything"))
               (:goto-local "The designator is local: the robot is there already")
               (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))

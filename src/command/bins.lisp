@@ -7,7 +7,7 @@
 (define-command storage-bin-open (operation (storage-bin storage-bin))
     ()
     ((:family :handling) (:section "3.6") (:delay bin-delay*)
-     (:errors (:bin-open (part-text "~A is already open"))))
+     (:errors (:bin-open (text-of "~A is already open"))))
     "Open STORAGE-BIN."
   (cond ((storage-bin-closed-p storage-bin)
          (setf (storage-bin-closed-p storage-bin) nil)
@@ -23,11 +23,11 @@
 (define-command storage-bin-close (operation (storage-bin storage-bin))
     ((jammed-part "the camera or hand that keeps the bin from closing, or NIL"))
     ((:family :handling) (:section "3.6") (:delay bin-delay*)
-     (:errors (:bin-closed (part-text "~A is already closed"))
+     (:errors (:bin-closed (text-of "~A is already closed"))
               (:robot-in-bin (lambda (operation)
                                (let ((bin (operation-resource operation)))
                                  (format nil "~A still in ~A" (part-inside bin) bin))))
-              (:bin-jammed (part-text "~A is jammed"))))
+              (:bin-jammed (text-of "~A is jammed"))))
     "Close STORAGE-BIN, so that nothing can kick itself out of it."
   (cond ((storage-bin-closed-p storage-bin) (fail-with operation :bin-closed))
         ((part-inside storage-bin)

@@ -18,10 +18,6 @@
         ((designator-denotation destination) (location-name (designator-denotation destination)))
         (t (princ-to-string destination))))
 
-(defun part-text (control)
-  "Return a function that makes an error's text of CONTROL and the part."
-  (lambda (operation) (format nil control (operation-resource operation))))
-
 (defun succeed-saying (operation text &rest results)
   "End OPERATION successfully with RESULTS; TEXT is what its message says."
   (tell-of operation text)

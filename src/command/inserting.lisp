@@ -97,14 +97,14 @@
 (define-command hand-remove (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:delay hand-move-delay*)
-     (:errors (:not-inside (part-text "~A is not inside anything"))))
+     (:errors (:not-inside (text-of "~A is not inside anything"))))
     "Take HAND, with what it holds, out of the container that it is inside of, one level."
   (take-out operation hand))
 
 (define-command camera-remove (operation (camera camera))
     ()
     ((:family :handling) (:section "3.4.3") (:delay camera-move-delay*)
-     (:errors (:not-inside (part-text "~A is not inside anything"))))
+     (:errors (:not-inside (text-of "~A is not inside anything"))))
     "Take CAMERA out of the container that it is inside of, one level. It loses its track."
   (take-out operation camera))
 
@@ -149,11 +149,8 @@ cannot reach it cannot bump."
     ((:family :handling) (:section "3.4.3") (:prompt "CAM-INSERT-DESIG")
      (:delay camera-move-delay*)
      (:errors (:bin-closed (inserting-text "~*~A is closed"))
-              (:not-tracking (part-text "~A is not tracking anything"))
-              (:not-tracking-destination
-               (lambda (operation)
-                 (format nil "~A is not tracking ~A" (operation-resource operation)
-                         (first (operation-arguments operation)))))
+              (:not-tracking (text-of "~A is not tracking anything"))
+              (:not-tracking-destination (text-of "~A is not tracking ~A"))
               (:camera-bump (inserting-text "~A bumped ~A"))
               (:insufficient-capacity (inserting-text "No room for ~A in ~A"))
               (:non-local-designator "Designator is not local")

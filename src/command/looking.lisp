@@ -5,11 +5,6 @@
 ;;; A search only needs a camera that does not track. A track goes on in the background of views
 ;;; and insertions; whatever else turns the camera interrupts it.
 
-(defun text-of (control)
-  "Return a function that makes an error's text of CONTROL, the camera and the first argument."
-  (lambda (operation)
-    (format nil control (operation-resource operation) (first (operation-arguments operation)))))
-
 (defun already-tracking-text (operation)
   (let ((camera (operation-resource operation)))
     (format nil "~A is already tracking~@[ ~A~]" camera (camera-tracks camera))))

@@ -98,6 +98,11 @@ command that it cut short, or NIL"))
       (string (format nil "~A" text))
       (function (funcall text operation)))))
 
+(defun text-of (control)
+  "Return a function that makes an error's text of CONTROL, the resource and the arguments."
+  (lambda (operation)
+    (apply #'format nil control (operation-resource operation) (operation-arguments operation))))
+
 (defun name-of-robot (operation)
   "Return the name of the robot that OPERATION is of, or whose part it is of."
   (robot-name (resource-robot (operation-resource operation))))
