@@ -44,9 +44,8 @@ NIL (reading 175)."
   "Return the methods of MANIPULATION that take ARGUMENTS. Signals WRONG-ARGUMENT if none does."
   (or (remove-if-not (lambda (method) (method-takes-p method arguments))
                      (manipulation-methods manipulation))
-      (error 'wrong-argument
-             :operator (manipulation-name manipulation) :name "argument list" :value arguments
-             :expected (format nil "~{~A~^ or ~}, objects as designators and the resource as a ~
+      (reject-argument (manipulation-name manipulation) "argument list" arguments
+                       (format nil "~{~A~^ or ~}, objects as designators and the resource as a ~
                                     robot or part, and then a continuation"
                                (mapcar #'method-usage (manipulation-methods manipulation))))))
 

@@ -66,7 +66,6 @@ metres on the map, and the heading in radians. For displays: no program of the r
     (<= (+ angle (* turns 2pi)) high)))
 
 (defun refresh-bounds (odometer)
-  "Recompute the bounds of the cosine and sine of the heading."
   (declare #.*hot* (type odometer odometer))
   (let ((low (odometer-angle-min odometer))
         (high (odometer-angle-max odometer))
@@ -121,8 +120,8 @@ robot drove backwards."
 
 (defun check-odometer (odometer operator)
   (unless (odometer-p odometer)
-    (error 'wrong-argument :operator operator :name "odometer" :value odometer
-                           :expected "an odometer, as (robot-main-odometer ROBOT) returns")))
+    (reject-argument operator "odometer" odometer
+                     "an odometer, as (robot-main-odometer ROBOT) returns")))
 
 (defun reset-reading (odometer part)
   "Let PART of ODOMETER, :POS or :ANG, count from here (reading 98)."

@@ -64,9 +64,9 @@ messages. Signals WRONG-ARGUMENT (manual E). See reading 114."
   (doubt-angle 'place-robot (robot-world robot) angle)
   (let ((map (world-map (robot-world robot))))
     (unless (map-index map x y)
-      (error 'wrong-argument :operator "pos" :name "position" :value (list x y)
-                             :expected (format nil "a point of the map: 0 <= x < ~D, 0 <= y < ~D"
-                                               (map-width map) (map-height map)))))
+      (reject-argument "pos" "position" (list x y)
+                       (format nil "a point of the map: 0 <= x < ~D, 0 <= y < ~D"
+                               (map-width map) (map-height map)))))
   (changing ((robot-world robot) place-robot robot x y angle)
     (set-robot-pose robot x y angle)
     (tell-if-in-wall (princ-to-string (robot-name robot)) (robot-world robot) x y))

@@ -211,14 +211,12 @@ anything comes to be that WORLD-SETTLED-P excludes."
 (defun part-of (robot reader index operator)
   "Return the part of ROBOT with INDEX among those that READER returns."
   (unless (robot-p robot)
-    (error 'wrong-argument :operator operator :name "robot" :value robot
-                           :expected (argument-type-text 'robot robot)))
+    (reject-argument operator "robot" robot (argument-type-text 'robot robot)))
   (let ((parts (funcall reader robot)))
     (unless (and (integerp index) (< -1 index (length parts)))
-      (error 'wrong-argument :operator operator :name "index" :value index
-                             :expected (format nil "an index from 0 and below ~D, the number ~
-                                                    of such parts of ~A"
-                                               (length parts) (robot-name robot))))
+      (reject-argument operator "index" index
+                       (format nil "an index from 0 and below ~D, the number of such parts of ~A"
+                               (length parts) (robot-name robot))))
     (svref parts index)))
 
 (public robot-camera)

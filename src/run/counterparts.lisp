@@ -8,10 +8,9 @@
   (:documentation "Return what OBJECT, of another run, is in the current simulation, a fork of that
 run; or NIL. Signals WRONG-ARGUMENT for what has no counterpart.")
   (:method (object)
-    (error 'wrong-argument
-           :operator 'counterpart :name "object" :value object
-           :expected (format nil "a robot, a part of one, a thing, a designator, an odometer, a ~
-                                  task, a fluent or a valve"))))
+    (reject-argument 'counterpart "object" object
+                     (one-line "a robot, a part of one, a thing, a designator, an odometer, a
+task, a fluent or a valve"))))
 
 (defmethod counterpart-here ((robot robot))
   (find (robot-name robot) (simulation-robots *simulation*) :key #'robot-name :test #'eq))

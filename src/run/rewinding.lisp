@@ -57,9 +57,8 @@
   (let* ((first (earliest-tick simulation))
          (most (- (simulation-tick simulation) first)))
     (unless (<= ticks most)
-      (error 'wrong-argument
-             :operator "rewind" :name "ticks" :value ticks
-             :expected (format nil "at most ~D: one can go back to tick ~D" most first)))))
+      (reject-argument "rewind" "ticks" ticks
+                       (format nil "at most ~D: one can go back to tick ~D" most first)))))
 
 ;;; The run that goes on.
 
