@@ -40,21 +40,17 @@ Signals WRONG-ARGUMENT."
 
 (defun copied-journal (journal tick)
   "Return a journal that is like JOURNAL, of a run that has come to TICK, and goes on by itself."
-  (let ((copy (make-journal (copy-list (journal-header journal)))))
-    (setf (journal-newest-first copy) (journal-newest-first journal)
-          (journal-length copy) (journal-length journal)
-          (journal-remarks copy) (journal-remarks journal)
-          (journal-end copy) (if (journal-full-p journal) (journal-end journal) tick)
-          (journal-full-p copy) (journal-full-p journal))
+  (let ((copy (copy-structure journal)))
+    (setf (journal-header copy) (copy-list (journal-header journal)))
+    (unless (journal-full-p copy) (setf (journal-end copy) tick))
     copy))
 
 (defun truncated-journal (journal tick)
   "Return a journal that ends at TICK and until then is like JOURNAL. Signals WRONG-ARGUMENT for a
 TICK that it does not reach."
   (unless (typep tick `(integer 0 ,(journal-end journal)))
-    (error 'wrong-argument :operator "replay" :name "until" :value tick
-                           :expected (format nil "a tick of the journal, from 0 to ~D"
-                                             (journal-end journal))))
+    (reject-argument "replay" "until" tick
+                     (format nil "a tick of the journal, from 0 to ~D" (journal-end journal))))
   (let ((copy (make-journal (journal-header journal))))
     (setf (journal-newest-first copy)
           (remove-if (lambda (entry) (>= (first entry) tick)) (journal-newest-first journal))
