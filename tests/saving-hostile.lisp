@@ -75,7 +75,7 @@ What else may be signalled is not caught."
   "Load the saved run in FILE, whatever its digest, and pass some ticks. Return :RAN, or the
 condition of ours that loading signals."
   (handler-case
-      (run::reading-file (file 'run:damaged-simulation)
+      (run::reading-file (file :run 'run:damaged-simulation)
         (run::call-with-saved-text
          (lambda (in)
            (let* ((reading (run::make-reading in 0 0)) (head (run::read-head reading)))

@@ -25,8 +25,6 @@
                      (damaged-file-reason condition))))
   (:documentation "A file that should hold a journal cannot be used."))
 
-(defmethod kind-damaged ((damage (eql 'damaged-journal))) :journal)
-
 ;;; Writing.
 
 (defun check-printable (journal)
@@ -59,7 +57,6 @@
         unless (eq key :remarks) append (list key value)))
 
 (defun journal-data (journal)
-  "Return what the file of JOURNAL has, in order."
   (append (list (list :ars-magna-journal +journal-version+ (header-with-remarks journal)))
           (mapcar #'entry-datum (journal-entries journal))
           (list (list :end (journal-end journal)))))
@@ -212,7 +209,6 @@ is wrong, and in which entry."
     journal))
 
 (defun read-journal-file (file)
-  "Return the journal in FILE. Signals an error if it is none."
   (call-with-saved-text (lambda (in) (journal-from (read-data in))) file))
 
 (defun read-journal (file &optional (operator 'read-journal))
@@ -220,7 +216,7 @@ is wrong, and in which entry."
 incomplete, and says which entry is to blame; WRONG-ARGUMENT unless FILE is a name."
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file "a journal, or the name of a file that holds one"))
-  (reading-file (file 'damaged-journal) (read-journal-file file)))
+  (reading-file (file :journal 'damaged-journal) (read-journal-file file)))
 
 ;;; Writing, and reading on trial: so saving refuses what loading would refuse, by the same checks.
 

@@ -16,8 +16,6 @@
                      (damaged-file-reason condition))))
   (:documentation "A file that should hold a saved run cannot be used."))
 
-(defmethod kind-damaged ((damage (eql 'damaged-simulation))) :run)
-
 ;;; The head.
 
 (defun check-saved-head (datum)
@@ -195,7 +193,6 @@
       (complete simulation head loaded requests))))
 
 (defun read-head (reading)
-  "Return the head of the saved run that READING is."
   (let ((datum (next-datum reading)))
     (check-saved-head datum)
     (third datum)))
@@ -204,12 +201,12 @@
 
 (defun saved-head (file)
   "Return the head of the saved run in FILE. Signals DAMAGED-SIMULATION."
-  (reading-file (file 'damaged-simulation)
+  (reading-file (file :run 'damaged-simulation)
     (call-with-saved-text (lambda (in) (read-head (make-reading in 0 0))) file)))
 
 (defun read-simulation (file)
   "Return the simulation that is saved in FILE. Signals DAMAGED-SIMULATION and UNKNOWN-NAME."
-  (reading-file (file 'damaged-simulation)
+  (reading-file (file :run 'damaged-simulation)
     (call-with-saved-text (lambda (in)
                             (let* ((reading (make-reading in 0 0)) (head (read-head reading)))
                               (check-tick-and-digest

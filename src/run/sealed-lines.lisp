@@ -90,21 +90,15 @@ file of bytes, or too long."
       (error "it has ~D bytes, more than such files have" (file-length in)))
     (with-homeless-symbols () (funcall function in))))
 
-(defgeneric kind-damaged (damage)
-  (:documentation "Return the kind of the files that the class of conditions DAMAGE tells of.")
-  (:method (damage)
-    (declare (ignore damage))
-    nil))
-
-(defun call-reading-file (function file damage)
+(defun call-reading-file (function file kind damage)
   "Return what FUNCTION returns; if it signals an error other than UNKNOWN-NAME, signal one of the
-class DAMAGE, which says that FILE is to blame."
+class DAMAGE, which says that FILE, to be of KIND, is to blame."
   (handler-case (funcall function)
     (unknown-name (trouble) (error trouble))
     (stream-error ()
       (error damage :file file :reason "the system does not let it be read"))
     ((or error storage-condition) (trouble)
-      (error damage :file file :reason (or (file-advice file (kind-damaged damage))
+      (error damage :file file :reason (or (file-advice file kind)
                                            (one-line-text trouble))))))
 
 (defun reason-of-refusal (trouble)
@@ -113,9 +107,9 @@ class DAMAGE, which says that FILE is to blame."
       (damaged-file-reason trouble)
       (string-right-trim "." (one-line-text trouble))))
 
-(defmacro reading-file ((file damage) &body body)
+(defmacro reading-file ((file kind damage) &body body)
   "Run BODY as CALL-READING-FILE would a function."
-  `(call-reading-file (lambda () ,@body) ,file ,damage))
+  `(call-reading-file (lambda () ,@body) ,file ,kind ,damage))
 
 (defun check-format (found expected)
   "Signal an error unless FOUND, the number of a file's format, is EXPECTED."
