@@ -196,7 +196,6 @@ parameter list, BODY a function of as many arguments. Return NAME."
     (doubt-type definition (second typed))))
 
 (defun manipulation-forms (definition name parameters options body)
-  "Return the forms that DEFMANIPULATION expands to."
   (check-name definition name "manipulation")
   (check-method-options definition options)
   (let* ((parsed (parse-parameters definition parameters))

@@ -30,7 +30,6 @@ first are pushed out by the last."
     (remove-if-not #'designator-valid-p designators)))
 
 (defun designate-first (operation sightings)
-  "End OPERATION with a designator for the first of SIGHTINGS."
   (let ((designator (first (name-sightings (operation-resource operation) sightings))))
     (if designator
         (succeed operation designator)
@@ -40,7 +39,6 @@ first are pushed out by the last."
   (proper-list-of-p #'sighting-p object))
 
 (define-step designate-found (operation camera (satisfies sightings-p))
-  "End OPERATION with designators for all sightings that are its subject."
   (let ((designators (name-sightings (operation-resource operation) (operation-subject operation))))
     (if designators
         (succeed operation designators)

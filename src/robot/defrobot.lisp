@@ -166,7 +166,6 @@ robot."
       `(call-for-value (lambda () ,form) ,definition ',clause ,expected)))
 
 (defun robot-forms (definition name start options lisp-environment)
-  "Return the forms that DEFROBOT expands to."
   (destructuring-bind (environment (x y) angle) start
     (destructuring-bind (&key cameras hands bins parts &allow-other-keys) options
       (flet ((number-of (form clause)

@@ -105,7 +105,6 @@ WRONG-ARGUMENT if there is none."
     designator))
 
 (defun free-number (designator)
-  "Make DESIGNATOR invalid and its number free."
   (let ((designators (robot-designators (designator-robot designator))))
     (setf (designator-valid-p designator) nil
           (aref designators (designator-number designator)) nil)

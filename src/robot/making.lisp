@@ -46,7 +46,6 @@ NIL."
           'simple-vector))
 
 (defun outfit (robot blueprint)
-  "Give ROBOT the parts that BLUEPRINT lists."
   (setf (robot-mind robot) (make-mind :robot robot)
         (robot-cameras robot)
         (make-parts robot #'make-camera

@@ -12,7 +12,6 @@
   (cell-type (robot-cell robot)))
 
 (defun random-place-type (robot dice)
-  "Return any of the place types of the map that ROBOT is in; NIL if it has none."
   (let ((types (remove nil (map-place-types (world-map (robot-world robot))))))
     (and (plusp (length types)) (roll-element types dice))))
 

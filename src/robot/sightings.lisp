@@ -89,7 +89,6 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136
          (thing-of-rank (roll-index count dice) world))))
 
 (defun imagined-reading (demand dice)
-  "Return a reading that fits DEMAND."
   (if (demand-low demand)
       (roll-between (demand-low demand) (demand-high demand) dice)
       (roll-element (demand-choices demand) dice)))

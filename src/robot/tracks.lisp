@@ -49,7 +49,6 @@ CODE."))
           collect camera))
 
 (defun tracked-p (designator)
-  "True if a camera tracks DESIGNATOR."
   (loop for camera across (robot-cameras (designator-robot designator))
           thereis (tracking-p camera designator)))
 

@@ -34,7 +34,6 @@
 ;;; What is used. A definition is here a list (kind name).
 
 (defun kickers-at-work (simulation)
-  "Return the names of the kickers in SIMULATION."
   (let ((names '()))
     (do-things (thing (simulation-world simulation))
       (dolist (attachment (thing-kickers thing))
@@ -42,7 +41,6 @@
     names))
 
 (defun attributes-at-work (simulation)
-  "Return the names of the attributes that things in SIMULATION have."
   (let ((names '()))
     (do-things (thing (simulation-world simulation))
       (dolist (attribute (thing-attributes thing))
@@ -71,7 +69,6 @@
          append (cl:map 'list #'type-of (robot-sensors robot)))))
 
 (defun users-commands (simulation)
-  "Return the names of users' commands in the journal of SIMULATION."
   (let ((journal (simulation-journal simulation)))
     (and journal
          (remove-if-not (lambda (name)
@@ -83,7 +80,6 @@
   (if (place-type-p type) (place-type-name type) type))
 
 (defun names-in-use (kind simulation)
-  "Return the names of definitions of KIND that SIMULATION uses."
   (let ((map (world-map (simulation-world simulation))))
     (ecase kind
       (:map (list (map-name map)))
@@ -101,7 +97,6 @@
   (list kind (qualified-name (entry-name entry))))
 
 (defun definitions-in-use (simulation)
-  "Return the definitions that SIMULATION uses."
   (append (loop for (kind . registry) in *definition-kinds*
                 append (loop for name in (names-in-use kind simulation)
                              for entry = (lookup-entry name registry)
@@ -219,7 +214,6 @@ definitions that are looked at."
                        after))))
 
 (defun definition-words (definition)
-  "Return what DEFINITION, (kind name ...), is called in messages."
   (destructuring-bind (kind name &rest number) definition
     (declare (ignore number))
     (let* ((colons (search "::" name)) (bare (if colons (subseq name (+ 2 colons)) name)))

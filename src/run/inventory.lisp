@@ -98,7 +98,6 @@ Signals MISUSE."
     (t (reject-object object "which only its own Lisp knows" inventory))))
 
 (defun shape-fields (shape)
-  "Return the fields that are to be written of objects of SHAPE."
   (and (eq :object (first shape))
        (remove-if-not #'field-kept-p (fields-of-type (second shape)))))
 
@@ -141,7 +140,6 @@ Signals MISUSE."
   (plusp (decf (inventory-room inventory) characters)))
 
 (defun survey-text (text inventory)
-  "Meet the string TEXT."
   (let ((short-p (and (<= (length text) +longest-text+) (simple-string-p text))))
     (meet text (not (and (take-room (* 2 (length text)) inventory) short-p)) inventory)))
 
@@ -237,7 +235,6 @@ first batch is SIMULATION alone. Signals MISUSE."
     inventory))
 
 (defun inventory-size (inventory)
-  "Return how many objects have numbers in INVENTORY."
   (+ (length (inventory-outer inventory))
      (loop for batch in (batches-in-order inventory) sum (length (batch-members batch)))))
 

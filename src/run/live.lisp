@@ -160,7 +160,6 @@ is there who can let it go on; else queue a warning, once in a run."
 ;;;   now.
 
 (defun blueprints-in (map)
-  "Return the blueprints of the robots that are defined in MAP."
   (remove map (all-blueprints)
           :test-not #'eq
           :key (lambda (blueprint) (find-map (blueprint-map blueprint) nil))))
