@@ -139,6 +139,13 @@
                               (experiment:compare-conditions results 2 1 :stream nil)))
                       "spiral succeeds less often than patrol")))))
 
+(test compare.says-so-where-one-condition-never-measured
+  (with-made-up (results (append (rows-of-outcomes "a" "0" "++++" :way 7)
+                                 (rows-of-outcomes "b" "0" "++++" :way "")))
+    (is (mentions-p (with-output-to-string (out)
+                      (experiment:compare-conditions results 1 2 :stream out))
+                    "way of a and b cannot be compared: over 0 common seeds (4 left out,"))))
+
 (test compare.counts-common-seeds-and-errors-as-it-says
   (with-made-up (results (append (rows-of-outcomes "a" "0" "!+++-" :first 8)
                                  (rows-of-outcomes "b" "0" "!!--+" :first 10)))

@@ -104,12 +104,16 @@ indexes."
   difference)
 
 (defun difference-in (name results first other-results second pairs)
-  (let ((pairs (pairs-for name first second pairs)))
-    (multiple-value-bind (firsts seconds)
-        (paired-values (column-of results first name) (column-of other-results second name) pairs)
+  (let ((pairs (pairs-for name first second pairs))
+        (column (column-of results first name)) (other (column-of other-results second name)))
+    (multiple-value-bind (firsts seconds) (paired-values column other pairs)
       (cond ((string-equal name "ticks") (mean-difference "ticks" firsts seconds))
             ((or firsts (string-equal name "success"))
              (noting-left-out (difference-of-values (string-downcase name) firsts seconds)
+                              (length pairs)))
+            ;; Never measured in both: that there is nothing to compare is to be said.
+            ((or (some #'finite-value-p column) (some #'finite-value-p other))
+             (noting-left-out (mean-difference (string-downcase name) '() '())
                               (length pairs)))))))
 
 ;;; The whole.
