@@ -174,6 +174,14 @@ condition of ours that loading signals."
       (write-saved-texts (append texts '("(end 9)")) file)
       (is-true (says-p "behind its end" (loading-outcome file))))))
 
+(test saved-forgery.of-what-a-track-tells-is-found
+  (with-temporary-file (file)
+    (write-saved-ride file)
+    (let* ((texts (saved-texts file))
+           (command (position "CAMERA-TRACK\")" texts :test #'search)))
+      (is-true (says-when-forged-p "command under way makes no sense" file texts
+                                   (format nil " @~D (@" command) " @1 (@")))))
+
 (test saved-forgery.of-dice-is-named
   "SBCL trusts what is in its dice: a place behind their end would read what is not theirs."
   (with-temporary-file (file)

@@ -23,15 +23,20 @@
                   (every (lambda (thing) (eq holder (thing-location thing))) contents))
              "what ~A holds is not in it" holder))
 
-(defun check-track (camera)
+(defun check-track (track)
+  "Signal CONTRADICTION unless what is told when TRACK ends, if anything, was asked for."
+  (when (track-operation track) (check-request (track-operation track))))
+
+(defun check-tracking (camera)
   (let ((track (camera-tracking camera)))
-    (must-hold (or (null track)
-                   (and (track-p track)
-                        (designator-p (track-designator track))
-                        (eq (camera-robot camera)
-                            (designator-robot (track-designator track)))
-                        (designator-valid-p (track-designator track))))
-               "~A tracks nothing that could be tracked" camera)))
+    (when track
+      (must-hold (and (track-p track)
+                      (designator-p (track-designator track))
+                      (eq (camera-robot camera)
+                          (designator-robot (track-designator track)))
+                      (designator-valid-p (track-designator track)))
+                 "~A tracks nothing that could be tracked" camera)
+      (check-track track))))
 
 (defun check-designator (robot number designator)
   (must-hold (or (null designator)
@@ -53,7 +58,8 @@
           do (check-designator robot number designator))
     (must-hold (proper-list-of-p (lambda (end) (typep end '(cons track keyword)))
                                  (robot-ended-tracks robot))
-               "the tracks of ~A that have ended are none" robot)))
+               "the tracks of ~A that have ended are none" robot)
+    (loop for (track) in (robot-ended-tracks robot) do (check-track track))))
 
 (defun check-odometers (robot)
   (must-hold (and (proper-list-of-p (lambda (odometer)
@@ -93,5 +99,5 @@ from a file, could have come about by itself."
   (loop for bin across (robot-bins robot)
         do (check-contents bin (storage-bin-contents bin) (world-live-count world)))
   (check-designators robot)
-  (map nil #'check-track (robot-cameras robot))
+  (map nil #'check-tracking (robot-cameras robot))
   (check-odometers robot))
