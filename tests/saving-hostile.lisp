@@ -174,6 +174,16 @@ condition of ours that loading signals."
       (write-saved-texts (append texts '("(end 9)")) file)
       (is-true (says-p "behind its end" (loading-outcome file))))))
 
+(test saved-forgery.of-what-is-occupied-is-found
+  "A turn that occupied a mind would pass that to what turns robots."
+  (with-temporary-file (file)
+    (with-rover (:seed 3 :thinking :charged)
+      (command:think rover 9)
+      (run:run-ticks 1)
+      (run:save-simulation file))
+    (is-true (says-when-forged-p "occupy" file (saved-texts file)
+                                 "::THINK\"" "::ROBOT-FOLLOW-WALL\""))))
+
 (test saved-forgery.of-what-a-track-tells-is-found
   (with-temporary-file (file)
     (write-saved-ride file)
