@@ -31,6 +31,11 @@
     "Report with too few variables."
   (command:succeed operation 3))
 
+(command:define-command probe-empty (operation (probe probe)) ()
+    ((:family :handling) (:errors (:empty "Nothing in it")) (:expected :empty) (:traits :asks))
+    "Find that nothing is in it."
+  (command:fail-with operation :empty))
+
 (robot:defrobot diver (meadow (4 10) 0) :cameras ((1 5)) :parts ((probe :reach 2)))
 
 (defmacro with-diver ((&rest options) &body body)
@@ -112,9 +117,18 @@
                   (driver:define-outcome (probe-fail) (n) (:sett driver:robot-place* n))))
     (signals base:malformed-definition (macroexpand-1 form))))
 
+(test command.says-what-warnings-are-to-know
+  (let ((command (command::find-command 'probe-empty)))
+    (is-false (driver::came-to-nothing-p command :empty))
+    (is-true (driver::came-to-nothing-p command :failed))
+    (is-true (command::trait-p :asks command))
+    (is-false (command::trait-p :drives command))))
+
 (test command.is-checked-where-it-is-defined
   (loop for (clause word) in '((((:famly :moving)) ":famly") (((:family :flying)) ":flying")
-                               (((:family :moving) (:delya 5)) ":delya"))
+                               (((:family :moving) (:delya 5)) ":delya")
+                               (((:family :moving) (:traits :flies)) ":flies")
+                               (((:family :moving) (:expected :lost)) ":lost"))
         do (handler-case
                (progn (macroexpand-1 `(command:define-command nap (operation (robot robot:robot)) ()
                                           ,clause "Nap." (command:succeed operation)))

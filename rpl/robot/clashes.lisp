@@ -48,7 +48,7 @@ happens."
   "True if DEED takes no time, stops the robot, or cleans up."
   (or (deed-cleanup-p deed)
       (command-instant-p (deed-command deed))
-      (eq 'robot-stop (deed-name deed))))
+      (trait-p :stops (deed-command deed))))
 
 (defun tell-of-clash (interface older newer)
   "Say once if the deed NEWER of INTERFACE has interrupted the deed OLDER of a task beside its own."
@@ -87,9 +87,7 @@ deed NEWER, most likely by mistake; NIL if that may be meant, as where it reacts
          (or (= 0 ticks)
              (and (= 1 ticks)
                   ;; One may drive on for a tick, too.
-                  (not (member (deed-name older)
-                               '(robot-go-forward robot-go-distance robot-goto-wall
-                                 robot-follow-wall)))
+                  (not (trait-p :drives (deed-command older)))
                   (operator-called-p (step-before task) "WAIT-TIME")
                   (not (watches-p task))))
          ticks)))

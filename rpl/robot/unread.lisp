@@ -8,19 +8,14 @@
 
 (defparameter *codes-of-no-trouble*
   '(:interrupt :not-moving :goto-local :already-tracking
-    :lost-track :grasping :not-grasping :grasp-lost :not-inside :bin-open
-    (robot-go-forward . :robot-blocked) (robot-goto-wall . :robot-blocked)
-    (robot-follow-wall . :robot-blocked)
-    (camera-untrack . :not-tracking) (storage-bin-close . :bin-closed)
-    (storage-bin-close . :bin-jammed))
-  "Codes, or conses (command . code), with which commands end that have done what they are for, or
-that plans use, as those of the manual's appendix D do.")
+    :lost-track :grasping :not-grasping :grasp-lost :not-inside :bin-open)
+  "Codes with which commands end that plans use, as those of the manual's appendix D do.")
 
 (defun came-to-nothing-p (command err)
-  "True if the command called COMMAND, which ended with ERR, could not do what it is for."
+  "True if COMMAND, which ended with ERR, could not do what it is for."
   (and err
        (not (member err *codes-of-no-trouble*))
-       (not (member (cons command err) *codes-of-no-trouble* :test #'equal))))
+       (not (member err (command-expected command)))))
 
 ;; Plain data, so that forks have it, too.
 (defstruct (unread-end (:type list) (:conc-name unread-)
@@ -54,7 +49,7 @@ supersedes how the same command ended before."
                                   (eql part (unread-part unread)))))
                        (interface-unread interface))))
     (when (and task
-               (came-to-nothing-p command err)
+               (came-to-nothing-p (deed-command deed) err)
                (not (deed-told-p deed))
                (not (deed-cleanup-p deed)))
       (let ((unread (make-unread (task-serial (task-top task)) command part err)))

@@ -23,6 +23,7 @@
 (define-command storage-bin-close (operation (storage-bin storage-bin))
     ((jammed-part "the camera or hand that keeps the bin from closing, or NIL"))
     ((:family :handling) (:section "3.6") (:delay bin-delay*)
+     (:expected :bin-closed :bin-jammed)
      (:errors (:bin-closed (text-of "~A is already closed"))
               (:robot-in-bin (lambda (operation)
                                (let ((bin (operation-resource operation)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.command)
 
-(export '(command error-code *commands* command-shape))
+(export '(command error-code *commands* command-shape trait-p))
 
 ;;; A command is defined once (see define-command.lisp); its COMMAND object is what the prompt, the
 ;;; journal and the plan language know of it.
@@ -38,6 +38,9 @@
               "the specifications of its arguments but resource and continuation" :addition)
   (results '() list "the specifications of what its continuation gets besides" :addition)
   (errors '() list "the command's own error codes; any can also end with :INTERRUPT" :addition)
+  (expected '() list
+            "those of its error codes with which it has done what it is for, keywords" :export)
+  (traits '() list "what it does, keywords of *COMMAND-TRAITS*")
   (echo '() list
         "the names of the results that are arguments, and are told after an interruption, too")
   (delay nil function)
@@ -52,6 +55,13 @@ with it" :export)
 
 (defmethod print-object ((command command) stream)
   (print-unreadable-object (command stream :type t) (princ (command-name command) stream)))
+
+(defparameter *command-traits* '(:drives :stops :asks)
+  "What can be said of commands by :TRAITS, see DEFINE-COMMAND.")
+
+(defun trait-p (trait command)
+  "True if COMMAND has TRAIT, one of *COMMAND-TRAITS*."
+  (and (member trait (command-traits command)) t))
 
 (defun command-aliases (command)
   "Return what COMMAND is called at the prompt, in a list."

@@ -131,12 +131,17 @@ once what is to be done in the end."
     (dolist (option options)
       (check (and (consp option)
                   (member (first option)
-                          '(:family :section :delay :errors :report :echo :prompt :prefix
-                            :occupies)))
+                          '(:family :section :delay :errors :expected :report :echo :prompt
+                            :prefix :occupies :traits)))
              option
              (format nil "(:family ...), (:section ...), (:delay ...), (:errors ...), ~
-                          (:report ...), (:echo ...), (:prompt ...), (:prefix ...) or ~
-                          (:occupies ...)")))
+                          (:expected ...), (:report ...), (:echo ...), (:prompt ...), ~
+                          (:prefix ...), (:occupies ...) or (:traits ...)")))
+    (dolist (trait (option :traits options))
+      (check (member trait *command-traits*) trait
+             (format nil "traits of ~{~(~S~)~^, ~}" *command-traits*)))
+    (dolist (code (option :expected options))
+      (check (assoc code (option :errors options)) code "expected codes of those in (:errors ...)"))
     (let ((family (assoc :family options)))
       (check (and family (member (second family) *command-families*)) (or family options)
              (format nil "(:family family), one of ~{~(~S~)~^, ~}" *command-families*)))))
@@ -159,6 +164,8 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
                                        without it the command is done in the next tick
   (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a
                                        function of the operation, for the error message
+  (:expected keyword...)               those of its error codes that tell no failure, as the command
+                                       has done what it is for: plans need not look at them
   (:report lambda-list form)           what the message of success says, from the results; the
                                        resource is (operation-resource OPERATION) there
   (:echo name...)                      those of RESULTS that the continuation gets after an
@@ -167,6 +174,9 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
   (:prompt name) (:prefix string)      unlike the rule of DEFAULT-PROMPT-NAME
   (:occupies function)                 the name of a function of the resource that returns what the
                                        command occupies instead of it, such as the robot's mind
+  (:traits keyword...)                 what warnings are to know: it :DRIVES, so that even a tick of
+                                       it is of use; it :STOPS what its resource does; it :ASKS, so
+                                       that it is of no use unless its answer is waited for
 BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or
 later (reading 149)."
   (check-command-form name resource parameters results options)
@@ -194,6 +204,8 @@ later (reading 149)."
                                 collect (spec-form (list result t text))))
          :errors (list ,@(loop for (keyword text) in errors
                                collect `(make-error-code ,keyword ,text)))
+         :expected ',(option :expected options)
+         :traits ',(option :traits options)
          :echo ',(option :echo options)
          :delay (lambda () ,(first (option :delay options '(1))))
          :instant-p ,(null (assoc :delay options))

@@ -74,6 +74,7 @@ and if the robot has stopped meanwhile."
                                   (time ticks "for how many ticks"))
     ()
     ((:family :moving) (:section "3.5") (:delay robot-move-delay*)
+     (:traits :drives) (:expected :robot-blocked)
      (:errors (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot stopped"))
@@ -100,6 +101,7 @@ and if the robot has stopped meanwhile."
                                    (metres distance "how far"))
     ()
     ((:family :moving) (:section "3.5") (:prompt "GO") (:delay robot-move-delay*)
+     (:traits :drives)
      (:errors (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot stopped"))
@@ -116,14 +118,13 @@ ticks."
 (define-command robot-goto-wall (operation (robot robot))
     ()
     ((:family :moving) (:section "3.5") (:delay robot-move-delay*)
+     (:traits :drives) (:expected :robot-blocked)
      (:errors (:robot-blocked "Robot is blocked by something that is no wall")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot is at a wall"))
     "Drive ROBOT straight ahead until it meets a wall or the edge of the map."
   (begin-movement robot)
   (go-on-now operation 'drive-to-wall))
-
-(defmethod stop-p ((name (eql 'robot-stop))) t)
 
 ;; A stop that interrupts another goes on where that was.
 (defmethod note-cut-short ((name (eql 'robot-stop)) operation rival)
@@ -139,7 +140,7 @@ ticks."
 ;; As reading 95 says.
 (define-command robot-stop (operation (robot robot))
     ()
-    ((:family :moving) (:section "3.5") (:delay 1)
+    ((:family :moving) (:section "3.5") (:delay 1) (:traits :stops)
      (:report () "Robot stopped"))
     "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first. Who stops it
 once more meanwhile does not prolong that."

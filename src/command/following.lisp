@@ -61,6 +61,7 @@ then looks there, but for the error of turning."
 (define-command robot-follow-wall (operation (robot robot))
     ()
     ((:family :moving) (:section "C") (:delay robot-move-delay*)
+     (:traits :drives) (:expected :robot-blocked)
      (:errors (:robot-blocked "Robot is blocked by something that is no wall")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot is at the end of the wall"))

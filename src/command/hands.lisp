@@ -85,7 +85,7 @@ designators silently."
 ;; As reading 150 says.
 (define-command hand-grasp-check (operation (hand hand))
     ()
-    ((:family :handling) (:section "3.6")
+    ((:family :handling) (:section "3.6") (:traits :asks)
      (:errors (:grasping (text-of "~A is holding something"))
               (:not-grasping (text-of "~A is not holding anything"))))
     "Feel whether HAND holds something. One of the two error codes is the answer."

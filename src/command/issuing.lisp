@@ -93,13 +93,9 @@ of another."
 
 ;;; One command after the other, and no tick between them.
 
-(defgeneric stop-p (name)
-  (:documentation "True if the command called NAME just stops the robot.")
-  (:method (name) (declare (ignore name)) nil))
-
 (defun lasting-p (command)
   "True if COMMAND takes time, and does not just stop the robot: a newer one cuts it short."
-  (not (or (command-instant-p command) (stop-p (command-name command)))))
+  (not (or (command-instant-p command) (trait-p :stops command))))
 
 (defun by-program-p ()
   "True where a program asks, one that is not of plans, the prompt or a journal: whoever has called

@@ -11,7 +11,7 @@
 
 (define-command camera-view (operation (camera camera))
     ((view "a list of numbers, one for each pixel from left to right"))
-    ((:family :looking) (:section "3.4.3")
+    ((:family :looking) (:section "3.4.3") (:traits :asks)
      (:report (view) (format nil "~A sees ~{~,2F~^ ~}" (operation-resource operation) view)))
     "Take a view with CAMERA."
   (succeed operation (take-view camera)))

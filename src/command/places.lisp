@@ -12,7 +12,7 @@
 ;; As reading 106 says.
 (define-command robot-place (operation (robot robot))
     ((place-type "the name of the place type sensed, or NIL"))
-    ((:family :moving) (:section "2.2, C")
+    ((:family :moving) (:section "2.2, C") (:traits :asks)
      (:report (type) (format nil "Place is ~A" type)))
     "Sense the type of the place where ROBOT is."
   (let ((type (sense-place-type robot)))

@@ -65,7 +65,7 @@ track begins, with NIL, and again when it ends, with the error code that says ho
 ;; As reading 84 says.
 (define-command camera-untrack (operation (camera camera))
     ()
-    ((:family :looking) (:section "3.4.3")
+    ((:family :looking) (:section "3.4.3") (:traits :stops) (:expected :not-tracking)
      (:errors (:not-tracking (text-of "~A is not tracking anything")))
      (:report () (format nil "~A stopped tracking" (operation-resource operation))))
     "Stop CAMERA from tracking. The designator remains; the track's continuation gets :INTERRUPT."

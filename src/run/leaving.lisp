@@ -25,8 +25,7 @@ remedy; NIL if there is nothing, or it only ends something."
   (let ((names (loop for request in (timeline-inbox (simulation-timeline simulation))
                      when (and (operation-p request)
                                (programs-request-p request)
-                               (not (member (request-name request) '(robot-stop camera-untrack)
-                                            :test #'same-name-p)))
+                               (not (trait-p :stops (operation-command request))))
                        collect (string-downcase (request-name request)))))
     (when names
       (format nil "~{~A~^, ~} did nothing, as with-simulation ended before another tick had ~
