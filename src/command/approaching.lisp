@@ -68,7 +68,9 @@ it (reading 111)."
            (cond (arrived (arrive operation camera designator))
                  (block (fail-with operation :robot-blocked camera designator)))))))
 
-(define-step approach-on (operation robot designator camera)
+(define-step approach-on (operation (and (robot-p (operation-resource operation))
+                                         (designator-p (operation-subject operation))
+                                         (camera-p (first (operation-arguments operation)))))
   "Go on for a tick to the designator that is the subject of OPERATION."
   (approach-step operation (operation-resource operation)
                  (first (operation-arguments operation)) (operation-subject operation))

@@ -48,20 +48,20 @@ Fails with :NOT-MOVING when the speed is 0."
            ,@body
            (unless (operation-finished-p ,operation) (once-more ,operation))))))
 
-(define-step drive-a-while (operation robot)
+(define-step drive-a-while (operation (robot-p (operation-resource operation)))
   "Drive for a tick of the time that is left, and end OPERATION when that is over."
   (drive-on (block operation drive-in-time)
     (cond (block (fail-with operation :robot-blocked))
           ((drive-time-over-p operation) (succeed operation)))))
 
-(define-step drive-to-wall (operation robot)
+(define-step drive-to-wall (operation (robot-p (operation-resource operation)))
   "Drive for a tick, and end OPERATION at a wall."
   (drive-on (block operation)
     (case block
       (:wall (succeed operation))
       (:thing (fail-with operation :robot-blocked)))))
 
-(define-step coast (operation robot)
+(define-step coast (operation (robot-p (operation-resource operation)))
   "Drive for a tick of those that are left; OPERATION succeeds after the last, where it is blocked,
 and if the robot has stopped meanwhile."
   (if (standing-p (operation-resource operation))
@@ -91,7 +91,7 @@ and if the robot has stopped meanwhile."
   (lambda (value) (and (realp value) (< 0 value) (<= value 1000000)))
   "a number of metres, more than 0, at most a million")
 
-(define-step drive-the-rest (operation robot)
+(define-step drive-the-rest (operation (robot-p (operation-resource operation)))
   "Drive for a tick, no farther than the metres that are left, and end OPERATION when none are."
   (drive-on (block operation drive-what-is-left)
     (cond (block (fail-with operation :robot-blocked))

@@ -49,7 +49,9 @@ then looks there, but for the error of turning."
                (once-more operation)
                (succeed operation)))))
 
-(define-step follow-on (operation robot (cons integer (cons integer null)))
+(define-step follow-on (operation (and (robot-p (operation-resource operation))
+                                       (typep (operation-subject operation)
+                                              '(cons integer (cons integer null)))))
   "Follow the wall of OPERATION, whose subject is its side and the heading along it, for a tick."
   (let ((robot (operation-resource operation)))
     (destructuring-bind (side heading) (operation-subject operation)

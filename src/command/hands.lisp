@@ -96,7 +96,7 @@ designators silently."
 (defconstant +watch-period+ 1000
   "How long the event of a watch waits, in ticks, before it is queued anew.")
 
-(define-step watch-grip (operation hand)
+(define-step watch-grip (operation (hand-p (operation-resource operation)))
   "Let OPERATION occupy its hand until that no longer holds its subject, what it held at
 first (reading 162)."
   (let ((hand (operation-resource operation)))

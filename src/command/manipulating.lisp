@@ -104,7 +104,9 @@ with :FAILED if it fails or is left."
       (progn (doubt-code operation (first results))
              (finish operation (first results) (second results))))))
 
-(define-step carry-out (operation t manipulation-method)
+(define-step carry-out (operation (and (manipulation-method-p (operation-subject operation))
+                                       (method-takes-p (operation-subject operation)
+                                                       (operation-arguments operation))))
   "Do what the method that is the subject of OPERATION does, if that is still possible and succeeds,
 and end OPERATION."
   (let ((method (operation-subject operation))

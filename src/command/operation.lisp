@@ -180,6 +180,8 @@ the resource and RESULTS. The second end of an operation changes nothing."
   "End OPERATION successfully; its continuation gets NIL, the resource and RESULTS."
   (apply #'finish operation nil results))
 
+(note-step 'succeed (constantly t))
+
 (defun fail-with (operation code &rest results)
   "End OPERATION with the error CODE; its continuation gets that, the resource and RESULTS."
   (apply #'finish operation code results))
@@ -252,7 +254,8 @@ time limit, OPERATION is interrupted."
   (funcall step operation))
 
 ;; As reading 78 says.
-(defun start-body (operation)
+(define-step start-body (operation t)
+  "Run the body of OPERATION's command."
   (apply (command-body (operation-command operation))
          operation (resource-told operation) (operation-arguments operation)))
 

@@ -35,10 +35,10 @@ first are pushed out by the last."
         (succeed operation designator)
         (fail-with operation :designator-not-found))))
 
-(defun sightings-p (object)
-  (proper-list-of-p #'sighting-p object))
-
-(define-step designate-found (operation camera (satisfies sightings-p))
+(define-step designate-found (operation (and (camera-p (operation-resource operation))
+                                             (proper-list-of-p #'sighting-p
+                                                               (operation-subject operation))))
+  "End OPERATION with designators for all sightings that are its subject."
   (let ((designators (name-sightings (operation-resource operation) (operation-subject operation))))
     (if designators
         (succeed operation designators)

@@ -4,6 +4,13 @@
 
 (export '(check-commands))
 
+(defun step-fits-p (operation)
+  "True if OPERATION is such as its step needs."
+  (let ((fits-p (get (operation-step operation) 'step)))
+    (if (eq :guarded fits-p)
+        (command-guarded-p (operation-command operation))
+        (funcall fits-p operation))))
+
 (defun arguments-fit-p (operation)
   "True if OPERATION has arguments such as its command takes."
   (let ((command (operation-command operation)) (arguments (operation-arguments operation)))
@@ -26,12 +33,10 @@
                    (occupied (operation-command operation) (resource-told operation)))
                "~(~A~) does not occupy what it should" name)
     (must-hold (arguments-fit-p operation) "~(~A~) has not the arguments that it needs" name)
-    (must-hold (or (null (operation-step operation)) (step-p (operation-step operation)))
-               "~(~A~) would go on with what is no step of a command" name)
-    (must-hold (or (null (operation-step operation))
-                   (step-suits-p (operation-step operation) (operation-resource operation)
-                                 (operation-subject operation) (operation-arguments operation)))
-               "~(~A~) would go on with what it has not" name)
+    (when (operation-step operation)
+      (must-hold (step-p (operation-step operation))
+                 "~(~A~) would go on with what is no step of a command" name)
+      (must-hold (step-fits-p operation) "~(~A~) would go on with what it has not" name))
     (must-hold (eq (operation-timeline operation)
                    (timeline-of (resource-told operation)))
                "~(~A~) is under way in another run" name)))

@@ -1,48 +1,47 @@
-;;;; steps.lisp -- which functions carry operations on: those that GO-ON is told of.
+;;;; steps.lisp -- which functions carry operations on, and what these need.
 
 (in-package :ars-magna.command)
 
-;;; An operation has the name of a function that carries it on. A file that says how far a command
-;;; is may name what is a step, and no other function. What GO-ON is told of in a program's text is
-;;; a step from when that is loaded.
+;;; An operation has the name of a function that carries it on, its step. A file that says how far a
+;;; command is may name what is a step, and no other function. Our own steps trust what they are
+;;; called with, so DEFINE-STEP says what that must be. What GO-ON is told of in a user's program is
+;;; a step of users' commands: these are called with care, and check what they get.
 
-(defmacro define-step (name (operation &optional (resource t) (subject t) &rest arguments)
-                       &body body)
-  "Define the function NAME of OPERATION, a step of commands. RESOURCE and SUBJECT are types of what
-OPERATION has as such, ARGUMENTS of its first arguments: a saved run in which they are others is
-refused."
-  `(progn
-     (setf (get ',name 'step) '(,resource ,subject ,@arguments))
-     (defun ,name (,operation) ,@body)))
-
-(defun note-step (step)
-  "Let the function called STEP be one that carries an operation on, if it is not yet. Return STEP."
-  (unless (get step 'step)
-    (setf (get step 'step) '(t t)))
+(defun note-step (step fits-p)
+  "Let the function called STEP carry on each operation that the function FITS-P is true of; those
+of users' commands, if it is :GUARDED."
+  (setf (get step 'step) fits-p)
   step)
 
-(defun step-suits-p (step resource subject arguments)
-  "True if RESOURCE, SUBJECT and ARGUMENTS of an operation are such as STEP needs."
-  (destructuring-bind (resource-type subject-type &rest types) (get step 'step)
-    (and (typep resource resource-type)
-         (typep subject subject-type)
-         (<= (length types) (length arguments))
-         (every #'typep arguments types))))
+(defmacro define-step (name (operation needs) documentation &body body)
+  "Define the function NAME, a step of OPERATION, which runs BODY. It trusts that NEEDS, a form, is
+true, such as (robot-p (operation-resource operation)); an operation from a file is refused where
+that is false."
+  `(progn
+     (note-step ',name (lambda (,operation) (declare (ignorable ,operation)) ,needs))
+     (defun ,name (,operation) ,documentation ,@body)))
+
+(defun use-step (step)
+  "Return STEP, the name of a function that GO-ON is told of. Signals an error if it is one of ours
+that DEFINE-STEP has not defined."
+  (cond ((get step 'step) step)
+        (*marking-p* (error "~S is not defined by DEFINE-STEP" step))
+        (t (note-step step :guarded))))
 
 (defun step-p (name)
   "True if the symbol NAME is that of a function which carries operations on."
   (and (get name 'step) (fboundp name) t))
 
-(defun noting-step (form)
-  "Return FORM, a call with a step as its second argument, such that a quoted one is noted when what
-it stands in is loaded."
+(defun using-step (form)
+  "Return FORM, a call with a step as its second argument, such that USE-STEP is told of a quoted
+one when what it stands in is loaded."
   (destructuring-bind (function operation step &rest more) form
     (if (typep step '(cons (eql quote) (cons (and symbol (not null)) null)))
-        `(,function ,operation (load-time-value (note-step ,step)) ,@more)
+        `(,function ,operation (load-time-value (use-step ,step)) ,@more)
         form)))
 
 (define-compiler-macro go-on (&whole form &rest arguments)
-  (if (and (eq 'go-on (first form)) (rest arguments)) (noting-step form) form))
+  (if (and (eq 'go-on (first form)) (rest arguments)) (using-step form) form))
 
 (define-compiler-macro go-on-now (&whole form &rest arguments)
-  (if (and (eq 'go-on-now (first form)) (rest arguments)) (noting-step form) form))
+  (if (and (eq 'go-on-now (first form)) (rest arguments)) (using-step form) form))

@@ -65,7 +65,7 @@ odometry's reading of the step. See reading 99."
     (values (- left step)
             (* 0.5d0 (+ (robot-turned-low robot) (robot-turned-high robot))))))
 
-(define-step turn-on (operation robot)
+(define-step turn-on (operation (robot-p (operation-resource operation)))
   "Turn for a tick what is left to be turned by OPERATION, and end that when nothing is."
   (multiple-value-bind (left read)
       (turn-step (operation-resource operation) (operation-left operation))
