@@ -75,6 +75,14 @@ each line; where nobody sits, it is read from where else it would be."))
       :interactive (lambda () (list (string-left-trim " " (read-line *query-io* nil ""))))
       line)))
 
+(defun sessions-to-ask ()
+  "Return the sessions whose users can say how what has broken in this thread is to go on: the one
+of this thread, or all that listen to its simulation, or the newest."
+  (let ((own *session*))
+    (cond ((and own (eq (session-thread own) (current-thread))) (list own))
+          ((remove-if-not #'session-terminal-p (sessions-hearing *simulation*)))
+          ((and own (session-terminal-p own)) (list own)))))
+
 (defmethod next-typed-line ((stream asking-text))
   (let ((line (if (sessions-to-ask)
                   (ask-for-answer)

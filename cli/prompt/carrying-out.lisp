@@ -40,6 +40,22 @@ nobody has defined at its end are messages."
                      ((and new-p (null file) (eq :variable kind))
                       (tell-of-new-variable name)))))))
 
+(define-condition file-trouble (ars-magna-error)
+  ((file  :initarg :file  :reader file-trouble-file)
+   (line  :initarg :line  :reader file-trouble-line)
+   (cause :initarg :cause :reader file-trouble-cause))
+  (:report (lambda (condition stream)
+             (format stream "~A, line ~D: ~A"
+                     (file-trouble-file condition) (file-trouble-line condition)
+                     (condition-text (file-trouble-cause condition)))))
+  (:documentation "A form in a file that is being loaded has failed; those before it have not."))
+
+(defun placed-p (condition)
+  "True if CONDITION says itself where the trouble is."
+  (or (typep condition 'file-trouble)
+      (and (typep condition 'malformed-definition)
+           (malformed-definition-place condition))))
+
 (defun tell-with-place (tell condition)
   "Let TELL, ERROR-SET or WARNING-SET, say what CONDITION says, which came up in COMPILE-FILE, with
 file and line. Do nothing elsewhere."
@@ -48,10 +64,7 @@ file and line. Do nothing elsewhere."
                                          (reading-place condition)
                                          (compiling-place))
       (cond ((null file))
-            ((or (typep condition 'file-trouble)
-                 (and (typep condition 'malformed-definition)
-                      (malformed-definition-place condition)))
-             (funcall tell text))
+            ((placed-p condition) (funcall tell text))
             (t (funcall tell (format nil "~A~@[, line ~D~]: ~A" file line text)))))))
 
 (defun tell-of-compiling (condition)

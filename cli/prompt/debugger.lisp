@@ -225,14 +225,6 @@ it asks how it goes on: for those who show what stands still then.")
       (debug-here (first sessions) breakage)
       (debug-elsewhere sessions breakage)))
 
-(defun sessions-to-ask ()
-  "Return the sessions whose users can say how what has broken in this thread is to go on: the one
-of this thread, or all that listen to its simulation, or the newest."
-  (let ((own *session*))
-    (cond ((and own (eq (session-thread own) (current-thread))) (list own))
-          ((remove-if-not #'session-terminal-p (sessions-hearing *simulation*)))
-          ((and own (session-terminal-p own)) (list own)))))
-
 (defun others-matter-p ()
   "True if what breaks in this thread is no matter of prompts: it is a user's own, in a Lisp that
 does other things too, and no prompt runs in it."

@@ -2,16 +2,6 @@
 
 (in-package :ars-magna.cli)
 
-(define-condition file-trouble (ars-magna-error)
-  ((file  :initarg :file  :reader file-trouble-file)
-   (line  :initarg :line  :reader file-trouble-line)
-   (cause :initarg :cause :reader file-trouble-cause))
-  (:report (lambda (condition stream)
-             (format stream "~A, line ~D: ~A"
-                     (file-trouble-file condition) (file-trouble-line condition)
-                     (condition-text (file-trouble-cause condition)))))
-  (:documentation "A form in a file that is being loaded has failed; those before it have not."))
-
 (defun call-watched-at (place function)
   "Call FUNCTION, while PLACE, a function, says to whoever watches where in a file that is."
   (let ((calls *user-calls*))
@@ -28,9 +18,7 @@
   "Call FUNCTION, which deals with what FILE has on the line that the function LINE returns of a
 condition, or of NIL."
   (handler-bind ((error (lambda (condition)
-                          (unless (or (typep condition 'file-trouble)
-                                      (and (typep condition 'malformed-definition)
-                                           (malformed-definition-place condition)))
+                          (unless (placed-p condition)
                             (error 'file-trouble :file file :cause condition
                                                  :line (funcall line condition))))))
     (call-watched-at (lambda () (format nil "~A, line ~D" file (funcall line nil))) function)))
