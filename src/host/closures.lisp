@@ -5,8 +5,6 @@
 (export '(closure-p closure-values copy-closure replace-closure-values value-cell-p cell-value
           exit-cell-p make-value-cell))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 ;;; A closure is code and values. A variable that is closed over and assigned to is a CELL, which
 ;;; all closures over it share. What is interpreted has closed over its environment.
 

@@ -6,10 +6,9 @@
           structure-reader-p source-at code-references lambda-list-of callable-with-p
           function-file files-besides-functions call-as-from-file tell-sources))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. Since 2.4.10, the names of called functions are no
-;;; constants of code: it calls them through a linkage table. The names of macros, constants and
-;;; inline functions that were used are in the cross references, those of structures in the types of
-;;; functions.
+;;; Since SBCL 2.4.10, the names of called functions are no constants of code: it calls them through
+;;; a linkage table. The names of macros, constants and inline functions that were used are in the
+;;; cross references, those of structures in the types of functions.
 
 (defun linked-names (code)
   "Return the names of the functions that CODE calls through a linkage table."

@@ -7,8 +7,6 @@
           wrap-compilation-units wrap-unit-summaries context-original-form context-file
           context-path compiler-error-p))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 ;;; SBCL remembers where each list stands that it has read to compile or load it. A list that was
 ;;; made of one that stands somewhere can be given its place: what the compiler has to say of it is
 ;;; then said of what the author wrote. That is all in tables and variables of the compiler.

@@ -4,8 +4,6 @@
 
 (export '(calls-under-way disabled-hook-p take-foreground yield-foreground))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (defun calls-under-way (&optional (limit 100))
   "Return a list of the calls under way, the newest first and at most LIMIT of them, each as
 \(function argument...) as far as the compiler has kept that."

@@ -7,8 +7,6 @@
           local-function-p known-function-p macro-expander lisps-own-p extended-environment
           evaluate-form walk-form expand-in-walk))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (defun function-arguments (name)
   "Return what the function NAME takes, types and lambda list keywords as in the type FUNCTION, and
 true; or NIL twice if the compiler does not know."

@@ -5,8 +5,6 @@
 (export '(double-high-bits double-bits make-double make-single finite-p positive-infinity-p
           double-to-bits bits-to-double finite-double-p))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (declaim (inline double-high-bits double-bits make-double make-single))
 (defun double-high-bits (number)
   "Return the upper 32 bits of the double-float NUMBER, as a signed integer."

@@ -4,7 +4,7 @@
 
 (export '(reference-slots layout-of layout-number instance-slot copy-condition))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. Layouts were called wrappers in SBCL 2.2.
+;;; Layouts were called wrappers in SBCL 2.2.
 
 (defun immediate-type-p (type)
   "True if what is of TYPE is never altered, and refers to nothing."

@@ -4,8 +4,7 @@
 
 (export '(environment-p environment-values fixed-slot-p))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. An SBCL that was built without SB-EVAL has no
-;;; interpreted functions: there nothing is one.
+;;; An SBCL that was built without SB-EVAL has no interpreted functions: there nothing is one.
 
 ;;; A function that is interpreted, as those of plans that programs make are, has its variables in
 ;;; an ENVIRONMENT of the interpreter's, which all functions made there share.

@@ -6,8 +6,6 @@
           call-allowing-interrupts call-holding-interrupts call-open-to-interrupts waiting-at-most
           deadline-passed))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 ;;; What interrupts a thread is a time limit, Ctrl-C, another thread, or that it is to end. It may
 ;;; leave what it interrupts. Where that would lock others out for ever, it waits for a moment.
 

@@ -4,8 +4,6 @@
 
 (export '(octets-before-garbage scrub-stack dynamic-usage collections))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (defun dynamic-usage ()
   "Return how many bytes objects take, including garbage."
   (internal (:sb-kernel #:dynamic-usage)))

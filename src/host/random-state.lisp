@@ -4,8 +4,8 @@
 
 (export '(random-words words-of-state fill-words wrap-renewal))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. In all of them a random state is 627 words of the
-;;; Mersenne Twister MT19937: two constants, the place of the next word, and 624 words.
+;;; In all versions of SBCL that were tried a random state is 627 words of the Mersenne Twister
+;;; MT19937: two constants, the place of the next word, and 624 words.
 
 (deftype random-words ()
   "What is in a random state."

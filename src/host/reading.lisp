@@ -4,8 +4,6 @@
 
 (export '(form-start line-reached line-of-next encapsulated-condition undecodable-format))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (defun form-start (stream)
   "Return at which character the form begins that LOAD reads from STREAM, or 0 if not even its first
 character can be read; NIL of other streams."

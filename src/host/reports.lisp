@@ -4,8 +4,7 @@
 
 (export '(*report-addition*))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4. A debugger of Lisp's or of an editor writes a report as
-;;; PRINC does.
+;;; A debugger of Lisp's or of an editor writes a report as PRINC does.
 
 (defvar *report-addition* (constantly nil)
   "A function of an error of Lisp's own that returns a sentence to stand behind its report, or

@@ -5,8 +5,6 @@
 (export '(user-interrupt signal-user-interrupt call-on-interrupt call-on-continuing
           die-of-interrupts die-of-termination))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (deftype user-interrupt ()
   "The condition that the user has pressed control C."
   (internal-name :sb-sys '#:interactive-interrupt))

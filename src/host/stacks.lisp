@@ -4,8 +4,6 @@
 
 (export '(restore-stack regain-room stack-full-p))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 ;;; Near its end a stack has pages that must not be touched. The first is opened when a program
 ;;; touches it, so that there is room for the handlers; the page before it then closes it again as
 ;;; soon as the program comes back. One that leaves by a jump may never touch that: its thread, or

@@ -4,8 +4,6 @@
 
 (export '(octet-input text-output descriptor-stream input-within-p))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (deftype descriptor-stream ()
   "A stream on a file, pipe or terminal of this process."
   (internal-name :sb-sys '#:fd-stream))

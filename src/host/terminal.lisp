@@ -4,8 +4,6 @@
 
 (export '(rows-and-columns char-width))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (defconstant +ask-for-size+ (if (uiop:featurep :linux) #x5413 #x40087468)
   "The number of the system's request for the size of a terminal's window.")
 

@@ -4,8 +4,6 @@
 
 (export '(wrap-function unwrap-function wrapped-p))
 
-;;; Tried with SBCL 2.2.9, 2.5.2 and 2.6.4.
-
 (defun wrap-function (name wrapper &optional (type 'ars-magna))
   "Call WRAPPER instead of the function NAME, which is not ours, with that function and its
 arguments. A second wrapper of the same TYPE, a symbol, replaces the first."
