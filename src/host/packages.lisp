@@ -2,21 +2,9 @@
 
 (in-package :ars-magna.host)
 
-(export '(package-locked-p lock-package unlock-package lock-violation locked-symbol copy-nicknames))
+(export '(lock-violation locked-symbol copy-nicknames))
 
 ;;; What a locked package has cannot be redefined by accident.
-
-(defun package-locked-p (package)
-  "True if PACKAGE is locked."
-  (sb-ext:package-locked-p package))
-
-(defun lock-package (package)
-  "Lock PACKAGE."
-  (sb-ext:lock-package package))
-
-(defun unlock-package (package)
-  "Let what PACKAGE has be redefined."
-  (sb-ext:unlock-package package))
 
 (deftype lock-violation ()
   "The condition that a name of a locked package was to be redefined."

@@ -2,10 +2,9 @@
 
 (in-package :ars-magna.host)
 
-(export '(make-lock with-lock call-if-free make-semaphore signal-semaphore wait-on-semaphore
-          wait-a-while wait-patiently call-when-free *leaving-p* call-when-leaving start-thread
-          own-thread-p join-thread interrupt-thread thread-alive-p current-thread users-thread-p
-          yield-thread thread-name spread-specials))
+(export '(make-lock with-lock call-if-free make-semaphore wait-on-semaphore wait-a-while
+          wait-patiently call-when-free *leaving-p* call-when-leaving start-thread own-thread-p
+          join-thread interrupt-thread current-thread users-thread-p yield-thread spread-specials))
 
 ;;; No thread is killed: threads are asked to end, and then joined. One that is in users' code which
 ;;; does not return may be interrupted, at the user's word.
@@ -28,10 +27,6 @@ holds that."
 (defun make-semaphore (name)
   "Return a new semaphore called NAME with a count of 0."
   (bordeaux-threads:make-semaphore :name name))
-
-(defun signal-semaphore (semaphore)
-  "Add one to the count of SEMAPHORE, waking a thread that waits on it."
-  (bordeaux-threads:signal-semaphore semaphore))
 
 (defun wait-on-semaphore (semaphore &optional seconds)
   "Take one from SEMAPHORE; true if that succeeded within SECONDS (NIL: however long)."
@@ -111,18 +106,10 @@ since this Lisp is being left."
   (ignore-errors (bordeaux-threads:interrupt-thread thread function))
   (values))
 
-(defun thread-alive-p (thread)
-  "True while THREAD runs."
-  (bordeaux-threads:thread-alive-p thread))
-
 (declaim (inline current-thread))
 (defun current-thread ()
   "Return the thread that asks."
   sb-thread:*current-thread*)
-
-(defun thread-name (thread)
-  "Return what THREAD is called, a string."
-  (bordeaux-threads:thread-name thread))
 
 (defun yield-thread ()
   "Let other threads run for a moment."

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.host)
 
-(export '(make-weak weak-value weak-pointer-p))
+(export '(make-weak weak-value))
 
 (defun make-weak (object)
   "Return what leads to OBJECT as long as anything else does."
@@ -11,7 +11,3 @@
 (defun weak-value (weak)
   "Return the object that WEAK, which MAKE-WEAK has returned, leads to, or NIL if it is gone."
   (values (sb-ext:weak-pointer-value weak)))
-
-(defun weak-pointer-p (object)
-  "True if OBJECT is what MAKE-WEAK returns, whoever has made it."
-  (sb-ext:weak-pointer-p object))
