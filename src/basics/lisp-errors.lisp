@@ -27,12 +27,6 @@
      "An operation on floating-point numbers has no result, as 0 divided by 0."))
   "Lists (condition-type text).")
 
-(defun signalled-by-lisp-p (condition)
-  "True if the class of CONDITION is of Common Lisp or SBCL, not of a user's or a library's."
-  (let* ((package (symbol-package (type-of condition)))
-         (name (if package (package-name package) "")))
-    (or (string= name "COMMON-LISP") (starts-with-subseq "SB-" name))))
-
 ;; The methods stand above, where definitions and the types of arguments are known.
 (defgeneric slip-text (condition)
   (:documentation "Return in a sentence what was meant where CONDITION, an error of Lisp's own, came
@@ -192,7 +186,7 @@ others."
 (defun lisp-error-text (condition)
   "Return our text for CONDITION if it is one of Common Lisp's own errors; NIL if there is none."
   (ignore-errors
-   (when (signalled-by-lisp-p condition)
+   (when (lisps-own-p (type-of condition))
      (typecase condition
        (arithmetic-error (arithmetic-text condition))
        (sb-ext:name-conflict (conflict-text condition))

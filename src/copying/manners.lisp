@@ -102,11 +102,6 @@ of what is the system's own. What is in the slots number INDICES is copied too; 
   (indices #() :type simple-vector :read-only t)
   (fresh '() :type list :read-only t))
 
-(defun systems-own-p (class)
-  "True if CLASS is one of the Lisp system's own, such as streams and threads."
-  (let ((name (package-name (or (symbol-package (class-name class)) :keyword))))
-    (or (string= name "COMMON-LISP") (starts-with-subseq "SB-" name))))
-
 (defun kind-slot-called (name kind)
   (and kind (find name (kind-slots kind) :key #'kind-slot-name :test #'eq)))
 
@@ -123,7 +118,7 @@ of what is the system's own. What is in the slots number INDICES is copied too; 
   "Return the way in which structures like OBJECT are copied; see MANNER."
   (cond ((some (lambda (type) (typep object type)) *shared-types*) :share)
         ((own-method-p object) :method)
-        ((and (systems-own-p (class-of object)) (not (environment-p object))) :ask)
+        ((and (lisps-own-p (class-name (class-of object))) (not (environment-p object))) :ask)
         (t :copy)))
 
 (defun find-manner (object)
