@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(*error-codes* note-error-code variable-slip slip-text code-slip our-own-p))
+(export '(*error-codes* note-error-code symbols-seen variable-slip slip-text code-slip our-own-p))
 
 ;;; What SBCL reports of a wrong type differs between its versions: the type that its compiler has
 ;;; derived, the variable that was to be bound. Tables of experiments hold these texts, and two
@@ -108,21 +108,23 @@ none; and true. Return false as a third value for other types."
   (loop for (type text) in *arithmetic-texts*
         when (typep condition type) return text))
 
-(defun variables-known-to (package)
-  "Return the special variables that PACKAGE sees and that are not Lisp's, in order of their names."
+(defun symbols-seen (package test)
+  "Return the symbols that PACKAGE sees, that are not Lisp's and for which TEST is true, in order of
+their names."
   (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
     (do-symbols (symbol package)
-      (when (and (special-variable-p symbol nil)
-                 (not (constantp symbol))
-                 (not (eq lisp (symbol-package symbol))))
+      (when (and (not (eq lisp (symbol-package symbol))) (funcall test symbol))
         (pushnew symbol symbols)))
     (sort symbols #'string<)))
 
 (defun variable-slip (name)
   "Return in words the variable that NAME, which has no value, may be a slip for; or NIL."
   (let ((meant (and (symbol-package name)
-                    (find-if (lambda (symbol) (resembles-p name symbol))
-                             (variables-known-to (symbol-package name))))))
+                    (first (symbols-seen (symbol-package name)
+                                         (lambda (symbol)
+                                           (and (special-variable-p symbol nil)
+                                                (not (constantp symbol))
+                                                (resembles-p name symbol))))))))
     (and meant (string-downcase (unqualified-text meant)))))
 
 (define-global *error-codes* '() "The error codes of commands, keywords.")

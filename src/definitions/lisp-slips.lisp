@@ -4,17 +4,6 @@
 
 (export '(note-dispatch-character value-behind function-meant ours-called))
 
-(defun functions-like (name package)
-  "Return the functions and macros, not Lisp's, that PACKAGE sees and for which NAME may be a slip."
-  (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
-    (do-symbols (symbol package)
-      (when (and (fboundp symbol)
-                 (not (eq lisp (symbol-package symbol)))
-                 (<= (abs (- (length (symbol-name symbol)) (length (symbol-name name)))) 2)
-                 (resembles-p name symbol))
-        (pushnew symbol symbols)))
-    (sort symbols #'string<)))
-
 (defun ours-called (name)
   "Return the function of ours that is called like NAME, a string or another symbol, and the name of
 the package that exports it; or NIL."
@@ -70,9 +59,13 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 
 (defun function-elsewhere-text (name)
   "Return in a sentence which function, not ours, NAME may be a slip for, or NIL."
-  (or (elsewhere-text name #'fboundp)
-      (let ((like (nearest-name name (functions-like name (symbol-package name)))))
-        (and like (format nil "Did you mean ~(~A~)?" (unqualified-text like))))))
+  (flet ((like-p (symbol)
+           (and (fboundp symbol)
+                (<= (abs (- (length (symbol-name symbol)) (length (symbol-name name)))) 2)
+                (resembles-p name symbol))))
+    (or (elsewhere-text name #'fboundp)
+        (let ((like (nearest-name name (symbols-seen (symbol-package name) #'like-p))))
+          (and like (format nil "Did you mean ~(~A~)?" (unqualified-text like)))))))
 
 ;;; Variables.
 
