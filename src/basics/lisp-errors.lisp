@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(*error-codes* note-error-code symbols-seen variable-slip slip-text code-slip our-own-p))
+(export '(*error-codes* note-error-code symbols-seen variable-slip code-slip our-own-p))
 
 ;;; What SBCL reports of a wrong type differs between its versions: the type that its compiler has
 ;;; derived, the variable that was to be bound. Tables of experiments hold these texts, and two
@@ -26,12 +26,6 @@
     (floating-point-invalid-operation
      "An operation on floating-point numbers has no result, as 0 divided by 0."))
   "Lists (condition-type text).")
-
-;; The methods stand above, where definitions and the types of arguments are known.
-(defgeneric slip-text (condition)
-  (:documentation "Return in a sentence what was meant where CONDITION, an error of Lisp's own, came
-up, or what to do; NIL if there is no more to say.")
-  (:method (condition) (declare (ignore condition)) nil))
 
 ;;; Wrong types.
 
@@ -93,7 +87,7 @@ none; and true. Return false as a third value for other types."
                       (class-words type)))
            (value (safe-text datum :length 100)))
       (cond (words (format nil "The value ~A is not ~A.~@[ ~A~]"
-                           value words (slip-text condition)))
+                           value words (funcall *report-addition* condition)))
             ((member (type-of condition) '(type-error simple-type-error))
              (format nil "The value ~A is not one that can be used here." value))))))
 
@@ -143,9 +137,9 @@ their names."
   (let ((name (unqualified-text (cell-error-name condition))))
     (typecase condition
       (undefined-function (format nil "The function ~A is undefined.~@[ ~A~]"
-                                  name (slip-text condition)))
+                                  name (funcall *report-addition* condition)))
       (unbound-variable (format nil "The variable ~A has no value.~@[ ~A~]"
-                                name (slip-text condition))))))
+                                name (funcall *report-addition* condition))))))
 
 (defun our-own-p (symbol)
   "True if SYMBOL is of a package of this system."

@@ -134,7 +134,9 @@ there is no more to say."
     (when (and type (or (trouble-with datum type) (source-known-p type)))
       (sentence (format nil "Give ~A" (argument-type-text type datum))))))
 
-(defmethod slip-text ((condition error))
+(defun slip-text (condition)
+  "Return in a sentence what was meant where CONDITION, an error of Lisp's own, came up, or what to
+do; NIL if there is no more to say."
   (typecase condition
     (undefined-function (function-slip-text (cell-error-name condition)))
     (unbound-variable (variable-slip-text (cell-error-name condition)))

@@ -16,14 +16,8 @@ NIL.")
     (let ((text (ignore-errors (funcall *report-addition* condition))))
       (when text (format stream "~&~A" text)))))
 
-(defmethod print-object :after ((condition undefined-function) stream)
-  (write-addition condition stream))
-
-(defmethod print-object :after ((condition unbound-variable) stream)
-  (write-addition condition stream))
-
-(defmethod print-object :after ((condition reader-error) stream)
-  (write-addition condition stream))
-
-(defmethod print-object :after ((condition type-error) stream)
-  (write-addition condition stream))
+(macrolet ((define-additions (&rest types)
+             `(progn ,@(loop for type in types
+                             collect `(defmethod print-object :after ((condition ,type) stream)
+                                        (write-addition condition stream))))))
+  (define-additions undefined-function unbound-variable reader-error type-error))
