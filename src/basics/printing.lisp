@@ -18,9 +18,7 @@ Return its values."
 
 (defmacro printing-plainly (() &body body)
   "Run BODY, which writes data, as CALL-PRINTING-PLAINLY would a function."
-  `(flet ((body () ,@body))
-     (declare (dynamic-extent #'body))
-     (call-printing-plainly #'body)))
+  (form-calling 'call-printing-plainly body))
 
 (defun print-named (object stream name &optional (whole name))
   "Print OBJECT to STREAM: for PRINC as NAME, a symbol or string, else unreadably as WHOLE."

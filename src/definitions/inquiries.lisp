@@ -116,6 +116,4 @@ whether somebody is there to talk to the debugger. If nobody is, it is not to re
 
 (defmacro answering-debugger ((answer) &body body)
   "Run BODY as CALL-ANSWERING-DEBUGGER would a function."
-  `(flet ((body () ,@body))
-     (declare (dynamic-extent #'body))
-     (call-answering-debugger #'body ,answer)))
+  (form-calling 'call-answering-debugger body answer))

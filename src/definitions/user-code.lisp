@@ -51,9 +51,7 @@ be interrupted."
 
 (defmacro as-users-code ((origin) &body body)
   "Run BODY as CALL-AS-USERS-CODE would a function."
-  `(flet ((body () ,@body))
-     (declare (dynamic-extent #'body))
-     (call-as-users-code #'body ,origin)))
+  (form-calling 'call-as-users-code body origin))
 
 (defun note-waiting ()
   "Let whoever watches know that users' code waits for an answer in a debugger."
@@ -159,9 +157,7 @@ STOP-SIMULATOR."
 
 (defmacro offering ((origin go-on again) &body body)
   "Run BODY as CALL-OFFERING would a function."
-  `(flet ((body () ,@body))
-     (declare (dynamic-extent #'body))
-     (call-offering #'body ,origin ,go-on ,again)))
+  (form-calling 'call-offering body origin go-on again))
 
 (defun our-abort-p (restart)
   (and (eq 'abort (restart-name restart))

@@ -56,21 +56,15 @@ SBCL waits.")
 (defmacro deferring-interrupts (&body body)
   "Run BODY. What interrupts this thread waits, but for the extents of ALLOWING-INTERRUPTS and
 WAITING."
-  `(flet ((deferring () ,@body))
-     (declare (dynamic-extent #'deferring))
-     (call-deferring-interrupts #'deferring)))
+  (form-calling 'call-deferring-interrupts body))
 
 (defmacro allowing-interrupts (&body body)
   "Run BODY, in which this thread can be interrupted."
-  `(flet ((allowing () ,@body))
-     (declare (dynamic-extent #'allowing))
-     (call-allowing-interrupts #'allowing)))
+  (form-calling 'call-allowing-interrupts body))
 
 (defmacro waiting (&body body)
   "Run BODY, which waits for a semaphore, and can be interrupted while it does."
-  `(flet ((wait () ,@body))
-     (declare (dynamic-extent #'wait))
-     (call-waiting #'wait)))
+  (form-calling 'call-waiting body))
 
 ;; SBCL lets interrupts in where a protected form has just ended; what is to follow would be
 ;; skipped.

@@ -3,7 +3,7 @@
 (in-package :ars-magna.host)
 
 (export '(*hot* compiler-note declaim-final double heap-bytes make-room room-p cell-index surely
-          tick-count))
+          tick-count form-calling))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))
@@ -39,6 +39,13 @@ made: by then these would be in its way, since it moves what can be reached."
     (or (< octets (/ (heap-bytes) 100))
         (enough-p)
         (progn (scrub-stack) (give-memory-back) (enough-p)))))
+
+(defun form-calling (function body &rest arguments)
+  "Return a form that calls FUNCTION with a function that runs BODY, forms, and then ARGUMENTS. The
+function is on the stack, and ends with the call."
+  `(flet ((body () ,@body))
+     (declare (dynamic-extent #'body))
+     (,function #'body ,@arguments)))
 
 (deftype cell-index ()
   "The index of a grid cell: maps have at most 2^30 cells."
