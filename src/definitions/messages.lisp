@@ -3,11 +3,8 @@
 (in-package :ars-magna.definitions)
 
 (export '(error-policy warn-at-once warn-notably *message-queue* make-message-queue message-queue
-          copy-message-queue message-queue-read-p message-queue-listener
-          message-queue-error-policy message message-kind message-items message-asker
-          message-robot message-told-p *robot-told-of* message-run *run-that-reports* *told-of*
-          take-messages queue-message message-text phrase write-message *message-limit*
-          make-message message-cause message-queue-unsignalled))
+          copy-message-queue message *robot-told-of* *run-that-reports* *told-of* take-messages
+          queue-message message-text phrase write-message *message-limit* make-message))
 
 ;;; Messages are queued as lists of items and become text only when somebody reads them. The
 ;;; queue is bounded: past *MESSAGE-LIMIT* the oldest go, and how many went is remembered.
@@ -32,71 +29,51 @@
 (defvar *run-that-reports* (constantly nil)
   "A function that returns the run that a message queued in this thread belongs to, or NIL.")
 
-(defstruct (message (:constructor make-message
-                        (kind items &key cause (summary "") told-p notable-p about))
-                    (:copier nil))
-  "What the simulator or a user has to say: KIND is :error, :warning or :message. ASKER is a note of
-who asked for what it tells of, such as a command that has ended, or NIL; ROBOT is the name of the
-robot whose command that is, or NIL. RUN is what it belongs to, as several runs may share a queue,
-or NIL. CAUSE is what is wrong with users' code, which SUMMARY says in a line, or NIL, see
-troubles.lisp. ABOUT, or NIL, is the name of the command whose failure it tells. TOLD-P is true if
-users' code has been told of it otherwise. NOTABLE-P is true of a warning that is shown like an
-error if nobody reads it; or a function that returns that in the end; or :AT-ONCE of one that is
-shown as it comes if nobody listens, as the run may never end."
-  (kind :message :type (member :error :warning :message) :read-only t)
-  (items '() :type list :read-only t)
-  (asker *told-of* :read-only t)
-  (robot *robot-told-of* :read-only t)
-  (run (funcall *run-that-reports*) :read-only t)
-  (cause nil :read-only t)
-  (summary "" :type string :read-only t)
-  (about nil :type (or null symbol) :read-only t)
-  (told-p nil :type boolean :read-only t)
-  (notable-p nil :type (or boolean (eql :at-once) function) :read-only t))
+(define-record (message (:constructor make-message
+                            (kind items &key cause (summary "") told-p notable-p about)
+                          "Return a message of the kind and the list of items given."))
+  "What the simulator or a user has to say."
+  (kind :message (member :error :warning :message) ":ERROR, :WARNING or :MESSAGE" :export)
+  (items '() list "the items that the message is made of" :export)
+  (asker *told-of* t
+         "a note of who asked for what the message tells of, such as a command, or NIL" :export)
+  (robot *robot-told-of* t
+         "the name of the robot whose command the message tells of, or NIL" :export)
+  ;; Several runs may share a queue.
+  (run (funcall *run-that-reports*) t "the run that the message belongs to, or NIL" :export)
+  (cause nil t "the condition or failure in users' code that the message tells of, or NIL, see
+troubles.lisp" :export)
+  (summary "" string "what says the cause in a line")
+  (about nil (or null symbol) "the name of the command whose failure the message tells, or NIL")
+  (told-p nil boolean "users' code has been told otherwise of what the message tells of" :export)
+  ;; Or a function that returns that in the end; or :AT-ONCE of one that is shown as it comes if
+  ;; nobody listens, as the run may never end.
+  (notable-p nil (or boolean (eql :at-once) function)
+             "the message is a warning that is shown like an error if nobody reads it"))
 
-(defstruct (message-queue (:constructor make-message-queue (&key (error-policy :report) echoed))
-                          (:copier nil))
-  "Messages nobody has read yet. LISTENER, if any, is called (with no arguments, in the thread
-that reports) after each message is queued. ERROR-POLICY says what becomes of errors in users'
-code: TROUBLES are the latest of them, the newest first, UNSIGNALLED is the first that is to be
-signalled, see troubles.lisp. SEEN is the end of NEWEST-FIRST that nobody needs to be shown. If
-ECHOED, a table, errors are shown as they come where nobody listens; the table counts them. READ-P
-is true once somebody has read messages, or looked whether there are any. LOCK guards all lists,
-counts and tables; whether UNSIGNALLED is NIL may be asked without it."
-  (lock (make-lock "messages") :read-only t)
-  (newest-first '() :type list)
-  (count 0 :type fixnum)
-  (forgotten 0 :type fixnum)
-  (listener nil :type (or null function))
-  (error-policy :report :type error-policy)
-  (seen '() :type list)
-  (read-p nil :type boolean)
-  (troubles '() :type list)
-  (unsignalled nil :type (or null message))
-  (echoed nil :type (or null hash-table) :read-only t))
-
-(setf (documentation 'message-kind 'function) "Return :ERROR, :WARNING or :MESSAGE."
-      (documentation 'message-items 'function) "Return the items that the message is made of."
-      (documentation 'message-asker 'function)
-      "Return a note of who asked for what the message tells of, or NIL."
-      (documentation 'message-robot 'function)
-      "Return the name of the robot whose command the message tells of, or NIL."
-      (documentation 'message-told-p 'function)
-      "True if users' code has been told otherwise of what the message tells of."
-      (documentation 'message-run 'function) "Return the run that the message belongs to, or NIL."
-      (documentation 'make-message-queue 'function) "Return a new, empty queue of messages."
-      (documentation 'message-queue-read-p 'function)
-      "True if somebody has read messages of the queue, or looked whether there are any."
-      (documentation 'message-queue-listener 'function)
-      "Return the function that is called after each message is queued, or NIL. Can be set."
-      (documentation 'make-message 'function)
-      "Return a message of the kind and the list of items given, see MESSAGE."
-      (documentation 'message-cause 'function)
-      "Return the condition or failure in users' code that the message tells of, or NIL."
-      (documentation 'message-queue-error-policy 'function)
-      "Return :REPORT, :SIGNAL or :COLLECT: what becomes of errors in users' code. Can be set."
-      (documentation 'message-queue-unsignalled 'function)
-      "Return the first message about an error in users' code that is to be signalled, or NIL.")
+(define-record (message-queue (:constructor make-message-queue
+                                  (&key (error-policy :report) echoed)
+                                "Return a new, empty queue of messages."))
+  "Messages nobody has read yet. LOCK guards all lists, counts and tables; whether UNSIGNALLED is
+NIL may be asked without it."
+  (lock (make-lock "messages") t)
+  (newest-first '() list :writable)
+  (count 0 fixnum :writable)
+  (forgotten 0 fixnum :writable)
+  (listener nil (or null function) "the function that is called after each message is queued, in the
+thread that reports and without arguments, or NIL. Can be set" :writable :export)
+  (error-policy :report error-policy
+                ":REPORT, :SIGNAL or :COLLECT: what becomes of errors in users' code. Can be set"
+                :writable :export)
+  (seen '() list "the end of NEWEST-FIRST that nobody needs to be shown" :writable)
+  (read-p nil boolean
+          "somebody has read messages of the queue, or looked whether there are any"
+          :writable :export)
+  (troubles '() list "the latest errors in users' code, the newest first" :writable)
+  (unsignalled nil (or null message) "the first message about an error in users' code that is to be
+signalled, or NIL, see troubles.lisp" :writable :export)
+  (echoed nil (or null hash-table) "the table that counts errors, which are shown as they come where
+nobody listens, or NIL"))
 
 ;; An interrupt, such as Control-C, may report something too.
 (defmacro with-queue ((queue) &body body)
@@ -205,13 +182,12 @@ ones were forgotten, a warning that says how many comes first."
 
 ;;; What a message says with numbers takes longer to write than to know, and few are read.
 
-(defstruct (phrase (:constructor phrase (control &rest arguments)) (:copier nil))
-  "An item of a message: what FORMAT makes of CONTROL and ARGUMENTS, which never change."
-  (control "" :type string :read-only t)
-  (arguments '() :type list :read-only t))
-(setf (documentation 'phrase 'function)
-      "Return an item of a message that says what FORMAT makes of the arguments, once it is read.")
-
+(define-record (phrase (:constructor phrase (control &rest arguments)
+                          "Return an item of a message that says what FORMAT makes of CONTROL and
+ARGUMENTS, which never change, once it is read."))
+  "An item of a message."
+  (control "" string)
+  (arguments '() list))
 (defmethod print-object ((phrase phrase) stream)
   (printing-words ()
     (apply #'format stream (phrase-control phrase) (phrase-arguments phrase))))
