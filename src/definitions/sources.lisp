@@ -30,6 +30,24 @@
   "Return what the system calls the file of SOURCE, a string, or NIL."
   (first source))
 
+;;; A map has thousands of clauses, and each may have to be found: what was found last is kept.
+
+(defun call-recalling (function cell &rest keys)
+  "Do what RECALLING does. CELL is a list of a list (value key...), of the last call. That is
+replaced, never altered: any thread may ask."
+  (destructuring-bind (&optional value &rest last-keys) (first cell)
+    (if (and last-keys
+             (every (lambda (key last)
+                      (or (eql key last)
+                          (and (stringp key) (stringp last) (string= key last))))
+                    keys last-keys))
+        value
+        (first (setf (first cell) (cons (funcall function) keys))))))
+
+(defmacro recalling ((&rest keys) &body body)
+  "Return what BODY does or, if the strings and objects KEYS are as in the last call, did then."
+  (apply #'form-calling 'call-recalling body '(load-time-value (list '())) keys))
+
 ;;; Finding a form in a text.
 
 (defun package-for-words ()
@@ -115,18 +133,6 @@ code."
          (<= (+ position length) end)
          (string-equal word text :start2 (- end length) :end2 end))))
 
-;; A map has thousands of clauses, and each may have to be found: what was found last is kept.
-(defvar *last-positions* '("" nil ())
-  "A list of the text and form that DEFINITION-POSITIONS had last, and what it returned.")
-
-(defun definition-positions (text form)
-  "Return a list of lists (start end same) for the forms in TEXT that have operator and name of
-FORM; SAME is true if it is FORM, word by word."
-  (destructuring-bind (last-text last-form positions) *last-positions*
-    (if (and (eq form last-form) (or (eq text last-text) (string= text last-text)))
-        positions
-        (third (setf *last-positions* (list text form (look-for-definitions text form)))))))
-
 (defun look-for-definitions (text form)
   "Do what DEFINITION-POSITIONS says."
   (destructuring-bind (operator &optional name &rest clauses) form
@@ -140,6 +146,11 @@ FORM; SAME is true if it is FORM, word by word."
                                   (same-words-p (second found) name))
                          (list (list position end (same-words-p found form)))))))))
 
+(defun definition-positions (text form)
+  "Return a list of lists (start end same) for the forms in TEXT that have operator and name of
+FORM; SAME is true if it is FORM, word by word."
+  (recalling (text form) (look-for-definitions text form)))
+
 (defun position-of-definition (positions ordinal)
   "Return the element of POSITIONS that is the same as it was, or has the number ORDINAL, or is the
 first, and its number."
@@ -147,9 +158,6 @@ first, and its number."
                     (and ordinal (< ordinal (length positions)) ordinal)
                     0)))
     (values (nth number positions) number)))
-
-(defvar *last-forms* '("" 0 0 ())
-  "A list of the text, start and end of which FORMS-BETWEEN was asked last, and the answer.")
 
 (defun forms-in (text start end)
   "Return conses (position . form) for the forms in parentheses in TEXT between START and END."
@@ -159,11 +167,7 @@ first, and its number."
 
 (defun forms-between (text start end)
   "Return what FORMS-IN does, which is asked for again and again."
-  (destructuring-bind (last-text last-start last-end forms) *last-forms*
-    (if (and (= start last-start) (= end last-end)
-             (or (eq text last-text) (string= text last-text)))
-        forms
-        (fourth (setf *last-forms* (list text start end (forms-in text start end)))))))
+  (recalling (text start end) (forms-in text start end)))
 
 (defun found-p (form found)
   "True if FOUND, what FORMS-IN read, is FORM, word by word."
@@ -197,16 +201,10 @@ after the other mostly stands so, too: it is looked for from the one before on, 
 (defun line-number (text position)
   (1+ (count #\Newline text :end position)))
 
-(defvar *last-file* '(nil nil "")
-  "A list of the file of which TEXT-OF-FILE was asked last, when it was written, and its text.")
-
 (defun text-of-file (file)
   "Return the text of FILE, a native name, as FILE-TEXT does, which is asked for again and again."
-  (let ((written (file-write-date (native-path file))))
-    (destructuring-bind (last-file last-written text) *last-file*
-      (if (and (equal file last-file) (eql written last-written))
-          text
-          (third (setf *last-file* (list file written (file-text (native-path file)))))))))
+  (let ((path (native-path file)))
+    (recalling (file (file-write-date path)) (file-text path))))
 
 (defun line-of-clause (text form clause)
   "Return the line in TEXT on which CLAUSE of the definition FORM begins, that of the definition if
@@ -298,21 +296,14 @@ string, is that, perhaps behind the name of a package."
                  (write-string text stream :start i :end end))
                (setf i end)))))
 
-(defvar *last-digest* '("" nil 0)
-  "A list of the text, what was left out, and the number that FILE-DIGEST had last: each definition
-in a file asks again.")
-
 (defun file-digest (file &optional without)
   "Return a number for the code in FILE; comments and layout do not count, nor do forms at top level
 whose operator is WITHOUT, a string, if given."
   ;; Any file can be read so, and what its bytes mean does not matter here.
-  (let ((text (read-file-into-string file :external-format :latin-1)) (last *last-digest*))
-    (if (and (string= text (first last)) (equal without (second last)))
-        (third last)
-        (let* ((code (code-alone text))
-               (number (text-digest (if without (code-without without code) code))))
-          (setf *last-digest* (list text without number))
-          number))))
+  (let ((text (read-file-into-string file :external-format :latin-1)))
+    (recalling (text without)
+      (let ((code (code-alone text)))
+        (text-digest (if without (code-without without code) code))))))
 
 (defun form-digest (form)
   "Return a number for FORM: for its shape, what its symbols are called, and its data."
