@@ -2,47 +2,34 @@
 
 (in-package :ars-magna.copying)
 
-(export '(fields-of-type blank-object note-lasting lasting-name lasting-function))
+(export '(fields-of-type slot-kept-p blank-object note-lasting lasting-name lasting-function))
 
 ;;; A copy in a file has what another object of a run would need to go on: of a kind, what its
 ;;; roles :FIXED, :STATE and :MEMORY say; what is :SCRATCH or a :LINK is as at first. A structure
 ;;; without a kind has no roles, and all that is in it counts.
 
-(define-record (field (:constructor make-field (name kept-p reader writer initial)))
-  "What is known of a slot of structures of one type."
-  (name nil symbol "the name of the slot, a symbol" :export)
-  (kept-p t boolean "what is in the slot is to be written down" :export)
-  (reader nil function "the function of an object that returns what is in the slot" :export)
-  (writer nil function "the function of a value and an object that puts the value into the slot, and
-signals an error if it is of the wrong type" :export)
-  (initial nil function "the function that returns what the slot begins with" :export))
+(defun slot-kept-p (slot)
+  "True if what is in SLOT, see FIELDS-OF-TYPE, is to be written down."
+  (and (member (kind-slot-role slot) '(:fixed :state :memory)) t))
 
-(defun field-of-kind (slot)
-  "Return the field that SLOT, of a kind, is."
-  (make-field (kind-slot-name slot)
-              (and (member (kind-slot-role slot) '(:fixed :state :memory)) t)
-              (kind-slot-reader slot)
-              (kind-slot-writer slot)
-              (kind-slot-initial slot)))
-
-(defun plain-field (name type)
-  "Return the field that the slot NAME, of TYPE, of a structure without a kind is."
-  (make-field name t
-              (lambda (object) (slot-value object name))
-              (lambda (value object)
-                (unless (typep value type)
-                  (error 'type-error :datum value :expected-type type))
-                (setf (slot-value object name) value))
-              (constantly nil)))
+(defun plain-slot (name type)
+  "Return what is known of the slot NAME, of TYPE, of a structure without a kind."
+  (make-kind-slot name :fixed type "" nil nil
+                  (constantly nil)
+                  (lambda (object) (slot-value object name))
+                  (lambda (value object)
+                    (unless (typep value type)
+                      (error 'type-error :datum value :expected-type type))
+                    (setf (slot-value object name) value))))
 
 (defun fields-of-type (type)
-  "Return a list of the fields of the structures of TYPE, a symbol."
+  "Return a list of the slots of the structures of TYPE, a symbol."
   (let* ((kind (kind-called type))
          (slots (and kind (kind-slots kind))))
-    (append (mapcar #'field-of-kind slots)
+    (append slots
             (loop for (name slot-type) in (class-slot-types (find-class type))
                   unless (find name slots :key #'kind-slot-name)
-                    collect (plain-field name slot-type)))))
+                    collect (plain-slot name slot-type)))))
 
 (defun blank-object (type fields)
   "Return a new structure of TYPE, a symbol, whose FIELDS are to be written. Until then there is in

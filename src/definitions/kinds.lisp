@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(slots-to-show *object-kinds* kind-p kind-of kind-called all-kinds find-kind-name
-          object-slots reset slot-content))
+(export '(make-kind-slot slots-to-show *object-kinds* kind-p kind-of kind-called all-kinds
+          find-kind-name object-slots reset slot-content))
 
 ;;; A kind is a structure whose slots say what they are, by role:
 ;;;

@@ -38,7 +38,7 @@ if it is to have one."
   "Return in words where INVENTORY is being taken."
   (let ((holder (inventory-holder inventory)) (field (inventory-field inventory)))
     (if field
-        (format nil "the slot ~(~A~) of ~A" (field-name field) (short-text holder))
+        (format nil "the slot ~(~A~) of ~A" (kind-slot-name field) (short-text holder))
         (format nil "~A" (short-text holder)))))
 
 (defun reject-object (object why inventory)
@@ -99,7 +99,7 @@ Signals MISUSE."
 
 (defun shape-fields (shape)
   (and (eq :object (first shape))
-       (remove-if-not #'field-kept-p (fields-of-type (second shape)))))
+       (remove-if-not #'slot-kept-p (fields-of-type (second shape)))))
 
 ;;; Meeting objects.
 
@@ -179,7 +179,7 @@ Signals MISUSE."
   (let ((batch (gethash (shape-of object inventory) (inventory-batches inventory))))
     (dolist (field (batch-fields batch))
       (setf (inventory-field inventory) field)
-      (survey (funcall (field-reader field) object) 0 inventory))))
+      (survey (funcall (kind-slot-reader field) object) 0 inventory))))
 
 (defun survey-array (array inventory)
   (when (eq t (array-element-type array))

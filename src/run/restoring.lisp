@@ -98,7 +98,7 @@ NAMES."
                (savable-type-p type))
     (error "it has objects of a kind that is not loaded, ~A" (short-text type)))
   (let ((fields (fields-of-type type)))
-    (unless (equal names (field-names (remove-if-not #'field-kept-p fields)))
+    (unless (equal names (field-names (remove-if-not #'slot-kept-p fields)))
       (error "its objects of the kind ~(~A~) are not made as those that are loaded; another ~
               version of the simulator, or of that kind, saved it"
              type))
@@ -129,14 +129,14 @@ NAMES."
 ;;; What is in them.
 
 (defun put-field (value field object type)
-  (handler-case (funcall (field-writer field) value object)
+  (handler-case (funcall (kind-slot-writer field) value object)
     (error ()
-      (error "the slot ~(~A~) of a ~(~A~) cannot be what it says" (field-name field) type))))
+      (error "the slot ~(~A~) of a ~(~A~) cannot be what it says" (kind-slot-name field) type))))
 
 (defun fill-object (object values fields type)
   "Put VALUES into those FIELDS of OBJECT that are kept, and what they begin with into the others."
   (dolist (field fields)
-    (put-field (cond ((not (field-kept-p field)) (funcall (field-initial field)))
+    (put-field (cond ((not (slot-kept-p field)) (funcall (kind-slot-initial field)))
                      (values (pop values))
                      (t (error "it says too little of a ~(~A~)" type)))
                field object type))
@@ -192,7 +192,7 @@ NAMES."
   "Put what a line says, VALUES, into OBJECT. True if it says all that was left to be said."
   (ecase (first shape)
     (:array (fill-array object values loaded))
-    (:object (when (collect-values values (count-if #'field-kept-p fields) loaded)
+    (:object (when (collect-values values (count-if #'slot-kept-p fields) loaded)
                (fill-object object (all-values loaded) fields (second shape))
                t))
     (:table (when (collect-values values (* 2 (third shape)) loaded)

@@ -82,7 +82,7 @@ ends."
     (hash-table (let ((values '()))
                   (maphash (lambda (key value) (setf values (list* value key values))) object)
                   (nreverse values)))
-    (t (loop for field in fields collect (funcall (field-reader field) object)))))
+    (t (loop for field in fields collect (funcall (kind-slot-reader field) object)))))
 
 (defun write-row (values inventory out)
   "Write the first of VALUES, as many as there is room for in a line. Return the others."
@@ -115,7 +115,7 @@ was left before: values, or where in an array."
           while more)))
 
 (defun field-names (fields)
-  (mapcar (lambda (field) (symbol-name (field-name field))) fields))
+  (mapcar (lambda (field) (symbol-name (kind-slot-name field))) fields))
 
 (defun batch-line (batch)
   "Return what says how many objects BATCH has, and what they are."
