@@ -92,10 +92,6 @@ LABELS, alternating, as KNOWN-FACTS takes them."
                                               (source-file (entry-source entry))
                                               (entry-line entry))))))
 
-(defun open-registries ()
-  "Return the registries of what users define."
-  (remove-if #'registry-fixed-p *registries*))
-
 (defun worth-telling-p (entry registry symbol)
   "True if one who asks for SYMBOL wants to know of ENTRY, which that stands for in REGISTRY. What
 is ours, such as a command, Lisp tells of by itself, unless it is called otherwise there, as TURN."
@@ -118,15 +114,8 @@ is ours, such as a command, Lisp tells of by itself, unless it is called otherwi
 
 ;;; Documentation, of kinds of definition.
 
-(defun registry-called (kind)
-  "Return the registry of what users define of KIND, a symbol such as KICKER, or NIL."
-  (find-if (lambda (registry)
-             (or (same-name-p kind (registry-kind registry))
-                 (member kind (registry-synonyms registry) :test #'same-name-p)))
-           (open-registries)))
-
 (defmethod documentation ((name symbol) (kind symbol))
-  (let ((registry (registry-called kind)))
+  (let ((registry (registry-called kind (open-registries))))
     (if registry
         (let ((entry (lookup-entry name registry)))
           (and entry (entry-documentation entry)))

@@ -75,8 +75,8 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 
 (defun defined-slip-text (name)
   "Return in a sentence what the definitions are that NAME, which has no value, stands for, or NIL."
-  (loop for registry in *registries*
-        for entry = (and (not (registry-fixed-p registry)) (lookup-entry name registry))
+  (loop for registry in (open-registries)
+        for entry = (lookup-entry name registry)
         when (and entry (not (entry-variable entry)))
           return (format nil "It is the name of ~:[a~;an~] ~A: '~(~A~)."
                           (find (char (usual-name registry) 0) "aeiou")

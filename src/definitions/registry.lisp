@@ -89,10 +89,14 @@ called just so is looked for in upper case."
                 when (called-p entry name registry) do (setf last entry)
                 finally (return last))))))
 
+(defun open-registries ()
+  "Return the registries of what users define."
+  (remove-if #'registry-fixed-p *registries*))
+
 (defun entries-meant (name)
   "Return the entries of users' definitions, of whatever kind, that NAME, a symbol, stands for."
-  (loop for registry in *registries*
-        for entry = (and (not (registry-fixed-p registry)) (lookup-entry name registry))
+  (loop for registry in (open-registries)
+        for entry = (lookup-entry name registry)
         when (and entry (users-p entry)) collect entry))
 
 (defun defined-names (registry)
@@ -224,13 +228,16 @@ object whose place it has taken, or NIL: of several threads that define NAME, ea
 
 ;;; Undefining.
 
+(defun registry-called (kind registries)
+  "Return the one of REGISTRIES that is of KIND, a symbol such as KICKER, or NIL."
+  (find-if (lambda (registry)
+             (or (same-name-p kind (registry-kind registry))
+                 (member kind (registry-synonyms registry) :test #'same-name-p)))
+           registries))
+
 (defun find-registry (kind)
-  (or (find-if (lambda (registry)
-                 (or (same-name-p kind (registry-kind registry))
-                     (member kind (registry-synonyms registry) :test #'same-name-p)))
-               *registries*)
-      (reject-name "kind of definition" kind
-                   (mapcar #'usual-name (remove-if #'registry-fixed-p *registries*)))))
+  (or (registry-called kind *registries*)
+      (reject-name "kind of definition" kind (mapcar #'usual-name (open-registries)))))
 
 (defun all-definitions (kind)
   "Return lists (name object source) for all definitions of KIND, as UNDEFINE takes it, in order.
