@@ -170,28 +170,32 @@ the user is asked again."
                  (format nil "forms that have values (~A)"
                          (string-right-trim "." (text-of-condition condition)))))
 
-(defun call-blaming-author (function)
-  "Call FUNCTION, which carries out the definition at hand. Errors that are not ours are mistakes in
-the definition."
+(defun call-blaming (function blame)
+  "Call FUNCTION, and BLAME with each error that is not ours: a mistake in what an author wrote."
   (handler-bind ((error (lambda (condition)
                           (unless (typep condition 'ars-magna-error)
-                            (reject-value condition)))))
+                            (funcall blame condition)))))
     (funcall function)))
 
 (defun call-as-definition (source form function)
   "Call FUNCTION, which carries out the definition FORM from SOURCE."
   (let ((*definition* (make-defining source form)))
-    (call-with-definition-restarts (lambda () (call-blaming-author function)) #'eval)))
+    (call-with-definition-restarts (lambda () (call-blaming function #'reject-value)) #'eval)))
+
+(defun part-with (test form)
+  "Return the first part of FORM, a tree of conses, of which TEST is true, or NIL."
+  (let ((stack (list form)))
+    (loop while stack
+          do (let ((part (pop stack)))
+               (when (funcall test part) (return part))
+               (when (consp part)
+                 (push (cdr part) stack)
+                 (push (car part) stack))))))
 
 (defun endless-p (form)
   "True if FORM has more conses than anybody writes, as circular lists do."
-  (let ((left 10000000) (stack (list form)))
-    (loop while stack
-          do (let ((part (pop stack)))
-               (when (consp part)
-                 (when (minusp (decf left)) (return t))
-                 (push (cdr part) stack)
-                 (push (car part) stack))))))
+  (let ((left 10000000))
+    (and (part-with (lambda (part) (and (consp part) (minusp (decf left)))) form) t)))
 
 (defun rejected-form (condition)
   "Return a form that signals again, where it is evaluated, what CONDITION says."

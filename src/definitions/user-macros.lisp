@@ -9,9 +9,6 @@
 ;;; look for the end of a circle. DEFINE-USER-MACRO's do not: whatever is wrong with the form, it is
 ;;; a MALFORMED-DEFINITION, where it stands and in forms around it too.
 
-(defun unlike-ours-p (condition)
-  (not (typep condition 'ars-magna-error)))
-
 (defun reject-use-of (form expected &optional condition)
   "Signal MALFORMED-DEFINITION about FORM, the use of a macro, perhaps because of CONDITION."
   (reject-clause (if (consp (rest form))
@@ -26,10 +23,8 @@
   "Call FUNCTION, which expands FORM. Errors that are not ours are mistakes in what the author wrote
 there."
   (handler-case
-      (handler-bind ((error (lambda (condition)
-                              (when (unlike-ours-p condition)
-                                (reject-use-of form "forms that Lisp can compile" condition)))))
-        (funcall function))
+      (call-blaming function (lambda (condition)
+                               (reject-use-of form "forms that Lisp can compile" condition)))
     (storage-condition ()
       (reject-use-of form "forms that are less deep, and macros that come to an end"))))
 
@@ -77,16 +72,11 @@ list: a keyword, or a form where there should be a list. Return NIL if it is som
 (defun unread-slot (form)
   "Return the symbol in FORM that Nisp's reader would have read as a slot, such as !>robot.cameras;
 or NIL."
-  (let ((stack (list form)))
-    (loop while stack
-          do (let ((part (pop stack)))
-               (cond ((consp part)
-                      (push (cdr part) stack)
-                      (push (car part) stack))
-                     ((and part (symbolp part)
-                           (< 2 (length (symbol-name part)))
-                           (starts-with-subseq "!>" (symbol-name part)))
-                      (return part)))))))
+  (part-with (lambda (part)
+               (and part (symbolp part)
+                    (< 2 (length (symbol-name part)))
+                    (starts-with-subseq "!>" (symbol-name part))))
+             form))
 
 (defun doubt-readtable (form)
   "Warn if FORM has in it what only Nisp's reader reads, as a symbol."
