@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(define-record reader-text function-texts set-documentations reader-marks))
+(export '(define-record reader-text reader-marks))
 
 ;;; One form says of a structure what it is, what is in its slots, and who may read them. From that
 ;;; follow the documentation of its functions and the marks of its readers. Objects that belong to a

@@ -14,7 +14,7 @@
     (let* ((name (kind-slot-name slot))
            (reader (find-symbol (concatenate 'string conc (symbol-name name)) package)))
       (when (and reader (fboundp reader))
-        (set-documentations (list (cons reader (reader-text name (kind-slot-text slot)))))))))
+        (setf (documentation reader 'function) (reader-text name (kind-slot-text slot)))))))
 
 (defun register-kind (name parent slots conc)
   "Let NAME be a kind with SLOTS of its own besides those of the kind called PARENT."
@@ -125,15 +125,12 @@ MALFORMED-DEFINITION."
         (conc (concatenate 'string (symbol-name name) "-"))
         (constructor (ensure-list constructor)))
     `(progn
-       (defstruct (,name ,@(when include `((:include ,include)))
-                         (:constructor ,@(or constructor '(nil)))
-                         (:copier nil))
+       (define-record (,name ,@(when include `((:include ,include)))
+                             (:constructor ,@(or constructor '(nil))))
          ,documentation
-         ,@(loop for (slot default type) in (slots-by-place groups)
-                 collect `(,slot ,default :type ,type)))
-       ,@(reader-marks (slots-by-place groups) (lambda (slot) (reader-name conc slot)))
-       (set-documentations ',(function-texts name documentation (list (symbolicate name "-P"))
-                                             (list constructor)))
+         ,@(loop for (slot default type text . options) in (slots-by-place groups)
+                 collect `(,slot ,default ,type ,text :writable
+                                 ,@(intersection '(:export :addition) options))))
        (register-kind ',name ',include (list ,@(slot-forms name conc slots)) ,conc)
        (defmethod describe-object ((object ,name) stream)
          (describe-by-kind object stream))
