@@ -23,17 +23,12 @@
 
 (define-global +more+ (make-remark "...") "What stands for more of the same.")
 
-(defun abridged-text (text)
-  (if (< +most-characters+ (length text))
-      (concatenate 'string (subseq text 0 +most-characters+) "...")
-      text))
-
 (defun abridged-atom (atom)
   "Return ATOM, or what stands for it if it is long."
   (typecase atom
-    (string (abridged-text atom))
+    (string (cut atom +most-characters+))
     (symbol (if (< +most-characters+ (length (symbol-name atom)))
-                (make-remark (abridged-text (symbol-name atom)))
+                (make-remark (cut (symbol-name atom) +most-characters+))
                 atom))
     (integer (if (< 500 (integer-length atom))
                  (make-remark (format nil "an integer of ~D bits" (integer-length atom)))

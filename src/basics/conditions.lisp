@@ -132,7 +132,7 @@ compiled the warning is a STYLE-WARNING. Scripts, which do not show these, are n
                                  ~@[ Known: ~{~A~^, ~}.~]~@[ ~A~]"
                          kind
                          (if (symbolp name)
-                             (abridged-text (plain-name name))
+                             (cut (plain-name name) +most-characters+)
                              (prin1-to-string (abridged name)))
                          (and nearest (plain-name nearest))
                          (names-to-show known)

@@ -18,27 +18,24 @@
 (define-constant +largest-quantity+ (expt 10 15)
   :documentation "How large the numbers are at most that say what something is like.")
 
-(declaim (inline within-reason-p))
+(defun other-within-p (value limit)
+  (and (finite-p value) (<= (- limit) value limit)))
+
+(declaim (inline within-p within-reason-p quantity-p))
+(defun within-p (value limit)
+  "True if VALUE is a number from -LIMIT to LIMIT, an integer."
+  (if (typep value 'double-float)
+      (and (finite-double-p value)
+           (<= (double (- limit)) value (double limit)))
+      (other-within-p value limit)))
+
 (defun within-reason-p (value)
   "True if VALUE can be a position, distance, speed, angle or time: from -1e9 to 1e9."
-  (if (typep value 'double-float)
-      (and (finite-double-p value)
-           (<= #.(double (- +largest+)) value #.(double +largest+)))
-      (other-within-reason-p value)))
+  (within-p value +largest+))
 
-(defun other-within-reason-p (value)
-  (and (finite-p value) (<= (- +largest+) value +largest+)))
-
-(declaim (inline quantity-p))
 (defun quantity-p (value)
   "True if VALUE can say what something is like: a number from -1e15 to 1e15."
-  (if (typep value 'double-float)
-      (and (finite-double-p value)
-           (<= #.(double (- +largest-quantity+)) value #.(double +largest-quantity+)))
-      (other-quantity-p value)))
-
-(defun other-quantity-p (value)
-  (and (finite-p value) (<= (- +largest-quantity+) value +largest-quantity+)))
+  (within-p value +largest-quantity+))
 
 (defun amount-p (value)
   "True if VALUE is a quantity not below 0."
