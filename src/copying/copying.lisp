@@ -70,35 +70,28 @@ not be complete before they have returned."
         (setf (slot-value copy slot) (slot-value value slot))))
     (put-right-later copy nil fork)))
 
+(defun make-like (array &rest options)
+  "Return a new array with the shape of ARRAY, made with OPTIONS."
+  (apply #'make-array (array-dimensions array)
+         :element-type (array-element-type array)
+         :adjustable (adjustable-array-p array)
+         :fill-pointer (and (array-has-fill-pointer-p array) (fill-pointer array))
+         options))
+
 (defun like-array (array)
   "Return an array like ARRAY, with the same in it."
-  (if (vectorp array)
-      (if (simple-array-p array)
-          (copy-seq array)
-          (let ((copy (make-array (array-dimension array 0)
-                                  :element-type (array-element-type array) :adjustable t
-                                  :fill-pointer (and (array-has-fill-pointer-p array)
-                                                     (fill-pointer array)))))
-            (dotimes (index (array-total-size array) copy)
-              (setf (row-major-aref copy index) (row-major-aref array index)))))
-      (let ((copy (make-array (array-dimensions array) :element-type (array-element-type array)
-                                                       :adjustable (adjustable-array-p array))))
+  (if (typep array '(simple-array * (*)))
+      (copy-seq array)
+      (let ((copy (make-like array)))
         (dotimes (index (array-total-size array) copy)
           (setf (row-major-aref copy index) (row-major-aref array index))))))
-
-(defun simple-array-p (array)
-  (typep array 'simple-array))
 
 (defun copy-displaced (array copier)
   "Return what COPIER is to have for ARRAY, which is part of another."
   (multiple-value-bind (base offset) (array-displacement array)
     (note-copy array
-               (make-array (array-dimensions array)
-                           :element-type (array-element-type array)
-                           :adjustable (adjustable-array-p array)
-                           :fill-pointer (and (array-has-fill-pointer-p array)
-                                              (fill-pointer array))
-                           :displaced-to (forked base copier) :displaced-index-offset offset)
+               (make-like array :displaced-to (forked base copier)
+                                :displaced-index-offset offset)
                copier)))
 
 (defun copy-as-told (value copier)
@@ -239,13 +232,10 @@ instance of a class of a user's of which nobody has said how it is copied: what 
                                       (list (find-class 'standard-object) (find-class t)))))
     (t (and (value-cell-p value) (not (exit-cell-p value))))))
 
-(defun immediate-p (value)
-  (typep value '(or number symbol character)))
-
 (defun copy-values (list instead-of)
   "Return LIST with copies of the plain values in it, and of those in these; what two hold is shared
 by their copies. For anything else there is what INSTEAD-OF, a function, returns."
-  (if (every #'immediate-p list)
+  (if (every (lambda (value) (typep value '(or number symbol character))) list)
       list
       (with-copier (copier :screen (lambda (value)
                                      (if (plain-value-p value)
