@@ -200,7 +200,7 @@
   "But not those of processes that still run, nor of other machines, nor others."
   (call-in-directory
    (lambda (directory)
-     (let* ((host (base:host-name)) (dead 999999999)
+     (let* ((host (machine-instance)) (dead 999999999)
             (mine (format nil "ars-magna-~A-~D-TMP1" host (base:process-number)))
             (others (list mine (format nil "ars-magna-~A-" host)
                           (format nil "ars-magna-x~A-~D-TMP1" host dead) "ars-magna-1")))

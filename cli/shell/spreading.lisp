@@ -26,7 +26,7 @@
 
 (defun place-for (directory)
   "Return what the directory for DIRECTORY is called on other machines."
-  (format nil "ars-magna-~A-~36R" (host-name) (text-checksum (native-name directory))))
+  (format nil "ars-magna-~A-~36R" (machine-instance) (text-checksum (native-name directory))))
 
 (defun common-settings (experiment options script)
   (let ((trials (trials-of experiment options)))

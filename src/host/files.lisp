@@ -6,7 +6,7 @@
           existing-path missing-directory many-files-p replace-file plain-file-p check-unprotected
           dangling-link-p name-in-directory file-size unusable-file-text shown-name +illegible+
           encoded decoded cut-file call-with-file-lock make-directories make-new-directory
-          host-name process-number copy-permissions temporary-file-prefix remove-abandoned-files
+          process-number copy-permissions temporary-file-prefix remove-abandoned-files
           *many-files-text* check-name-legible))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
@@ -185,10 +185,6 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
            (values t (funcall function)))
       (sb-posix:close descriptor))))
 
-(defun host-name ()
-  "Return what this machine is called."
-  (machine-instance))
-
 (defun process-number ()
   "Return the number that the system has given to this process."
   (sb-posix:getpid))
@@ -204,7 +200,7 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
 
 (defun host-file-prefix ()
   "Return how the names of temporary files of this machine's processes begin."
-  (format nil "ars-magna-~A-" (host-name)))
+  (format nil "ars-magna-~A-" (machine-instance)))
 
 (defun temporary-file-prefix ()
   "Return how the names of temporary files of this process begin."

@@ -160,7 +160,7 @@ there for good when this returns."
   (list (condition-name (result-condition result))
         (integer-text (result-seed result)) (integer-text (result-trial result))
         (float-text (/ (round milliseconds 1/1000) 1000d0))
-        (integer-text worker) (integer-text (process-number)) (host-name)))
+        (integer-text worker) (integer-text (process-number)) (machine-instance)))
 
 ;;; What is there: the presence of rows is a table from conditions to bits, one for each trial.
 
