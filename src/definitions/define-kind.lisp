@@ -4,10 +4,6 @@
 
 (export '(define-kind))
 
-(defun reader-name (conc slot)
-  "Return the symbol of the reader of SLOT in structures whose accessors begin with CONC."
-  (symbolicate conc slot))
-
 (defun document-readers (kind conc package)
   "Document the readers of KIND, whose names in PACKAGE begin with CONC."
   (dolist (slot (kind-slots kind))
@@ -82,7 +78,7 @@ slot...)."
 (defun slot-forms (name conc slots)
   "Return the forms that make what is known of SLOTS of the kind NAME."
   (loop for (role slot default type text part-p shared-p) in slots
-        for reader = (reader-name conc slot)
+        for reader = (symbolicate conc slot)
         collect `(make-kind-slot ',slot ,role ',type ,text ,part-p ,shared-p
                             (lambda () ,default)
                             (lambda (object) (,reader (the ,name object)))

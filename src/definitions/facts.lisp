@@ -33,9 +33,9 @@ string is written as people write it."
                                                 object
                                                 (fact-text object)))))))
 
-(defun write-facts-of (facts stream &optional (indent 2))
+(defun write-facts-of (facts stream)
   (loop for (label text) in facts
-        do (format stream "~&~V@T~A: ~A~%" indent label text)))
+        do (format stream "~&  ~A: ~A~%" label text)))
 
 (defun write-facts (object stream)
   "Write to STREAM what OBJECT is, and what is to be known of it and its definition."

@@ -117,11 +117,6 @@ it is of no use; or NIL.")
     (declare (ignore datum))
     nil))
 
-(defun type-slip-text (datum type)
-  "Return in a sentence how to have an object of TYPE, for somebody who gave DATUM; NIL if there is
-no more to say."
-  (or (type-remedy datum type) (value-behind datum)))
-
 (defun source-known-p (type)
   "True if the words for TYPE, an argument type, say what returns such an object."
   (and (our-own-p (argument-type-name type))
@@ -141,7 +136,8 @@ do; NIL if there is no more to say."
     (undefined-function (function-slip-text (cell-error-name condition)))
     (unbound-variable (variable-slip-text (cell-error-name condition)))
     (reader-error (syntax-slip-text condition))
-    (type-error (type-slip-text (type-error-datum condition)
-                                (type-error-expected-type condition)))))
+    (type-error (or (type-remedy (type-error-datum condition)
+                                 (type-error-expected-type condition))
+                    (value-behind (type-error-datum condition))))))
 
 (setf *report-addition* #'slip-text)

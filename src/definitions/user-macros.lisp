@@ -64,11 +64,6 @@ list: a keyword, or a form where there should be a list. Return NIL if it is som
                                (format nil "~(~A~) is no list" (unqualified-text argument))
                                (misfit-text parameter argument)))))))
 
-(defun misfit-advice (form usage)
-  "Return in words why FORM does not fit USAGE, and what to write instead, or NIL."
-  (or (advice-on-use (first form) form)
-      (misfit-text (rest usage) (rest form))))
-
 (defun unread-slot (form)
   "Return the symbol in FORM that Nisp's reader would have read as a slot, such as !>robot.cameras;
 or NIL."
@@ -87,19 +82,17 @@ or NIL."
 
 (defun call-fitting (form usage parse)
   "Call what PARSE, a function, returns; that takes apart FORM, the use of a macro as USAGE shows."
-  (unless (proper-form-p form) (reject-use-of form "a form that ends, in a parenthesis"))
+  (when (or (endless-p form) (not (proper-list-p form)))
+    (reject-use-of form "a form that ends, in a parenthesis"))
   (doubt-readtable form)
-  (call-blaming-form (handler-case (funcall parse)
-                       (error ()
-                         (reject-use-of form (format nil "~A~@[; ~A~]" (usage-text usage)
-                                                     (misfit-advice form usage)))))
-                     form))
-
-(defun usage-text (usage)
-  (let ((*print-pretty* nil)) (format nil "~(~A~)" (abridged usage))))
-
-(defun proper-form-p (form)
-  (and (not (endless-p form)) (proper-list-p form)))
+  (call-blaming-form
+   (handler-case (funcall parse)
+     (error ()
+       (reject-use-of form (let ((*print-pretty* nil))
+                             (format nil "~(~A~)~@[; ~A~]" (abridged usage)
+                                     (or (advice-on-use (first form) form)
+                                         (misfit-text (rest usage) (rest form))))))))
+   form))
 
 (defun expand-fitting (form environment usage parse)
   "Return what CALL-FITTING does; in other forms or in a file that is compiled, a form that signals
