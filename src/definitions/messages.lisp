@@ -93,9 +93,6 @@ nobody listens, or NIL"))
             (message-queue-forgotten copy) (message-queue-forgotten queue)))
     copy))
 
-(defvar *message-echo* (constantly nil)
-  "A function of a message and a queue that echoes, called when nobody listens to that.")
-
 (defun keep-trouble (message queue)
   "Remember MESSAGE, which tells QUEUE of an error in users' code, and the latest before it."
   (push message (message-queue-troubles queue))
@@ -131,7 +128,7 @@ it otherwise."
             (message-queue-count queue) *message-limit*)))
   (let ((listener (message-queue-listener queue)))
     (cond (listener (funcall listener))
-          ((echoed-p message queue) (funcall *message-echo* message queue)))))
+          ((echoed-p message queue) (echo-message message queue)))))
 
 (public error-set)
 (defun error-set (&rest stuff)

@@ -174,5 +174,3 @@ unless they were read or told before."
         (ignore-errors
          (format stream "~&~A~:[~; (~:*~D times by now)~]~%" text (and (< 1 count) count))
          (finish-output stream))))))
-
-(setf *message-echo* 'echo-message)
