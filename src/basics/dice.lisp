@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(dice make-dice copy-dice dice-state text-word))
+(export '(dice make-dice copy-dice text-word))
 
 ;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the
 ;;; same numbers on every machine and every release of the compiler. A simulation owns one
@@ -22,12 +22,10 @@
     (logxor word (ash word -31))))
 
 (declaim (inline %make-dice dice-state (setf dice-state) copy-dice))
-(defstruct (dice (:constructor %make-dice (state)) (:copier nil))
+(define-record (dice (:constructor %make-dice (state)))
   "A stream of chance. Two dice in the same state roll the same numbers for ever."
-  (state 0 :type word))
+  (state 0 word "the state of the dice, an integer of 64 bits" :writable :export))
 (declaim-final dice)
-(setf (documentation 'dice-state 'function)
-      "Return the state of the dice, an integer of 64 bits.")
 
 (defun copy-dice (dice)
   "Return new dice that will roll what DICE would."

@@ -2,13 +2,12 @@
 
 (in-package :ars-magna.basics)
 
-(export '(text-checksum digest make-digest digest-add digest-word digest-value digest-mention))
+(export '(text-checksum digest make-digest digest-add digest-word digest-mention))
 
-(defstruct (digest (:constructor make-digest ()) (:copier nil))
+(define-record (digest (:constructor make-digest ()
+                         "Return a digest to which nothing has been added."))
   "A sum over data, in order, that differs if any of them differs (FNV-1a, 64 bits)."
-  (value #xCBF29CE484222325 :type word))
-(setf (documentation 'make-digest 'function) "Return a digest to which nothing has been added."
-      (documentation 'digest-value 'function) "Return the digest's sum so far, 64 bits.")
+  (value #xCBF29CE484222325 word "the digest's sum so far, 64 bits" :writable :export))
 
 (declaim (inline digest-word))
 (defun digest-word (digest word)

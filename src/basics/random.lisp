@@ -106,15 +106,15 @@
 
 ;;; The dice of a tick. They are seeded when the first users' code is called.
 
-(defstruct (tick-dice (:constructor make-tick-dice ()) (:copier nil))
+(define-record (tick-dice (:constructor make-tick-dice ()
+                            "Return what holds the dice of one tick after the other. See
+BEGIN-TICK-DICE."))
   "What CL:RANDOM rolls in users' code that changes a world in the tick at hand: STATE, once it is
 seeded by the integers SEED and TICK."
-  (state nil :type (or null random-state))
-  (seed 0 :type integer)
-  (tick 0 :type fixnum)
-  (seeded-p nil :type boolean))
-(setf (documentation 'make-tick-dice 'function)
-      "Return what holds the dice of one tick after the other. See BEGIN-TICK-DICE.")
+  (state nil (or null random-state) :writable)
+  (seed 0 integer :writable)
+  (tick 0 fixnum :writable)
+  (seeded-p nil boolean :writable))
 
 (defvar *tick-dice* nil
   "The TICK-DICE for users' code that this thread calls, or NIL if that rolls what is there.")
