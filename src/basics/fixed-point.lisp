@@ -78,9 +78,6 @@ from the term before and K, which is 1, 2, 3 ..."
                   (let ((n (+ power (* 2 k))))
                     (- (round (fixed-times term square) (* n (1- n)))))))))
 
-(defun fixed-cosine (x) (sum-alternating x 0))
-(defun fixed-sine (x) (sum-alternating x 1))
-
 (defun fixed-pi ()
   "Return pi, by Machin's formula of 1706."
   (* 4 (- (* 4 (fixed-arctangent 1/5)) (fixed-arctangent 1/239))))
@@ -89,8 +86,8 @@ from the term before and K, which is 1, 2, 3 ..."
 
 (defun sine-row (k)
   "Return the sine and the cosine of K/128, each in two parts."
-  (append (double-parts (fixed-sine (/ k 128)) 53)
-          (double-parts (fixed-cosine (/ k 128)) 53)))
+  (append (double-parts (sum-alternating (/ k 128) 1) 53)
+          (double-parts (sum-alternating (/ k 128) 0) 53)))
 
 (defun power-row (k)
   "Return 2^(K/128), and the rounding error of that as a share of it."

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(call-with-lisps-dice *lisps-dice* seeded-lisps-dice reseed-lisps-dice
+(export '(*lisps-dice* seeded-lisps-dice reseed-lisps-dice
           call-with-own-lisps-dice rolling lisps-dice-numbers lisps-dice-numbers-p
           lisps-dice-of-numbers dice-rolled roll-back unheard-of-number tick-dice make-tick-dice
           begin-tick-dice *tick-dice* with-users-dice))
@@ -86,11 +86,6 @@
 (defun seeded-lisps-dice (seed)
   "Return a random state for CL:RANDOM that depends on the integer SEED only."
   (reseed (make-random-state nil) seed))
-
-(defun call-with-lisps-dice (function seed)
-  "Call FUNCTION. What CL:RANDOM says in it depends on the integer SEED only."
-  (let ((*random-state* (seeded-lisps-dice seed)))
-    (funcall function)))
 
 (defun call-with-own-lisps-dice (function)
   "Call FUNCTION. CL:RANDOM has dice of its own in it, which no other thread rolls."

@@ -46,8 +46,7 @@ wrong with VALUE."
 (defun check-of-type (operator name value type)
   "Signal WRONG-ARGUMENT, by OPERATOR and of its argument NAME, unless VALUE is of TYPE."
   (unless (argument-of-type-p value type)
-    (error 'wrong-argument :operator operator :name name :value value
-                           :expected (argument-type-text type value))))
+    (reject-argument operator name value (argument-type-text type value))))
 
 ;;; One for each kind of number; see numbers.lisp for the limits.
 

@@ -29,9 +29,9 @@ REST after them, if that is given. FUNCTION, of these, asks it again in the curr
   (let ((types (operator-types operator)) (name (operator-name operator)))
     (unless (and (<= (length types) (length arguments))
                  (or (operator-rest operator) (= (length types) (length arguments))))
-      (error 'wrong-argument :operator name :name "argument list" :value arguments
-                             :expected (format nil "~:[~;at least ~]~D argument~:P"
-                                               (operator-rest operator) (length types))))
+      (reject-argument name "argument list" arguments
+                       (format nil "~:[~;at least ~]~D argument~:P"
+                               (operator-rest operator) (length types))))
     (loop for argument in arguments
           for number from 1
           for rest = types then (rest rest)

@@ -87,9 +87,8 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
   ;; Of a number that is none not even the type can be asked.
   (unless (and (or (not (realp value)) (finite-p value))
                (funcall (parameter-test parameter) value))
-    (error 'wrong-argument :operator "set parameter" :name (parameter-name parameter)
-                           :value value
-                           :expected (describe-type (parameter-type parameter)))))
+    (reject-argument "set parameter" (parameter-name parameter) value
+                     (describe-type (parameter-type parameter)))))
 
 (addition parameter-value)
 (settable parameter-value)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.definitions)
 
 (export '(trouble-set errors-in forget-errors show-unseen *echo-output* drop-unsignalled
-          skip-unseen signal-trouble))
+          take-unseen signal-trouble))
 
 ;;; A message has a cause if it tells of an error in users' code, or of the failure of a plan that
 ;;; nobody waits for. The error policy of the queue decides what happens then:
@@ -100,11 +100,6 @@ there is one. True if there was, and whoever handled it wants to go on."
   (with-queue (queue)
     (let ((newest-first (message-queue-newest-first queue)))
       (reverse (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))))
-
-(defun skip-unseen (queue)
-  "Let nobody be shown what is in QUEUE by now; it can be read."
-  (take-unseen queue)
-  (values))
 
 (defun write-counted (messages stream)
   "Write MESSAGES to STREAM, the same text once, with how often it came."

@@ -174,11 +174,6 @@ but a function."
 ;;; Editors ask Lisp where a name is defined, as a function, a variable and so on. What only we know
 ;;; the place of is told with the declarations of that name, as nothing else is free for it.
 
-(defun source-of-place (place)
-  "Return, as SBCL has it, that something is defined at PLACE, a list (file position operator)."
-  (destructuring-bind (file position operator) place
-    (source-at (uiop:parse-native-namestring file) position operator)))
-
 (defun tell-sources (function)
   "Let whoever asks where a symbol is defined be told also what FUNCTION of that returns, lists
 \(file position operator)."
@@ -186,5 +181,6 @@ but a function."
                  (lambda (original name type)
                    (append (funcall original name type)
                            (and (eq type :declaration) (symbolp name)
-                                (loop for place in (funcall function name)
-                                      collect (source-of-place place)))))))
+                                (loop for (file position operator) in (funcall function name)
+                                      collect (source-at (uiop:parse-native-namestring file)
+                                                         position operator)))))))

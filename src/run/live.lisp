@@ -29,7 +29,8 @@ WITH-SIMULATION, around SIMULATOR."
      simulation
      (lambda ()
        (call-with-parameters
-        '() (lambda () (call-with-lisps-dice function (simulation-seed simulation))))))))
+        '() (lambda () (rolling ((seeded-lisps-dice (simulation-seed simulation)))
+                         (funcall function))))))))
 
 (defun call-in-clock (simulation function)
   "Call FUNCTION, what a thread of the live SIMULATION does. Whoever takes part hears of its end."

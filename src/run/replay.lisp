@@ -140,7 +140,7 @@ then has been done again."
          (when observer (add-observer observer simulation))
          (perform-journal journal simulation beginning)
          ;; Of what is repeated nobody needs to hear again.
-         (skip-unseen (simulation-messages simulation))
+         (take-unseen (simulation-messages simulation))
          (when observer (remove-observer observer simulation))
          (funcall function)))
      (mapcar #'blueprint-name blueprints)
