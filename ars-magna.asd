@@ -14,9 +14,9 @@
                  (:file "interpreter") (:file "closures") (:file "code") (:file "environments")
                  (:file "compiler") (:file "compiling") (:file "undefined") (:file "variables")
                  (:file "limits") (:file "reading") (:file "random-state") (:file "debugger")
-                 (:file "front-ends") (:file "debuggers") (:file "threads") (:file "finishing")
-                 (:file "elsewhere") (:file "weak") (:file "events") (:file "stacks") (:file "streams")
-                 (:file "signals") (:file "terminal")))
+                 (:file "front-ends") (:file "debuggers") (:file "threads") (:file "elsewhere")
+                 (:file "weak") (:file "events") (:file "streams") (:file "signals")
+                 (:file "terminal")))
    (:module "src/basics" :serial t
     :components ((:file "package") (:file "text") (:file "public") (:file "numbers")
                  (:file "printing") (:file "abridging") (:file "names") (:file "conditions")
