@@ -1,8 +1,9 @@
-;;;; variables.lisp -- which names can be variables.
+;;;; variables.lisp -- which names can be variables, and which mean nothing at all.
 
 (in-package :ars-magna.host)
 
-(export '(users-symbol-p variable-name-p variable-forms variable-name-trouble))
+(export '(users-symbol-p variable-name-p variable-forms variable-name-trouble undefined-name
+          still-undefined-p))
 
 ;;; What a user defines by a name can often be had as the value of a variable of that name too.
 
@@ -31,3 +32,21 @@ locked package, such as Common Lisp's or ours."
 (defun variable-forms (name)
   "Return the forms, perhaps none, that declare NAME a special variable."
   (when (variable-name-p name) `((defvar ,name))))
+
+;;; Names that the compiler finds used, and that nobody has defined.
+
+(defun undefined-name (condition)
+  "Return the name that CONDITION, a warning of the compiler's, says is not defined, and whether as
+a :FUNCTION or :VARIABLE; NIL if it says something else."
+  (let ((arguments (and (typep condition '(and warning simple-condition))
+                        (simple-condition-format-arguments condition))))
+    (when (and (proper-list-p arguments)
+               (= 2 (length arguments))
+               (member (first arguments) '(:function :variable)))
+      (values (second arguments) (first arguments)))))
+
+(defun still-undefined-p (name kind)
+  "True if NAME is not defined as KIND, a :FUNCTION or :VARIABLE, by now either."
+  (ecase kind
+    (:function (not (fboundp name)))
+    (:variable (not (or (boundp name) (known-variable-p name nil))))))
