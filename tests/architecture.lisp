@@ -320,8 +320,7 @@ describes a slot."
   "Return as what SYMBOL is bound but not documented, a list."
   (loop for (kind bound-p) in `((function ,(fboundp symbol))
                                 (variable ,(and (boundp symbol) (not (keywordp symbol))))
-                                (type ,(or (find-class symbol nil)
-                                           (host:user-type-p symbol))))
+                                (type ,(sb-ext:valid-type-specifier-p symbol)))
         when (and bound-p (null (documentation symbol kind)))
           collect kind))
 

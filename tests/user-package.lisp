@@ -95,8 +95,8 @@
 (defparameter *what-is-defined*
   "(flet ((defined-p (symbol)
             (and (eq (symbol-package symbol) (find-package :ars-user))
-                 (or (boundp symbol) (fboundp symbol) (find-class symbol nil)
-                     (ars-magna.host:user-type-p symbol)))))
+                 (or (boundp symbol) (fboundp symbol)
+                     (sb-ext:valid-type-specifier-p symbol)))))
      (prin1 (list (find-package :ars-worlds)
                   (loop for symbol being the symbols of :ars-user
                         when (defined-p symbol) collect symbol)

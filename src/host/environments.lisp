@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.host)
 
-(export '(function-arguments form-behind-comma user-type-p walk-expressions bound-in-walk-p
+(export '(function-arguments form-behind-comma walk-expressions bound-in-walk-p
           variables-of-walk variable-kind local-variable-p known-variable-p special-variable-p
           local-function-p known-function-p macro-expander lisps-own-p extended-environment
           evaluate-form walk-form expand-in-walk))
@@ -17,10 +17,6 @@ true; or NIL twice if the compiler does not know."
     (if (typep type '(cons (eql function) (cons list)))
         (values (second type) t)
         (values nil nil))))
-
-(defun user-type-p (symbol)
-  "True if SYMBOL is a type that DEFTYPE has defined."
-  (and (internal (:sb-int #:info) :type :expander symbol) t))
 
 (defun form-behind-comma (object)
   "Return the form behind OBJECT if that is a comma in a backquoted form, or NIL."
