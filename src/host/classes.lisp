@@ -26,10 +26,6 @@ called NAME, if there is one."
   (let ((class (find-class name nil)))
     (and class (closer-mop:specializer-direct-methods class))))
 
-(defun method-function (method)
-  "Return the function that METHOD has by the protocol: one around its code, perhaps."
-  (closer-mop:method-function method))
-
 (defun class-ancestors (class)
   "Return a list of CLASS and those it inherits from, those that are more special first."
   (closer-mop:class-precedence-list (closer-mop:ensure-finalized class)))
