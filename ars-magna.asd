@@ -13,8 +13,8 @@
                  (:file "files") (:file "processes") (:file "interrupts") (:file "instances")
                  (:file "interpreter") (:file "closures") (:file "code") (:file "environments")
                  (:file "compiler") (:file "compiling") (:file "variables")
-                 (:file "limits") (:file "reading") (:file "random-state") (:file "debugger")
-                 (:file "front-ends") (:file "debuggers") (:file "threads") (:file "elsewhere")
+                 (:file "limits") (:file "reading") (:file "random-state")
+                 (:file "front-ends") (:file "debugger") (:file "threads") (:file "elsewhere")
                  (:file "weak") (:file "events") (:file "streams") (:file "signals")
                  (:file "terminal")))
    (:module "src/basics" :serial t

@@ -1,8 +1,64 @@
-;;;; debugger.lisp -- the calls under way, and the terminal that threads share with the debugger.
+;;;; debugger.lisp -- whether anybody is there to answer a debugger, and what that needs of Lisp.
 
 (in-package :ars-magna.host)
 
-(export '(calls-under-way disabled-hook-p take-foreground yield-foreground))
+(export '(debugger-p foreign-hook debugger-hook common-debugger-hook *editor-gone-p*
+          with-debugger-hook *answerer* calls-under-way disabled-hook-p take-foreground
+          yield-foreground))
+
+;; A hook of ours, around which there may be others of ours, says nothing of who is there.
+(defvar *answerer* nil
+  "The hook that CALL-ANSWERING-DEBUGGER has set last, consed to the one that somebody else had set
+before; or NIL.")
+
+;; What an editor's server has set stays when the editor has gone.
+(defvar *editor-gone-p* (constantly nil)
+  "A function: true if the hook that Common Lisp has for debuggers is that of an editor's server, to
+which no editor is connected.")
+
+(defun stale-p (hook)
+  "True if HOOK is somebody else's, an editor's that has gone."
+  (and (functionp hook)
+       (not (eq hook (first *answerer*)))
+       (funcall *editor-gone-p*)))
+
+(defun foreign-hook ()
+  "Return the debugger's hook, or, if that is ours, the one that somebody else had set before."
+  (let ((hook (debugger-hook)))
+    (if (and hook (eq hook (first *answerer*)))
+        (rest *answerer*)
+        hook)))
+
+(defun debugger-p (&optional (hook (foreign-hook)))
+  "True if a debugger that is entered has somebody to talk to: a terminal, or the program, such as
+an editor, that has set HOOK or *DEBUGGER-HOOK*."
+  (cond ((and *debugger-hook* (not (funcall *editor-gone-p*))) t)
+        (hook (not (disabled-hook-p hook)))
+        (t (and (interactive-stream-p *standard-input*) (interactive-stream-p *debug-io*)))))
+
+(defun debugger-hook ()
+  "Return the function that is called instead of Lisp's debugger, with a condition and itself, in
+whatever thread that has not bound one; or NIL. Can be set. By the name DEBUGGER-DISABLED-HOOK one
+says that there is nobody to talk to."
+  (let ((hook sb-ext:*invoke-debugger-hook*))
+    (if (stale-p hook) (hook-of-front-end *front-end*) hook)))
+
+(defun (setf debugger-hook) (function)
+  (setf sb-ext:*invoke-debugger-hook* function))
+
+(defun common-debugger-hook ()
+  "Return the hook of all threads that have not bound one, or NIL. Can be set."
+  (global-value 'sb-ext:*invoke-debugger-hook*))
+
+(defun (setf common-debugger-hook) (function)
+  (setf (global-value 'sb-ext:*invoke-debugger-hook*) function))
+
+(defmacro with-debugger-hook ((function) &body body)
+  "Run BODY, in which this thread's debugger hook is FUNCTION. A hook that is called has none but
+for that."
+  `(let ((sb-ext:*invoke-debugger-hook* ,function)) ,@body))
+
+;;; The calls under way, and the terminal that threads share with the debugger.
 
 (defun calls-under-way (&optional (limit 100))
   "Return a list of the calls under way, the newest first and at most LIMIT of them, each as
