@@ -20,7 +20,7 @@
    (:module "src/basics" :serial t
     :components ((:file "package") (:file "text") (:file "public") (:file "numbers")
                  (:file "printing") (:file "abridging") (:file "names") (:file "conditions")
-                 (:file "records") (:file "file-text") (:file "kinds-of-files") (:file "exits")
+                 (:file "records") (:file "file-text") (:file "exits")
                  (:file "lisp-errors") (:file "telling") (:file "fixed-point") (:file "double-parts")
                  (:file "trigonometry") (:file "exponentials") (:file "dice") (:file "random")
                  (:file "writing") (:file "keywords") (:file "digest") (:file "csv")
