@@ -27,7 +27,6 @@
     (and first (find first "=+-@") t)))
 
 (defun digits-end (text start)
-  "Return where the digits end that TEXT has from START on."
   (declare (type simple-string text))
   (or (position-if-not #'digit-char-p text :start start) (length text)))
 

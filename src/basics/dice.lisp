@@ -54,7 +54,6 @@
 
 (declaim (inline upper-code))
 (defun upper-code (char)
-  "Return the code of CHAR in upper case."
   (let ((code (char-code char)))
     ;; CHAR-UPCASE, which need not be asked of most, takes its time.
     (cond ((<= (char-code #\a) code (char-code #\z)) (- code 32))

@@ -9,7 +9,6 @@
 (defvar *places* 256 "How many binary places fixed-point numbers have.")
 
 (defun fixed (number)
-  "Return the rational NUMBER as a fixed-point number."
   (values (round (ash (numerator number) *places*) (denominator number))))
 
 (defun fixed-times (a b)

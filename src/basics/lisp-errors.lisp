@@ -64,7 +64,6 @@ none; and true. Return false as a third value for other types."
           (least (format nil "~D or more" least)))))
 
 (defun class-words (type)
-  "Return words for TYPE if it is the name of a class, or NIL."
   (and (symbolp type)
        (find-class type nil)
        (format nil "of the type ~(~A~)" type)))
@@ -78,7 +77,6 @@ none; and true. Return false as a third value for other types."
             (some (lambda (words) (search words control)) *compilers-words*)))))
 
 (defun type-error-text (condition)
-  "Return our text for the type error CONDITION, or NIL if what Lisp says must do."
   (when (compilers-text-p condition)
     (let* ((datum (type-error-datum condition))
            (type (type-error-expected-type condition))
@@ -133,7 +131,6 @@ their names."
     (and (member code *error-codes*) (format nil "~(~S~)" code))))
 
 (defun named-text (condition)
-  "Return our text for CONDITION, that a name means nothing, or NIL."
   (let ((name (unqualified-text (cell-error-name condition))))
     (typecase condition
       (undefined-function (format nil "The function ~A is undefined.~@[ ~A~]"

@@ -42,14 +42,12 @@
         do (setf (aref words index) mark)))
 
 (defun marked-p (words)
-  "True if the WORDS of a random state bear the mark."
   (declare (type random-words words))
   (loop for mark of-type (unsigned-byte 32) across +mark+
         for index from (1+ +first-word+)
         always (= mark (aref words index))))
 
 (defun fill-if-marked (words)
-  "Fill the WORDS of a random state if they bear the mark."
   (declare (type random-words words))
   (when (marked-p words)
     (fill-words (aref words +first-word+) words)))

@@ -9,7 +9,6 @@
 ;;; run say more: see DEFINE-KIND.
 
 (defun set-documentations (functions-and-texts)
-  "Let each function have the text behind it in FUNCTIONS-AND-TEXTS, an alist, as documentation."
   (loop for (function . text) in functions-and-texts
         do (setf (documentation function 'function) text)))
 
@@ -49,14 +48,12 @@ with it; without any, that of DEFAULT."
       (list default)))
 
 (defun conc-name (name options)
-  "Return what the readers of the structure NAME, made with OPTIONS, begin with."
   (first (first (values-of-option :conc-name options (list (symbolicate name "-"))))))
 
 (defun slot-text (slot)
   (find-if #'stringp (nthcdr 3 slot)))
 
 (defun check-record-slot (name slot)
-  "Signal MALFORMED-DEFINITION unless SLOT of the record NAME makes sense."
   (unless (and (proper-list-p slot) (<= 3 (length slot)) (symbolp (first slot))
                (not (keywordp (third slot)))
                (subsetp (remove (slot-text slot) (nthcdr 3 slot)) '(:writable :export :addition)))
@@ -65,7 +62,6 @@ with it; without any, that of DEFAULT."
            :expected "(name default type [\"what is in it\"] [:writable] [:export] [:addition])")))
 
 (defun slot-definition (slot)
-  "Return SLOT as DEFSTRUCT takes it."
   (destructuring-bind (name default type &rest rest) slot
     `(,name ,default :type ,type ,@(unless (member :writable rest) '(:read-only t)))))
 
@@ -74,7 +70,6 @@ with it; without any, that of DEFAULT."
   (remove-if #'stringp option))
 
 (defun record-texts (name options documentation slots)
-  "Return an alist with the documentation of the functions of the record NAME."
   (append (loop for slot in slots
                 for text = (slot-text slot)
                 when text

@@ -58,8 +58,6 @@ the midst of being printed, and is no circle for that: so it is not printed as a
          (format nil "it has bytes that are not ~A. Save the file in ~:*~A" encoding))))
 
 (defun undecodable-text (condition)
-  "Return in a sentence which file is in another encoding than it is read in, if CONDITION says so;
-else NIL."
   (let ((trouble (encoding-trouble condition)))
     (and trouble
          (format nil "~:[This~;~:*~A~] cannot be read: ~A."

@@ -59,7 +59,6 @@ there is to be instead of a copy, and true; or NIL and false" :writable)
 (defconstant +largest-idle+ 20000 "How many objects a copier may have copied to be used again.")
 
 (defun take-copier ()
-  "Return a copier that nobody uses."
   (loop for copiers = (car *idle-copiers*)
         while copiers
         when (swap-if (car *idle-copiers*) copiers (rest copiers))

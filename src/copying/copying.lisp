@@ -79,7 +79,6 @@ not be complete before they have returned."
          options))
 
 (defun like-array (array)
-  "Return an array like ARRAY, with the same in it."
   (if (typep array '(simple-array * (*)))
       (copy-seq array)
       (let ((copy (make-like array)))
@@ -87,7 +86,6 @@ not be complete before they have returned."
           (setf (row-major-aref copy index) (row-major-aref array index))))))
 
 (defun copy-displaced (array copier)
-  "Return what COPIER is to have for ARRAY, which is part of another."
   (multiple-value-bind (base offset) (array-displacement array)
     (note-copy array
                (make-like array :displaced-to (forked base copier)
@@ -109,7 +107,6 @@ in a user's method is CANNOT-FORK."
             (copy-plan-value value copier))))))
 
 (defun begin-copy (value copier)
-  "Return what COPIER, which does not know VALUE yet, is to have for it."
   (declare #.*hot*)
   (flet ((note (copy) (put-right-later (note-copy value copy copier) nil copier)))
     (declare (inline note))
@@ -180,7 +177,6 @@ function and an instance of a class of a user's may keep anything."
                (setf (slot-value copy slot) (forked (slot-value copy slot) copier)))))))
 
 (defun put-all-right (copier)
-  "Put right the copies that wait for that, and those that come up then."
   (declare #.*hot* (type copier copier))
   (loop until (zerop (copier-fill copier))
         do (let ((fill (decf (copier-fill copier) 2)))
@@ -190,7 +186,6 @@ function and an instance of a class of a user's may keep anything."
 
 ;; A key must be complete before a table can know where it belongs.
 (defun fill-tables (tables copier)
-  "Fill the copies in TABLES, a list (table . copy)."
   (let ((contents (loop for (table) in tables
                         do (setf (copier-holder copier) table)
                         collect (loop for key being the hash-keys of table using (hash-value value)
@@ -202,7 +197,6 @@ function and an instance of a class of a user's may keep anything."
                    do (setf (gethash key copy) value)))))
 
 (defun finish-copies (copier)
-  "Put right all that COPIER has copied."
   (loop
     (put-all-right copier)
     (let ((tables (shiftf (copier-tables copier) '())))

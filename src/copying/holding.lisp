@@ -8,7 +8,6 @@
 ;;; robots, is not looked into: from there one gets everywhere.
 
 (defun contents-of (object)
-  "Return a list of what OBJECT, if it is data, has in it."
   (typecase object
     (cons (list (car object) (cdr object)))
     (hash-table (loop for key being the hash-keys of object using (hash-value value)

@@ -109,20 +109,17 @@ of what is the system's own. What is in the slots number INDICES is copied too; 
   (remove :link (and kind (kind-slots kind)) :key #'kind-slot-role :test-not #'eq))
 
 (defun own-method-p (object)
-  "True if somebody has said how structures like OBJECT are copied."
   (let ((method (first (compute-applicable-methods #'copy-plan-value (list object nil)))))
     (not (eq method (find-method #'copy-plan-value '()
                                  (list (find-class 'structure-object) (find-class t)))))))
 
 (defun way-to-copy (object)
-  "Return the way in which structures like OBJECT are copied; see MANNER."
   (cond ((some (lambda (type) (typep object type)) *shared-types*) :share)
         ((own-method-p object) :method)
         ((and (lisps-own-p (class-name (class-of object))) (not (environment-p object))) :ask)
         (t :copy)))
 
 (defun find-manner (object)
-  "Return how structures like OBJECT are copied."
   (let* ((kind (kind-of object)) (links (link-slots kind)) (way (way-to-copy object)))
     (if (member way '(:share :ask))
         (make-manner way #() '())
@@ -152,7 +149,6 @@ there.")
       (setf *manners* (cons methods (no-manners))))))
 
 (defun manner (object)
-  "Return how OBJECT, a structure, is copied."
   (declare #.*hot*)
   (let* ((manners (cdr *manners*))
          (layout (layout-of object))

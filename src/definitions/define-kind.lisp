@@ -13,7 +13,6 @@
         (setf (documentation reader 'function) (reader-text name (kind-slot-text slot)))))))
 
 (defun register-kind (name parent slots conc)
-  "Let NAME be a kind with SLOTS of its own besides those of the kind called PARENT."
   (let* ((parent (and parent
                       (or (kind-called parent)
                           (reject-clause-of-kind name (list :include parent)
@@ -76,7 +75,6 @@ slot...)."
                                :clause clause :expected expected))
 
 (defun slot-forms (name conc slots)
-  "Return the forms that make what is known of SLOTS of the kind NAME."
   (loop for (role slot default type text part-p shared-p) in slots
         for reader = (symbolicate conc slot)
         collect `(make-kind-slot ',slot ,role ',type ,text ,part-p ,shared-p
@@ -116,7 +114,6 @@ MALFORMED-DEFINITION."
     (kind-definition name include constructor documentation groups)))
 
 (defun kind-definition (name include constructor documentation groups)
-  "Return the form that defines the kind NAME."
   (let ((slots (slots-by-role groups))
         (conc (concatenate 'string (symbol-name name) "-"))
         (constructor (ensure-list constructor)))

@@ -34,7 +34,6 @@ loaded; NIL if it was typed."
   (and *definition* (form-digest (defining-form *definition*))))
 
 (defun current-head ()
-  "Return operator and name of the definition that is being carried out, in a list."
   (and *definition* (head (defining-form *definition*))))
 
 (defun current-docstring ()
@@ -50,7 +49,6 @@ the value of :documentation, or the first string behind the name; NIL if there i
     (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
 
 (defun definition-text (definition)
-  "Return what DEFINITION is called in messages."
   (let ((form (defining-form definition)))
     (title (first form) (second form))))
 
@@ -159,7 +157,6 @@ the user is asked again."
        (cell-error-name condition)))
 
 (defun head (form)
-  "Return operator and name of the definition FORM, in a list."
   (subseq form 0 (min 2 (length form))))
 
 (defun reject-value (condition)
@@ -178,7 +175,6 @@ the user is asked again."
     (funcall function)))
 
 (defun call-as-definition (source form function)
-  "Call FUNCTION, which carries out the definition FORM from SOURCE."
   (let ((*definition* (make-defining source form)))
     (call-with-definition-restarts (lambda () (call-blaming function #'reject-value)) #'eval)))
 

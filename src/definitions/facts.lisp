@@ -38,7 +38,6 @@ string is written as people write it."
         do (format stream "~&  ~A: ~A~%" label text)))
 
 (defun write-facts (object stream)
-  "Write to STREAM what OBJECT is, and what is to be known of it and its definition."
   (format stream "~&~S~%" object)
   (write-facts-of (append (facts object) (facts-of-definition (entry-of object))) stream))
 
@@ -52,7 +51,6 @@ LABELS, alternating, as KNOWN-FACTS takes them."
              (write-facts ,variable stream))))))
 
 (defun describe-by-kind (object stream)
-  "Write to STREAM what OBJECT is, what people want to know of it, and what is in it, by role."
   (write-facts object stream)
   (loop for (title . slots) in (slots-to-show object)
         do (format stream "~& ~A:~%" title)
@@ -74,7 +72,6 @@ LABELS, alternating, as KNOWN-FACTS takes them."
 ;;; Definitions.
 
 (defun entry-of (object)
-  "Return the entry of a registry for OBJECT, or NIL."
   (loop for registry in *registries*
           thereis (find object (registry-entries registry) :key #'entry-object :test #'eq)))
 
@@ -84,7 +81,6 @@ LABELS, alternating, as KNOWN-FACTS takes them."
        (clause-line (source-file (entry-source entry)) (entry-head entry) nil)))
 
 (defun facts-of-definition (entry)
-  "Return, as FACTS does, where the definition of ENTRY stands, and what its author says of it."
   (and entry
        (known-facts "Documentation" (entry-documentation entry)
                     "Defined in" (and (source-file (entry-source entry))
@@ -100,7 +96,6 @@ is ours, such as a command, Lisp tells of by itself, unless it is called otherwi
            (facts (entry-object entry)))))
 
 (defun describe-definitions (symbol stream)
-  "Write to STREAM what definitions are called SYMBOL."
   (dolist (registry *registries*)
     (let ((entry (lookup-entry symbol registry)))
       (when (and entry (worth-telling-p entry registry symbol))

@@ -28,7 +28,6 @@ thread that has broken, before it is asked there how that goes on.")
   (with-lock (*inquiries-lock*) (copy-list *inquiries*)))
 
 (defun words-for-asker (hook)
-  "Return who asks in the debugger of HOOK."
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
 (defun debugger-asking (thread)

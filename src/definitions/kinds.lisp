@@ -68,7 +68,6 @@
        (kind-called (type-of object))))
 
 (defun based-on-p (kind base)
-  "True if KIND is or includes the kind called BASE."
   (loop for each = kind then (kind-parent each)
         while each
           thereis (eq base (kind-name each))))

@@ -45,7 +45,6 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
   (:method (name) (declare (ignore name)) nil))
 
 (defun function-slip-text (name)
-  "Return in a sentence what NAME, of no function, may be a slip for, or NIL."
   (when (and (symbolp name) (symbol-package name))
     (multiple-value-bind (ours package)
         (ours-called (or (function-meant name) name))
@@ -58,7 +57,6 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
           (function-elsewhere-text name)))))
 
 (defun function-elsewhere-text (name)
-  "Return in a sentence which function, not ours, NAME may be a slip for, or NIL."
   (flet ((like-p (symbol)
            (and (fboundp symbol)
                 (<= (abs (- (length (symbol-name symbol)) (length (symbol-name name)))) 2)
@@ -83,7 +81,6 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
                           (usual-name registry) (unqualified-text name))))
 
 (defun variable-slip-text (name)
-  "Return in a sentence what NAME, which has no value, may be a slip for, or NIL."
   (when (and (symbolp name) (symbol-package name))
     (let ((code (code-slip name)))
       (or (and code (format nil "Did you mean ~A?" code))

@@ -201,7 +201,6 @@ line (reading 36)."
         (t (princ item stream))))
 
 (defun write-items (items stream)
-  "Write each of ITEMS to STREAM by OUT's rules."
   (dolist (item items) (write-item item stream)))
 
 (public (out :nisp))

@@ -25,7 +25,6 @@ of its variable if there is one."
       (setf (global-value (entry-variable entry)) (first value)))))
 
 (defun restore-registry (registry kept)
-  "Make REGISTRY as it was when KEPT, a list made by KEEP-ENTRY, was made."
   (let ((now (registry-entries registry))
         (then (mapcar #'first kept)))
     (with-lock (*registries-lock*) (set-entries registry then))

@@ -15,7 +15,6 @@ For those defined before this is compiled, as all of ours are, that is much quic
          ,@body))))
 
 (defun check-settings (settings)
-  "Signal WRONG-ARGUMENT unless SETTINGS is a list of lists (name value)."
   (unless (and (proper-list-p settings)
                (loop for setting in settings
                      always (and (proper-list-p setting) (= 2 (length setting)))))

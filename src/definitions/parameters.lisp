@@ -35,7 +35,6 @@
     (write-string (parameter-name parameter) stream)))
 
 (defun parameter-aliases (parameter)
-  "Return what PARAMETER is called without its final star, in a list."
   (list (string-right-trim "*" (symbol-name (parameter-symbol parameter)))))
 
 (define-registry parameter "simulation parameter"

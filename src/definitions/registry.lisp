@@ -186,7 +186,6 @@ NIL, with a warning unless NAME is a symbol of Common Lisp's, say, or ours."
         (t name)))
 
 (defun say-if-replaced (old new registry)
-  "Warn that the entry NEW replaces OLD if OLD was defined in another file."
   (let ((file (source-file (entry-source old)))
         (other (source-file (entry-source new))))
     (when (and file (not (equal file other)))
@@ -247,7 +246,6 @@ SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of w
                       (if (users-p entry) (source-file (entry-source entry)) :own))))
 
 (defun usual-name (registry)
-  "Return what users call the kind of REGISTRY, a string."
   (string-downcase (or (first (registry-synonyms registry)) (registry-kind registry))))
 
 (defun forget-value (variable)

@@ -98,7 +98,6 @@ and returns it and where it ends, or NIL."
         finally (return (length text))))
 
 (defun starts-at-p (prefix text i)
-  "True if TEXT goes on with PREFIX at I."
   (let ((end (+ i (length prefix))))
     (and (<= end (length text))
          (string= prefix text :start2 i :end2 end))))
@@ -117,7 +116,6 @@ code."
         ((char= #\\ (char text i)) (+ i 2))))
 
 (defun openings (text start end)
-  "Return the positions of the opening parentheses of code in TEXT between START and END."
   (let ((positions '()) (i start))
     (loop while (< i end)
           do (when (char= #\( (char text i)) (push i positions))
@@ -134,7 +132,6 @@ code."
          (string-equal word text :start2 (- end length) :end2 end))))
 
 (defun look-for-definitions (text form)
-  "Do what DEFINITION-POSITIONS says."
   (destructuring-bind (operator &optional name &rest clauses) form
     (declare (ignore clauses))
     (with-words (text)
@@ -170,7 +167,6 @@ first, and its number."
   (recalling (text start end) (forms-in text start end)))
 
 (defun found-p (form found)
-  "True if FOUND, what FORMS-IN read, is FORM, word by word."
   (and found (same-words-p found form)))
 
 (defvar *last-place* '(())
@@ -219,7 +215,6 @@ CLAUSE is not found in it, or NIL; and which of the definitions of that name it 
                   (and place number)))))))
 
 (defun clause-line (file form clause)
-  "Return what LINE-OF-CLAUSE does for the text in FILE; NIL if that cannot be read."
   (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
 (defun count-in-file (word file)
@@ -268,13 +263,11 @@ at the beginning and at the end."
                  (setf blank (not code) i end))))))
 
 (defun text-digest (text)
-  "Return a number for the characters of TEXT."
   (let ((digest (make-digest)))
     (loop for char across text do (digest-add digest char))
     (digest-value digest)))
 
 (defun form-end (text start)
-  "Return where the list that begins in TEXT at START ends."
   (loop with depth = 0 and i = start
         while (< i (length text))
         do (let ((skipped (skip-text text i)))
@@ -339,7 +332,6 @@ order in which they come up; KNOWN has those that have."
     (t (digest-add digest atom))))
 
 (defun add-form (form digest known)
-  "Add FORM to DIGEST; see ADD-ATOM."
   (cond ((form-behind-comma form)
          (digest-add digest "comma")
          (add-form (form-behind-comma form) digest known))

@@ -17,13 +17,11 @@ The layer that knows fluents has methods.")
   (or (stringp object) (and (symbolp object) (not (member object '(nil t otherwise))))))
 
 (defun words-in (object)
-  "Return the words among OBJECT, a key or a list of keys."
   (if (consp object)
       (remove-if-not #'word-p (ldiff object (cdr (last object))))
       (and (word-p object) (list object))))
 
 (defun constant-word (form)
-  "Return the word that FORM, a constant, stands for; or NIL."
   (cond ((typep form '(cons (eql quote) (cons symbol null))) (second form))
         ((or (keywordp form) (stringp form)) form)))
 

@@ -40,7 +40,6 @@ or a failure of a plan; TEXT says it in a line. Return nothing."
   (values))
 
 (defun error-of-message (message)
-  "Return MESSAGE, which has a cause, as a USER-CODE-ERROR."
   (make-condition 'user-code-error :text (message-summary message) :cause (message-cause message)))
 
 (defun errors-in (queue run-p)
@@ -91,7 +90,6 @@ there is one. True if there was, and whoever handled it wants to go on."
 (defparameter *most-unread* 20 "How many different messages are shown that nobody has read.")
 
 (defun notable-now-p (message)
-  "True if MESSAGE is a warning to be shown like an error."
   (let ((notable (message-notable-p message)))
     (if (functionp notable) (funcall notable) (eq t notable))))
 
@@ -102,7 +100,6 @@ there is one. True if there was, and whoever handled it wants to go on."
       (reverse (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))))
 
 (defun write-counted (messages stream)
-  "Write MESSAGES to STREAM, the same text once, with how often it came."
   (let ((counts (make-hash-table :test 'equal)) (texts '()))
     (dolist (message messages)
       (let ((text (write-message message nil (text-with-command message))))

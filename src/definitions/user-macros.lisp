@@ -137,7 +137,6 @@ LAMBDA-LIST, or which BODY makes nothing of, signals MALFORMED-DEFINITION."
 ;;; Forms that are tests. A function is true, whatever it would return.
 
 (defun body-form (forms)
-  "Return a form that does FORMS."
   (if (= 1 (length forms)) (first forms) (cons 'progn forms)))
 
 (defun test-meant (form)

@@ -74,7 +74,6 @@ the text."
 (defvar *unit* nil "The unit that is being compiled or loaded, or NIL.")
 
 (defun context-of (form)
-  "Return how the compiler would tell about FORM later."
   (call-at-place form #'error-context))
 
 (defun at-end-of-unit (form function)
@@ -145,7 +144,6 @@ is not true, or else another."
 ;;; SBCL has no hook for the end of a unit.
 
 (defun watch-units ()
-  "Let what SBCL compiles or loads be a unit."
   (wrap-function 'compile-file
                  (lambda (function &rest arguments)
                    (compile-in-unit (lambda () (apply-in-own-file function arguments)))))

@@ -112,7 +112,6 @@ of (name expander), :symbol-macro and a list of (name expansion)."
                             environment))))
 
 (defun users-macro-p (form environment)
-  "True if FORM is a call of a macro in ENVIRONMENT that is not Lisp's."
   (and (symbolp (first form))
        (not (lisps-own-p (first form)))
        (macro-function (first form) environment)))

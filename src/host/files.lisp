@@ -190,7 +190,6 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
   (sb-posix:getpid))
 
 (defun process-running-p (number)
-  "True if a process of this machine has the NUMBER."
   (handler-case (progn (sb-posix:kill number 0) t)
     (sb-posix:syscall-error (condition)
       (/= sb-posix:esrch (sb-posix:syscall-errno condition)))))
@@ -207,7 +206,6 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
   (format nil "~A~D-" (host-file-prefix) (process-number)))
 
 (defun abandoned-file-p (file)
-  "True if FILE is a temporary file of a process that has ended."
   (let ((name (file-namestring file)) (prefix (host-file-prefix)))
     (when (starts-with-subseq prefix name)
       (let ((number (parse-integer name :start (length prefix) :junk-allowed t)))

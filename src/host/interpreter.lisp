@@ -23,18 +23,15 @@
           append (mapcar #'cdr (internal (:sb-eval #:env-funs) each))))
 
   (defun interpreted-p (object)
-    "True if OBJECT is an interpreted function."
     (internal-type-p object :sb-kernel #:interpreted-function))
 
   (defun interpreted-environment (function)
-    "Return the environment of the interpreted FUNCTION. Can be set."
     (internal (:sb-eval #:interpreted-function-env) function))
 
   (defun (setf interpreted-environment) (environment function)
     (setf (internal (:sb-eval #:interpreted-function-env) function) environment))
 
   (defun copy-interpreted (function)
-    "Return a new interpreted function of the same code in the same environment as FUNCTION."
     (internal (:sb-eval #:make-interpreted-function)
               :name (internal (:sb-eval #:interpreted-function-name) function)
               :lambda-list (internal (:sb-eval #:interpreted-function-lambda-list) function)

@@ -26,7 +26,6 @@ SBCL waits.")
   (and *holding* t))
 
 (defun call-deferring-interrupts (function)
-  "Do what DEFERRING-INTERRUPTS does."
   (if *holding*
       (funcall function)
       (internal (:sb-sys #:without-interrupts)
@@ -47,7 +46,6 @@ SBCL waits.")
       ((eql :strictly) (funcall function)))))
 
 (defun call-waiting (function)
-  "Do what WAITING does."
   (let ((holding *holding*))
     (if (functionp holding)
         (funcall holding function t)
@@ -115,7 +113,6 @@ and CLEANUP, nor in that."
       (funcall (the function function))))
 
 (defun call-in-any-case (first &rest others)
-  "Do what IN-ANY-CASE does with functions for its forms."
   (declare (dynamic-extent others))
   (let ((open-p (not (held-off-p))))
     (labels ((call-rest (functions)

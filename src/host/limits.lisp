@@ -12,7 +12,6 @@
 ;;; it has counted that. Whoever runs the test handles this, also where the check is in a plan.
 
 (defun failed-check-p (condition)
-  "True if CONDITION is that a check of a test of FiveAM has failed."
   (and (typep condition 'error)
        (find "IGNORE-FAILURE" (compute-restarts condition)
              :key #'restart-name :test #'string=)

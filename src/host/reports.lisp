@@ -11,7 +11,6 @@
 NIL.")
 
 (defun write-addition (condition stream)
-  "Write behind the report of CONDITION what *REPORT-ADDITION* returns for it, if anything."
   (unless *print-escape*
     (let ((text (ignore-errors (funcall *report-addition* condition))))
       (when text (format stream "~&~A" text)))))
