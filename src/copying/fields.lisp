@@ -36,7 +36,8 @@
 them what they begin with, if that may be: an error may show the object."
   (let ((object (allocate-instance (find-class type))))
     (dolist (field fields object)
-      (ignore-errors (funcall (field-writer field) (funcall (field-initial field)) object)))))
+      (ignore-errors
+       (funcall (kind-slot-writer field) (funcall (kind-slot-initial field)) object)))))
 
 ;;; Functions that objects hold, and that a file may name: none but these.
 
