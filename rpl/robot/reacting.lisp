@@ -43,6 +43,7 @@ nothing happens."
         (charge-as-told interface)
         (advance-timers runner (simulation-tick (interface-simulation interface)))
         (let ((outcome (rolling ((plans-dice interface)) (react-and-serve interface))))
+          ;; Whoever closed it while its plans reacted has left the rest to us.
           (cond ((interface-closing-p interface) (finish-closing interface) :idle)
                 (t outcome))))))
 

@@ -48,7 +48,7 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
     (with-output-to-string (stream)
       (loop for call in (if signalled (rest signalled) calls)
             for number from 0
-            until (member (first call) '(run-steps step-leaf call-with-care))
+            until (member (first call) '(run-steps step-leaf call-to-fate))
             do (format stream "    ~D: ~A~%" number (form-text call 100))))))
 
 (defmethod value-behind ((task task))

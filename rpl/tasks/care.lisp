@@ -88,46 +88,69 @@ LEAVE and END. A step that is left by another ends its plan, and so cannot be tr
       (let ((*spoilt-by-leaving-p* #'in-step-p))
         (funcall function runner)))))
 
+;;; What a step meets decides the fate of its task, a keyword:
+;;;   :DONE    nothing;
+;;;   :FAIL    an error or failure, or the restart FAIL-TASK;
+;;;   :END     the restart ABORT, or a debugger at which nobody sits;
+;;;   :LEAVE   the restart LEAVE-PLAN.
+;;; There is none if the step is left for good by another way, such as THROW.
+
+(defun call-to-fate (runner function)
+  "Call FUNCTION with RUNNER. Return the fate of its task, the value of FUNCTION or what trouble it
+met, and whether it may have been stopped in the middle of our own code."
+  (let ((trouble nil) (anywhere-p nil))
+    (block call
+      (labels ((meet (fate) (return-from call (values fate trouble anywhere-p)))
+               (end () (meet :end))
+               (leave () (meet :leave))
+               (fail ()
+                 ;; A failure keeps the backtrace of where it is made. Without room for one, that
+                 ;; waits until there is: see FAIL-CURRENT.
+                 (unless (typep trouble '(or plan-failure storage-condition))
+                   (setf trouble (current-failure runner (or trouble (make-failure '())))))
+                 (meet :fail))
+               (note (condition)
+                 (when (let-callers-handle condition) (setf anywhere-p t))
+                 ;; Without a task, plans hear something; that trouble is for those who called.
+                 (when (running-task runner)
+                   (setf trouble condition)
+                   (when (and *break-on-user-error* (typep condition 'error))
+                     (invoke-debugger condition))
+                   (fail)))
+               (answer (condition somebody-p)
+                 (cond (somebody-p (setf (runner-looked-at runner) t)
+                                   (note-waiting))
+                       ((not (running-task runner)))
+                       ((typep condition 'serious-condition)
+                        (setf trouble condition)
+                        (fail))
+                       (t (report-break condition (list (task-label (runner-current runner))))
+                          (continue-inside condition)
+                          (end)))))
+        ;; Each step of each task comes by here, so nothing is allocated.
+        (declare (dynamic-extent #'end #'leave #'fail #'note #'answer))
+        (values :done
+                (handler-bind (((or error plan-failure storage-condition) #'note))
+                  (answering-debugger (#'answer)
+                    (call-offering-ends runner function #'fail #'end #'leave)))
+                anywhere-p)))))
+
+(defun bear-fate (runner fate trouble)
+  "Let the running task of RUNNER bear FATE, no :DONE, that TROUBLE brought. Return NIL."
+  (ecase fate
+    (:fail (fail-current runner trouble))
+    (:end (report-abort runner) (end-current runner))
+    (:leave (end-current runner)))
+  nil)
+
 (defun call-with-care (runner function)
   "Call FUNCTION with RUNNER and return its value; NIL if the step of a task met trouble, which that
 task has to bear."
-  (let ((fate nil) (trouble nil) (result nil) (anywhere nil))
+  (let ((fate nil) (result nil) (anywhere-p nil))
     (unwind-protect
-         (block call
-           (labels ((bear (what) (setf fate what) (return-from call))
-                    (end () (bear :end))
-                    (leave () (bear :leave))
-                    (fail ()
-                      (unless (typep trouble '(or plan-failure storage-condition))
-                        (setf trouble (current-failure runner (or trouble (make-failure '())))))
-                      (bear :fail))
-                    (note (condition)
-                      (when (let-callers-handle condition) (setf anywhere t))
-                      (when (running-task runner)
-                        (setf trouble condition)
-                        (when (and *break-on-user-error* (typep condition 'error))
-                          (invoke-debugger condition))
-                        (fail)))
-                    (answer (condition somebody-p)
-                      (cond (somebody-p (setf (runner-looked-at runner) t)
-                                       (note-waiting))
-                            ((not (running-task runner)))
-                            ((typep condition 'serious-condition)
-                             (setf trouble condition)
-                             (fail))
-                            (t (report-break condition (list (task-label (runner-current runner))))
-                               (continue-inside condition)
-                               (end)))))
-             (declare (dynamic-extent #'end #'leave #'fail #'note #'answer))
-             (setf result (handler-bind (((or error plan-failure storage-condition) #'note))
-                            (answering-debugger (#'answer)
-                              (call-offering-ends runner function #'fail #'end #'leave)))
-                   fate :done)))
+         (setf (values fate result anywhere-p) (call-to-fate runner function))
       (cond ((null fate) (put-in-order runner))
-            ((or anywhere (eq fate :end)) (repair runner))))
-    (ecase fate
-      (:done)
-      (:fail (fail-current runner trouble))
-      (:end (report-abort runner) (end-current runner))
-      (:leave (end-current runner)))
-    result))
+            ((or anywhere-p (eq fate :end)) (repair runner))))
+    (if (eq fate :done)
+        result
+        (bear-fate runner fate result))))

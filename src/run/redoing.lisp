@@ -90,6 +90,8 @@ acted as often as it has by now."
         while act
         unless (act-own-p act) do (do-again act redoing)))
 
+;; Changes that came before any request are made first: the fork comes to requests of its own by
+;; them too. Those are then held, and each is let in where it came the first time, among the rest.
 (defun redo-between-ticks (redoing)
   "Do again what was done before the next tick."
   (loop for act = (next-act redoing (lambda (act) (eq :change (act-kind act))))
@@ -106,7 +108,7 @@ acted as often as it has by now."
 (defun ticks-to-go (redoing goal)
   "Return how many ticks may pass before something is to be done again, or GOAL is reached."
   (let* ((simulation (redoing-simulation redoing)) (act (first (redoing-acts redoing))))
-    (cond ((simulation-participants simulation) 1)
+    (cond ((simulation-participants simulation) 1) ; They may come to requests in any tick.
           (act (- (min goal (act-tick act)) (simulation-tick simulation)))
           (t (- goal (simulation-tick simulation))))))
 

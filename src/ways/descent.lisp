@@ -37,6 +37,18 @@ less at its end."
                               (sqrt (the (double-float 0d0) (- (* cost cost) (* drop drop))))))
                   0d0 1d0))))
 
+;;; The eight sides of the ring are the same but for turns and mirrors. A side lies in the direction
+;;; SIDE and runs from the middle of the neighbour there, STRAIGHT, in the direction ACROSS to that
+;;; of the one at the corner, DIAGONAL:
+;;;
+;;;        square | DIAGONAL         On the way to the start of the side one crosses two cells, this
+;;;        -------+-----^---         one and STRAIGHT, along their EDGE; to any other point of it
+;;;           *   | STRAIGHT         possibly all four of the SQUARE. A metre costs what it costs in
+;;;                                  the dearest of the cells that may be crossed.
+;;;
+;;; The robot * is OFF the middle of its cell: the side is AHEAD metres away, and the robot ASIDE
+;;; metres along it. PART of a side, from 0 to 1, is how far along it a point lies.
+
 (defun step-down (descent)
   "Take a step. True if there was one."
   (declare #.*hot* (type descent descent))
@@ -69,6 +81,7 @@ less at its end."
                                     best-y (+ middle-y side-y (* across-y part)))))))
                    (declare (inline propose))
                    (when (<= start limit) (propose edge 0d0 start))
+                   ;; If only the corner is low enough, nothing is known of the points before it.
                    (when (and (< square +barred+) (<= end limit))
                      (if (<= start limit)
                          (let ((part (best-on-side ahead aside (- start end) square)))
