@@ -58,7 +58,7 @@ OUTCOME makes settings of an answer."
 
 (defun ends-p (command err)
   "True if an answer of COMMAND with the error code ERR is its last: a track that begins will end."
-  (or err (not (eq 'camera-track (command-name command)))))
+  (or err (not (trait-p :begins command))))
 
 (defun add-answer (answer interface)
   (with-lock ((interface-deeds-lock interface))

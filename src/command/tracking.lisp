@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.command)
 
-;;; CAMERA-TRACK is the one command that tells its continuation twice: with NIL when the track
-;;; begins, and with a code when it ends. If it cannot begin, it tells once.
+;;; CAMERA-TRACK tells its continuation twice: with NIL when the track begins, and with a code when
+;;; it ends. If it cannot begin, it tells once.
 
 (defun track-obstacle (camera designator)
   "Return the error code that keeps CAMERA from tracking DESIGNATOR, or NIL."
@@ -49,6 +49,7 @@ robot (reading 140)."
                               (designator designator "what to track"))
     ((designator "the designator"))
     ((:family :looking) (:section "3.4.3") (:delay camera-desig-delay*) (:echo designator)
+     (:traits :begins)
      (:errors (:already-tracking #'already-tracking-text)
               (:local-not-local (text-of "~*~A is not local any more"))
               (:camera-inside (text-of "~A is inside a container and cannot track ~A"))
