@@ -77,7 +77,7 @@
     (is (string= "Sonar 1" (princ-to-string (ears 1))))
     (is (member (ears 0) (robot:robot-parts bat)))
     (is (equal '(sonar:sonar :range 4d0)
-               (first (robot::blueprint-parts (robot:robot-blueprint bat)))))
+               (second (robot::blueprint-parts (robot:robot-blueprint bat)))))
     (signals base:wrong-argument (ears 2))
     (signals base:wrong-argument (sonar:sonar-ping bat))))
 

@@ -285,9 +285,7 @@
 
 (test porter.is-built-like-robbie
   (flet ((parts (name)
-           (let ((blueprint (robot::find-blueprint name)))
-             (list (robot::blueprint-cameras blueprint) (robot::blueprint-hands blueprint)
-                   (robot::blueprint-bins blueprint)))))
+           (robot::blueprint-parts (robot::find-blueprint name))))
     (is (equalp (parts 'robbie) (parts 'porter)))))
 
 (test box.is-as-the-manual-says

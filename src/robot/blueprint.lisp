@@ -14,10 +14,7 @@
   (x 0d0 double-float "the x coordinate where the robot starts, in metres" :export)
   (y 0d0 double-float "the y coordinate where the robot starts, in metres" :export)
   (angle 0d0 double-float "the heading with which the robot starts, in radians" :export)
-  (cameras '() list "a list (field-of-view resolution) for each of its cameras" :export)
-  (hands '() list "the strength of each of its hands, in a list" :export)
-  (bins '() list "the capacity of each of its bins, in a list" :export)
-  (parts '() list "a list (kind initarg value ...) for each part of a kind of one's own" :export))
+  (parts '() list "a list (kind initarg value ...) for each of its parts" :export))
 
 (defmethod print-object ((blueprint blueprint) stream)
   (print-unreadable-object (blueprint stream :type t) (princ (blueprint-name blueprint) stream)))

@@ -8,12 +8,19 @@
                (typep (second specification) '(integer 1 32767)))
     (funcall reject specification
              "(field-of-view resolution): radians above 0, at most 2 pi, and 1 to 32767 pixels"))
-  (list (double (first specification)) (second specification)))
+  (list 'camera :field-of-view (double (first specification))
+                :resolution (second specification)))
 
 (defun parse-amount (amount reject)
   (unless (amount-p amount)
     (funcall reject amount (argument-type-text 'amount)))
   (double amount))
+
+(defun parse-hand (strength reject)
+  (list 'hand :strength (parse-amount strength reject)))
+
+(defun parse-bin (capacity reject)
+  (list 'storage-bin :capacity (parse-amount capacity reject)))
 
 (defun maps-to-choose (name)
   "Return in words which maps there are, for somebody who has asked for NAME."
@@ -93,17 +100,55 @@ own fixed ones."
                             cameras, hands and bins have options of their own")))
     (cons (kind-name kind) (parse-values kind specification reject))))
 
-(defun read-blueprint (name environment position angle cameras hands bins parts)
+;;; Each option says of its parts in a way of its own what is made of them.
+
+(defun camera-form (camera cameras value)
+  (declare (ignore cameras))
+  (if (proper-list-p camera)
+      `(list ,@(loop for form in camera collect (funcall value form camera)))
+      (funcall value camera camera)))
+
+(defun amount-form (amount amounts value)
+  (funcall value amount amounts))
+
+(defun part-form (specification parts value)
+  (declare (ignore parts))
+  (if (and (proper-list-p specification) specification)
+      `(list ',(first specification)
+             ,@(loop for (initarg form) on (rest specification) by #'cddr
+                     collect initarg
+                     collect (funcall value form specification)))
+      `',specification))
+
+(defparameter *part-options*
+  (list (list :cameras #'camera-form #'parse-camera
+              "a list of lists after :cameras: ((3 500)) is one camera that sees 3 radians wide, ~
+               in 500 pixels")
+        (list :hands #'amount-form #'parse-hand
+              "a list of strengths after :hands: (10) is one hand of strength 10")
+        (list :bins #'amount-form #'parse-bin
+              "a list of capacities after :bins: (20) is one bin of capacity 20")
+        (list :parts #'part-form #'parse-part
+              "a list of lists after :parts, (kind initarg value ...)"))
+  "The options of DEFROBOT that give it parts, in the order of ROBOT-PARTS. Behind each stand: the
+function that makes of what was said of a part, of all that the option says, and of a function of a
+form and what it stands in, a form for its value; the function that makes of that value, and of one
+that rejects, a list (kind initarg value ...); and what is to follow the option, for FORMAT.")
+
+(defun parse-parts (lists reject)
+  "Return what LISTS, a property list of options of DEFROBOT and their values, say of parts."
+  (loop for (option nil parse) in *part-options*
+        append (loop for specification in (getf lists option)
+                     collect (funcall parse specification reject))))
+
+(defun read-blueprint (name environment position angle lists)
   (flet ((reject (clause expected)
            (reject-clause (title "defrobot" name) clause expected)))
     (let ((map (parse-place environment position angle #'reject)))
       (make-blueprint :name name :map (map-name map)
-                 :x (double (first position)) :y (double (second position))
-                 :angle (double angle)
-                 :cameras (loop for camera in cameras collect (parse-camera camera #'reject))
-                 :hands (loop for hand in hands collect (parse-amount hand #'reject))
-                 :bins (loop for bin in bins collect (parse-amount bin #'reject))
-                 :parts (loop for part in parts collect (parse-part part #'reject))))))
+                      :x (double (first position)) :y (double (second position))
+                      :angle (double angle)
+                      :parts (parse-parts lists #'reject)))))
 
 (addition define-robot)
 (defun define-robot (name environment position angle &key cameras hands bins parts)
@@ -112,7 +157,8 @@ CAMERAS a list of lists (fov resolution), PARTS one of lists (kind initarg value
 robot."
   (check-robot-name (title "defrobot" name) name)
   (check-robot-variable name)
-  (let* ((blueprint (read-blueprint name environment position angle cameras hands bins parts))
+  (let* ((blueprint (read-blueprint name environment position angle
+                                    (list :cameras cameras :hands hands :bins bins :parts parts)))
          (robot (settle-robot blueprint)))
     (register *robots* name blueprint :variable t :value robot)
     (doubt-angle (title "defrobot" name) (robot-world robot) angle)
@@ -137,27 +183,18 @@ robot."
                    (format nil "a name whose variable is free; ~A has the value ~S"
                            name (symbol-value name)))))
 
-(defun list-words (key)
-  "Return in words what list is to follow KEY, an option of DEFROBOT."
-  (ecase key
-    (:hands "a list of strengths after :hands: (10) is one hand of strength 10")
-    (:bins "a list of capacities after :bins: (20) is one bin of capacity 20")
-    (:cameras (format nil "a list of lists after :cameras: ((3 500)) is one camera that sees 3 ~
-                           radians wide, in 500 pixels"))
-    (:parts "a list of lists after :parts, (kind initarg value ...)")))
-
 (defun check-robot-form (definition name start options)
   (flet ((reject (clause expected) (reject-clause definition clause expected)))
     (check-robot-name definition name)
     (unless (and (proper-list-p start) (= (length start) 3)
                  (proper-list-p (second start)) (= (length (second start)) 2))
       (reject start "(environment (x y) angle)"))
-    (check-options definition options '(:cameras :hands :bins :parts :documentation))
+    (check-options definition options (list* :documentation (mapcar #'first *part-options*)))
     (unless (typep (getf options :documentation "") 'string)
       (reject (getf options :documentation) "a string as the documentation"))
-    (loop for (key value) on options by #'cddr
-          do (unless (or (eq key :documentation) (proper-list-p value))
-               (reject (list key value) (list-words key))))))
+    (loop for (option nil nil words) in *part-options*
+          do (unless (proper-list-p (getf options option))
+               (reject (list option (getf options option)) (format nil words))))))
 
 (defun value-form (definition form clause expected)
   "Return a form for the value of FORM, which stands in CLAUSE; that it has none is DEFINITION's."
@@ -167,32 +204,19 @@ robot."
 
 (defun robot-forms (definition name start options lisp-environment)
   (destructuring-bind (environment (x y) angle) start
-    (destructuring-bind (&key cameras hands bins parts &allow-other-keys) options
-      (flet ((number-of (form clause)
-               (value-form definition form clause "a form that has a value")))
-        `((define-robot ',name
-            ,(value-form definition (map-form environment lisp-environment) start
-                         "a map, its name, or a form whose value is one")
-            (list ,(number-of x (second start)) ,(number-of y (second start)))
-            ,(number-of angle start)
-            :cameras (list ,@(loop for camera in cameras
-                                   collect (if (proper-list-p camera)
-                                               `(list ,@(loop for form in camera
-                                                              collect (number-of form camera)))
-                                               (number-of camera camera))))
-            :hands (list ,@(loop for hand in hands collect (number-of hand hands)))
-            :bins (list ,@(loop for bin in bins collect (number-of bin bins)))
-            :parts (list ,@(loop for part in parts collect (part-form part #'number-of)))))))))
-
-(defun part-form (specification value)
-  "Return a form for SPECIFICATION, (kind initarg form ...); VALUE, a function of a form and what it
-stands in, returns a form for its value."
-  (if (and (proper-list-p specification) specification)
-      `(list ',(first specification)
-             ,@(loop for (initarg form) on (rest specification) by #'cddr
-                     collect initarg
-                     collect (funcall value form specification)))
-      `',specification))
+    (flet ((value-of (form clause)
+             (value-form definition form clause "a form that has a value")))
+      `((define-robot ',name
+          ,(value-form definition (map-form environment lisp-environment) start
+                       "a map, its name, or a form whose value is one")
+          (list ,(value-of x (second start)) ,(value-of y (second start)))
+          ,(value-of angle start)
+          ,@(loop for (option form) in *part-options*
+                  for specifications = (getf options option)
+                  append `(,option
+                           (list ,@(loop for specification in specifications
+                                         collect (funcall form specification specifications
+                                                          #'value-of))))))))))
 
 (public defrobot)
 (define-user-macro defrobot (&whole form name &optional start &body options

@@ -39,39 +39,17 @@ NIL."
 
 ;;; Making robots.
 
-(defun make-parts (robot constructor specifications)
-  (coerce (loop for specification in specifications
-                for index from 0
-                collect (apply constructor :robot robot :index index specification))
-          'simple-vector))
+(defun make-parts (robot specifications)
+  "Return a list of parts of ROBOT, made as SPECIFICATIONS, lists (kind initarg value ...), say."
+  (loop with counts = '()
+        for (kind . initargs) in specifications
+        collect (apply (kind-constructor kind)
+                       :robot robot :index (1- (incf (getf counts kind 0)))
+                       initargs)))
 
 (defun outfit (robot blueprint)
   (setf (robot-mind robot) (make-mind :robot robot)
-        (robot-cameras robot)
-        (make-parts robot #'make-camera
-                    (loop for (field-of-view resolution) in (blueprint-cameras blueprint)
-                          collect (list :field-of-view field-of-view :resolution resolution)))
-        (robot-hands robot)
-        (make-parts robot #'make-hand
-                    (loop for strength in (blueprint-hands blueprint)
-                          collect (list :strength strength)))
-        (robot-bins robot)
-        (make-parts robot #'make-storage-bin
-                    (loop for capacity in (blueprint-bins blueprint)
-                          collect (list :capacity capacity)))
-        (robot-sensors robot)
-        (make-sensors robot (blueprint-parts blueprint))))
-
-(defun make-sensors (robot specifications)
-  "Return a vector of parts of ROBOT, made as SPECIFICATIONS, lists (kind initarg value ...), say."
-  (coerce (loop for ((kind . initargs) . rest) on specifications
-                collect (apply (kind-constructor kind)
-                               :robot robot
-                               :index (- (count kind specifications :key #'first)
-                                         (count kind rest :key #'first)
-                                         1)
-                               initargs))
-          'simple-vector))
+        (robot-parts robot) (make-parts robot (blueprint-parts blueprint))))
 
 (defun kind-constructor (kind)
   "Return the function that makes parts of KIND, a symbol. Signals MISUSE if there is none."

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(robot-resources mind-p parts-of-kind part unsettle ensure-timeline))
+(export '(robot-resources mind-p *part-vectors* parts-of-kind part unsettle ensure-timeline))
 
 ;;; The robot and each part is a resource: it does one thing at a time. A part's LOCATION is NIL
 ;;; (with the robot), a container among the things, or a storage bin.
@@ -188,11 +188,30 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   "Return the true position of ROBOT, x and y as two values, in metres."
   (values (robot-x robot) (robot-y robot)))
 
+(defparameter *part-vectors*
+  '((:cameras robot-cameras camera)
+    (:hands robot-hands hand)
+    (:bins robot-bins storage-bin)
+    (:sensors robot-sensors part))
+  "The vectors in which robots keep their parts: what each is called, its reader, and the type of
+what is in it. A part is in the first that takes it.")
+
 (addition robot-parts)
 (defun robot-parts (robot)
   "Return a list of ROBOT's cameras, hands, storage bins, and parts of other kinds."
-  (concatenate 'list (robot-cameras robot) (robot-hands robot) (robot-bins robot)
-               (robot-sensors robot)))
+  (loop for (nil reader) in *part-vectors*
+        append (coerce (the simple-vector (funcall reader robot)) 'list)))
+
+(defun (setf robot-parts) (parts robot)
+  "Let ROBOT, which is being made, have PARTS, a list."
+  (dolist (row *part-vectors* parts)
+    (destructuring-bind (key reader type) row
+      (declare (ignore key))
+      (flet ((here-p (part) (typep part type)))
+        (funcall (fdefinition `(setf ,reader))
+                 (coerce (remove-if-not #'here-p parts) 'simple-vector)
+                 robot)
+        (setf parts (remove-if #'here-p parts))))))
 
 (defun robot-resources (robot)
   "Return a list of all of ROBOT that does one thing at a time: itself, its parts and its mind."
@@ -245,11 +264,7 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 (defun parts-of-kind (robot kind)
   "Return a vector of the parts of ROBOT of the kind called KIND."
-  (coerce (loop for parts in (list (robot-cameras robot) (robot-hands robot) (robot-bins robot)
-                                   (robot-sensors robot))
-                append (loop for part across parts
-                             when (same-name-p kind (type-of part)) collect part))
-          'simple-vector))
+  (coerce (remove kind (robot-parts robot) :key #'type-of :test-not #'same-name-p) 'simple-vector))
 
 ;;; Parts are called by their numbers (manual E).
 

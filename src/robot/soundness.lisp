@@ -27,7 +27,18 @@
   "Signal CONTRADICTION unless what is told when TRACK ends, if anything, was asked for."
   (when (track-operation track) (check-request (track-operation track))))
 
-(defun check-tracking (camera)
+(defgeneric check-part (part)
+  (:documentation "Signal CONTRADICTION unless PART, of a robot, could have come about by itself.")
+  (:method (part) (declare (ignore part))))
+
+(defmethod check-part ((hand hand))
+  (check-contents hand (hand-contents hand) 1))
+
+(defmethod check-part ((bin storage-bin))
+  (check-contents bin (storage-bin-contents bin)
+                  (world-live-count (robot-world (storage-bin-robot bin)))))
+
+(defmethod check-part ((camera camera))
   (let ((track (camera-tracking camera)))
     (when track
       (must-hold (and (track-p track)
@@ -91,13 +102,8 @@ from a file, could have come about by itself."
              "its robots are not those of its world")
   (check-occupant robot)
   (check-stance robot)
-  (check-parts robot (robot-cameras robot) 'camera)
-  (check-parts robot (robot-hands robot) 'hand)
-  (check-parts robot (robot-bins robot) 'storage-bin)
-  (check-parts robot (robot-sensors robot) 'part)
-  (loop for hand across (robot-hands robot) do (check-contents hand (hand-contents hand) 1))
-  (loop for bin across (robot-bins robot)
-        do (check-contents bin (storage-bin-contents bin) (world-live-count world)))
+  (loop for (nil reader type) in *part-vectors*
+        do (check-parts robot (funcall reader robot) type))
+  (mapc #'check-part (robot-parts robot))
   (check-designators robot)
-  (map nil #'check-tracking (robot-cameras robot))
   (check-odometers robot))

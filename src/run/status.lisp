@@ -23,7 +23,22 @@ were (reading 201)."
   "Return what PART is inside of, a string, or NIL."
   (and (part-location part) (location-name (part-location part))))
 
-(defun camera-status (camera)
+(defun own-slots (part)
+  "Return what is known of the slots that the kind of PART has besides those that all parts have."
+  (set-difference (kind-slots (kind-of part))
+                  (kind-slots (find 'part (all-kinds) :key #'kind-name))))
+
+(defgeneric part-status (part)
+  (:documentation "Return what STATUS tells of PART: of a kind of a user's, its state and memory."))
+
+(defmethod part-status ((part part))
+  (list :name (princ-to-string part)
+        :slots (loop for slot in (reverse (own-slots part))
+                     when (member (kind-slot-role slot) '(:state :memory))
+                       collect (list (kind-slot-name slot)
+                                     (funcall (kind-slot-reader slot) part)))))
+
+(defmethod part-status ((camera camera))
   (let ((designator (camera-tracks camera)))
     (list :number (camera-index camera)
           :view (glance camera)
@@ -34,31 +49,18 @@ were (reading 201)."
           :resolution (camera-resolution camera)
           :inside (inside-name camera))))
 
-(defun hand-status (hand)
+(defmethod part-status ((hand hand))
   (list :number (hand-index hand)
         :strength (hand-strength hand)
         :holds (and (hand-holding hand) (princ-to-string (hand-holding hand)))
         :inside (inside-name hand)))
 
-(defun bin-status (bin)
+(defmethod part-status ((bin storage-bin))
   (list :number (storage-bin-index bin)
         :closed (storage-bin-closed-p bin)
         :capacity (storage-bin-capacity bin)
         :room (remaining-capacity bin)
         :contents (mapcar #'princ-to-string (storage-bin-contents bin))))
-
-(defun own-slots (part)
-  "Return what is known of the slots that the kind of PART has besides those that all parts have."
-  (set-difference (kind-slots (kind-of part))
-                  (kind-slots (find 'part (all-kinds) :key #'kind-name))))
-
-(defun sensor-status (part)
-  "Return what is known of PART, of a kind of the user's own: its state and memory."
-  (list :name (princ-to-string part)
-        :slots (loop for slot in (reverse (own-slots part))
-                     when (member (kind-slot-role slot) '(:state :memory))
-                       collect (list (kind-slot-name slot)
-                                     (funcall (kind-slot-reader slot) part)))))
 
 (defun designator-status (designator)
   "Return what STATUS tells of DESIGNATOR."
@@ -94,26 +96,25 @@ were (reading 201)."
 (defun robot-status (robot)
   "Return what STATUS does of ROBOT, whose world stands still."
   (let ((resources (cons robot (robot-parts robot))))
-    (list :robot (robot-name robot)
-          :map (map-name (world-map (robot-world robot)))
-          :tick (world-tick (robot-world robot))
-          :position (multiple-value-list (robot-position robot))
-          :last-move (multiple-value-list (robot-last-move robot))
-          :estimated-last-move (multiple-value-list (robot-last-move-estimate robot))
-          :angle (robot-angle robot)
-          :speed (robot-speed robot)
-          :turn-angle (robot-turn-angle robot)
-          :cameras (map 'list #'camera-status (robot-cameras robot))
-          :hands (map 'list #'hand-status (robot-hands robot))
-          :bins (map 'list #'bin-status (robot-bins robot))
-          :sensors (map 'list #'sensor-status (robot-sensors robot))
-          :place (robot-last-place robot)
-          :thinking (simulation-thinking (robot-simulation robot))
-          :live (live-p (robot-simulation robot))
-          :under-way (mapcan #'under-way-status resources)
-          :interrupted (mapcan #'interrupted-status resources)
-          :failed (last-failure robot)
-          :designators (mapcar #'designator-status (live-designators robot)))))
+    (append
+     (list :robot (robot-name robot)
+           :map (map-name (world-map (robot-world robot)))
+           :tick (world-tick (robot-world robot))
+           :position (multiple-value-list (robot-position robot))
+           :last-move (multiple-value-list (robot-last-move robot))
+           :estimated-last-move (multiple-value-list (robot-last-move-estimate robot))
+           :angle (robot-angle robot)
+           :speed (robot-speed robot)
+           :turn-angle (robot-turn-angle robot))
+     (loop for (key reader) in *part-vectors*
+           append (list key (map 'list #'part-status (funcall reader robot))))
+     (list :place (robot-last-place robot)
+           :thinking (simulation-thinking (robot-simulation robot))
+           :live (live-p (robot-simulation robot))
+           :under-way (mapcan #'under-way-status resources)
+           :interrupted (mapcan #'interrupted-status resources)
+           :failed (last-failure robot)
+           :designators (mapcar #'designator-status (live-designators robot))))))
 
 (defun robot-meant (robot operator)
   "Return the robot that ROBOT, an argument of OPERATOR, means: a robot, the name of one, or, if it
