@@ -7,16 +7,10 @@
   :serial t
   :components
   ((:module "src/host" :serial t
-    :components ((:file "package") (:file "versions") (:file "wrapping") (:file "reports")
-                 (:file "floats") (:file "memory") (:file "policy") (:file "globals")
-                 (:file "tables") (:file "atomic") (:file "classes") (:file "packages")
-                 (:file "files") (:file "processes") (:file "interrupts") (:file "instances")
-                 (:file "interpreter") (:file "closures") (:file "code") (:file "environments")
-                 (:file "compiler") (:file "compiling") (:file "variables")
-                 (:file "limits") (:file "reading") (:file "random-state")
-                 (:file "front-ends") (:file "debugger") (:file "threads") (:file "elsewhere")
-                 (:file "weak") (:file "events") (:file "streams") (:file "signals")
-                 (:file "terminal")))
+    :components ((:file "package") (:file "versions") (:file "numbers") (:file "memory")
+                 (:file "language") (:file "classes") (:file "files") (:file "interrupts")
+                 (:file "closures") (:file "code") (:file "environments")
+                 (:file "compiler") (:file "debugger") (:file "threads") (:file "streams")))
    (:module "src/basics" :serial t
     :components ((:file "package") (:file "text") (:file "public") (:file "numbers")
                  (:file "printing") (:file "abridging") (:file "names") (:file "conditions")

@@ -209,7 +209,7 @@
   (is (null (files-mentioning '("(sleep ") '("src/" "rpl/" "cli/" "worlds/"))))
   (is (equal '("src/basics/random.lisp")
              (files-mentioning '("(random " "*random-state*") '("src/" "rpl/" "cli/" "worlds/"))))
-  (is (equal '("src/host/processes.lisp" "src/time/pacing.lisp")
+  (is (equal '("src/host/files.lisp" "src/time/pacing.lisp")
              (files-mentioning '("get-internal-real-time" "get-universal-time"
                                  "get-time-of-day" "get-internal-run-time")
                                '("src/" "rpl/" "worlds/")))))

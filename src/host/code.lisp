@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.host)
 
-(export '(code-constants constant-meant method-code declared-lambda-list same-code-p
-          structure-reader-p source-at code-references lambda-list-of callable-with-p
-          function-file files-besides-functions call-as-from-file tell-sources))
+(export '(method-code declared-lambda-list same-code-p structure-reader-p code-references
+          lambda-list-of callable-with-p function-file files-besides-functions call-as-from-file
+          tell-sources))
 
 ;;; Since SBCL 2.4.10, the names of called functions are no constants of code: it calls them through
 ;;; a linkage table. The names of macros, constants and inline functions that were used are in the
@@ -88,11 +88,6 @@ the names of functions that it calls and of what it was made of."
   "True if FUNCTION is the reader of a structure's slot that DEFSTRUCT made."
   (equal (list (internal-name :sb-kernel '#:instance)) (declared-lambda-list function)))
 
-(defun source-at (path position operator)
-  "Return, as SB-INTROSPECT has it, that something is defined by OPERATOR in PATH at POSITION."
-  (internal (:sb-introspect #:make-definition-source)
-            :pathname path :character-offset position :description (list operator)))
-
 (defun code-references (function)
   "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
 symbols, other functions, and whatever else stands in its code or was closed over. In it are no
@@ -122,15 +117,11 @@ numbers."
 (defvar *dates-of-files* (make-hash-table :test 'equal :synchronized t)
   "When files were written whose forms have been evaluated one by one, by what they are called.")
 
-(defun date-of-file (name)
-  "Return when the file called NAME was written when its forms were evaluated one by one, or NIL."
-  (gethash name *dates-of-files*))
-
 (defun evaluated-file-p (namestring)
   "True if NAMESTRING, one of Lisp's or NIL, is of a file whose forms have been evaluated."
   (and namestring
        (not (many-files-p namestring))
-       (date-of-file (native-name namestring))))
+       (gethash (native-name namestring) *dates-of-files*)))
 
 (defun call-as-from-file (function path)
   "Call FUNCTION, which evaluates forms that have been read from the file PATH: the functions that
@@ -150,7 +141,7 @@ the time at which that was written by then; NIL if it was typed."
     (and path
          (let ((name (native-name (translate-logical-pathname path))))
            (values name (or (sb-introspect:definition-source-file-write-date source)
-                            (date-of-file name)))))))
+                            (gethash name *dates-of-files*)))))))
 
 (defun function-file (function)
   "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
@@ -182,5 +173,7 @@ but a function."
                    (append (funcall original name type)
                            (and (eq type :declaration) (symbolp name)
                                 (loop for (file position operator) in (funcall function name)
-                                      collect (source-at (uiop:parse-native-namestring file)
-                                                         position operator)))))))
+                                      collect (internal (:sb-introspect #:make-definition-source)
+                                                :pathname (native-path file)
+                                                :character-offset position
+                                                :description (list operator))))))))

@@ -1,10 +1,53 @@
-;;;; debugger.lisp -- whether anybody is there to answer a debugger, and what that needs of Lisp.
+;;;; debugger.lisp -- whether anybody is there to answer a debugger or a front end.
 
 (in-package :ars-magna.host)
 
-(export '(debugger-p foreign-hook debugger-hook common-debugger-hook *editor-gone-p*
-          with-debugger-hook *answerer* calls-under-way disabled-hook-p take-foreground
-          yield-foreground))
+(export '(*report-addition* *front-end* serve-while-waiting hook-of-front-end ask-how-to-go-on
+          input-of-programs debugger-p foreign-hook debugger-hook common-debugger-hook
+          *editor-gone-p* with-debugger-hook *answerer* calls-under-way disabled-hook-p
+          take-foreground yield-foreground))
+
+;;; A debugger of Lisp's or of an editor writes a report as PRINC does.
+
+(defvar *report-addition* (constantly nil)
+  "A function of an error of Lisp's own that returns a sentence to stand behind its report, or
+NIL.")
+
+(defun write-addition (condition stream)
+  (unless *print-escape*
+    (let ((text (ignore-errors (funcall *report-addition* condition))))
+      (when text (format stream "~&~A" text)))))
+
+(macrolet ((define-additions (&rest types)
+             `(progn ,@(loop for type in types
+                             collect `(defmethod print-object :after ((condition ,type) stream)
+                                        (write-addition condition stream))))))
+  (define-additions undefined-function unbound-variable reader-error type-error))
+
+;;;; How a person is asked, where a program such as the prompt can ask one
+
+(defvar *front-end* nil "The front end that can ask people, an object; NIL if there is none.")
+
+(defgeneric serve-while-waiting (front-end)
+  (:documentation "Do what FRONT-END has to do in this thread, which waits for another.
+Called now and then.")
+  (:method (front-end) (declare (ignore front-end))))
+
+(defgeneric hook-of-front-end (front-end)
+  (:documentation "Return the debugger's hook of FRONT-END, or NIL, for where an editor's has
+nobody to ask.")
+  (:method (front-end) (declare (ignore front-end))))
+
+(defgeneric ask-how-to-go-on (front-end condition)
+  (:documentation "Let a person choose how to go on after CONDITION, where whoever had been asked
+has gone. Return if FRONT-END can ask nobody.")
+  (:method (front-end condition) (declare (ignore front-end condition))))
+
+(defgeneric input-of-programs (front-end stream)
+  (:documentation "Return the stream that users' code in a run's threads reads instead of STREAM.")
+  (:method (front-end stream) (declare (ignore front-end)) stream))
+
+;;;; Debuggers
 
 ;; A hook of ours, around which there may be others of ours, says nothing of who is there.
 (defvar *answerer* nil

@@ -1,11 +1,13 @@
-;;;; environments.lisp -- what the compiler knows of names, and walks through forms.
+;;;; environments.lisp -- what the compiler knows of names, walks through forms, package locks.
 
 (in-package :ars-magna.host)
 
-(export '(function-arguments form-behind-comma walk-expressions bound-in-walk-p
-          variables-of-walk variable-kind local-variable-p known-variable-p special-variable-p
-          local-function-p known-function-p macro-expander lisps-own-p extended-environment
-          evaluate-form walk-form expand-in-walk))
+(export '(function-arguments form-behind-comma walk-expressions bound-in-walk-p variables-of-walk
+          variable-kind local-variable-p known-variable-p special-variable-p local-function-p
+          known-function-p macro-expander lisps-own-p extended-environment evaluate-form
+          walk-form expand-in-walk users-symbol-p variable-name-p variable-forms
+          variable-name-trouble undefined-name still-undefined-p lock-violation locked-symbol
+          copy-nicknames))
 
 (defun function-arguments (name)
   "Return what the function NAME takes, types and lambda list keywords as in the type FUNCTION, and
@@ -141,3 +143,68 @@ walk out of what is put there. What takes the place of an expression stands wher
                                  (expanded (expand-in-walk form environment) form environment))
                                 (t (inside form environment))))))))
       (walk form environment))))
+
+;;;; Which names can be variables, and which mean nothing at all
+
+;;; What a user defines by a name can often be had as the value of a variable of that name too.
+
+(defun variable-name-trouble (name)
+  "Return in words why the symbol NAME, of a package, cannot become a special variable, or NIL."
+  (let ((package (symbol-package name)))
+    (cond ((package-locked-p package) (format nil "belongs to ~A" (package-name package)))
+          ((constantp name) "is a constant")
+          ((not (member (variable-kind name) '(nil :special)))
+           "is a symbol macro or a global variable"))))
+
+(defun users-symbol-p (name)
+  "True if the symbol NAME is in a package whose names users may define."
+  (let ((package (symbol-package name)))
+    (and package
+         (not (keywordp name))
+         (not (package-locked-p package)))))
+
+(defun variable-name-p (name)
+  "True if the symbol NAME can become a special variable: constants cannot, nor what belongs to a
+locked package, such as Common Lisp's or ours."
+  (and name
+       (symbol-package name)
+       (null (variable-name-trouble name))))
+
+(defun variable-forms (name)
+  "Return the forms, perhaps none, that declare NAME a special variable."
+  (when (variable-name-p name) `((defvar ,name))))
+
+;;; Names that the compiler finds used, and that nobody has defined.
+
+(defun undefined-name (condition)
+  "Return the name that CONDITION, a warning of the compiler's, says is not defined, and whether as
+a :FUNCTION or :VARIABLE; NIL if it says something else."
+  (let ((arguments (and (typep condition '(and warning simple-condition))
+                        (simple-condition-format-arguments condition))))
+    (when (and (proper-list-p arguments)
+               (= 2 (length arguments))
+               (member (first arguments) '(:function :variable)))
+      (values (second arguments) (first arguments)))))
+
+(defun still-undefined-p (name kind)
+  "True if NAME is not defined as KIND, a :FUNCTION or :VARIABLE, by now either."
+  (ecase kind
+    (:function (not (fboundp name)))
+    (:variable (not (or (boundp name) (known-variable-p name nil))))))
+
+;;;; Packages
+
+;;; What a locked package has cannot be redefined by accident.
+
+(deftype lock-violation ()
+  "The condition that a name of a locked package was to be redefined."
+  'sb-ext:package-lock-violation)
+
+(defun locked-symbol (condition)
+  "Return the symbol that CONDITION, a LOCK-VIOLATION, is about, or NIL if it is about no symbol."
+  (ignore-errors (sb-ext:package-locked-error-symbol condition)))
+
+(defun copy-nicknames (from to)
+  "Let the package TO call others by the nicknames that are local to the package FROM."
+  (loop for (nickname . other) in (sb-ext:package-local-nicknames from)
+        do (sb-ext:add-package-local-nickname nickname other to)))

@@ -1,10 +1,12 @@
-;;;; interrupts.lisp -- where a thread may be interrupted; what is begun is finished all the same.
+;;;; interrupts.lisp -- when a thread is interrupted, and by what; how what is begun is finished.
 
 (in-package :ars-magna.host)
 
 (export '(deferring-interrupts allowing-interrupts waiting held-off-p protecting-strictly
-          call-allowing-interrupts call-holding-interrupts call-open-to-interrupts waiting-at-most
-          deadline-passed in-any-case call-opening call-each))
+          call-allowing-interrupts call-holding-interrupts call-open-to-interrupts
+          waiting-at-most deadline-passed in-any-case call-opening call-each time-limit
+          let-callers-handle call-with-limit user-interrupt signal-user-interrupt
+          call-on-interrupt call-on-continuing die-of-interrupts die-of-termination))
 
 ;;; What interrupts a thread is a time limit, Ctrl-C, another thread, or that it is to end. It may
 ;;; leave what it interrupts. Where that would lock others out for ever, it waits for a moment.
@@ -138,3 +140,71 @@ wait for the end of these, but at waits and in users' code. Return the values of
   "Call FUNCTION with each element of LIST in order, with the rest also if a call is left."
   (unwind-protect (loop while list do (funcall function (pop list)))
     (when list (call-each function list))))
+
+;;;; Time limits, and other conditions that are for callers
+
+(deftype time-limit ()
+  "The condition that is signalled when the time for a form is up, as by WITH-TIMEOUT."
+  'sb-ext:timeout)
+
+;;; FiveAM signals that a check has failed, and its restart IGNORE-FAILURE lets the test go on after
+;;; it has counted that. Whoever runs the test handles this, also where the check is in a plan.
+
+(defun failed-check-p (condition)
+  (and (typep condition 'error)
+       (find "IGNORE-FAILURE" (compute-restarts condition)
+             :key #'restart-name :test #'string=)
+       t))
+
+(defun let-callers-handle (condition)
+  "Let those who have called the run handle CONDITION first, if it is for them. True if it is a
+limit to their time."
+  (let ((limit-p (typep condition 'time-limit)))
+    (when (or limit-p (failed-check-p condition)) (signal condition))
+    limit-p))
+
+(defun call-with-limit (function seconds give-up)
+  "Call FUNCTION. Should it not have returned after SECONDS, call GIVE-UP in this thread, which may
+leave it; and so again and again."
+  (let ((timer (sb-ext:make-timer give-up)))
+    (sb-ext:schedule-timer timer seconds :repeat-interval seconds)
+    (unwind-protect (funcall function)
+      (sb-ext:unschedule-timer timer))))
+
+;;;; Signals from the system
+
+(deftype user-interrupt ()
+  "The condition that the user has pressed control C."
+  (internal-name :sb-sys '#:interactive-interrupt))
+
+(defun signal-user-interrupt ()
+  "Signal the error USER-INTERRUPT."
+  (error (internal-name :sb-sys '#:interactive-interrupt)))
+
+(defun handle-signal (signal handler)
+  (internal (:sb-sys #:enable-interrupt) signal handler))
+
+(defun call-on-signal (signal function)
+  (handle-signal signal (lambda (&rest arguments)
+                          (declare (ignore arguments))
+                          (funcall function))))
+
+(defun call-on-interrupt (function)
+  "Call FUNCTION, in any thread, whenever control C is pressed."
+  (call-on-signal sb-posix:sigint function))
+
+(defun call-on-continuing (function)
+  "Call FUNCTION, in any thread, whenever this process goes on that was stopped, as by control Z."
+  (call-on-signal sb-posix:sigcont function))
+
+;;; There are states in which no Lisp runs any more that would handle a signal, so the system itself
+;;; ends the process. (With a terminal that goes away it does so anyway, unless it was told NOHUP.)
+
+(defun die-of-interrupts ()
+  "Let control C end this process at once, as when its memory is being saved."
+  (handle-signal sb-posix:sigint :default))
+
+(defun die-of-termination ()
+  "Let this process end at once when it is told to terminate, as by control \\."
+  (handle-signal sb-posix:sigterm :default)
+  (handle-signal sb-posix:sigquit :default))

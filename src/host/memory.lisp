@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.host)
 
-(export '(octets-before-garbage scrub-stack dynamic-usage collections restore-stack regain-room
-          stack-full-p))
+(export '(heap-bytes make-room room-p dynamic-usage collections regain-room stack-full-p))
 
 (defun dynamic-usage ()
   "Return how many bytes objects take, including garbage."
@@ -31,7 +30,28 @@ collected."
   "Return an object that is another one after each garbage collection."
   (internal-value :sb-kernel #:*gc-epoch*))
 
-;;; A stack, or the memory, that has overflowed.
+(defun heap-bytes ()
+  "Return for how many bytes of objects this Lisp has room, in use or not."
+  (sb-ext:dynamic-space-size))
+
+(defun give-memory-back ()
+  "Make room for objects where there are others that nobody can reach any more."
+  (sb-ext:gc :full t))
+
+;; The stack is scrubbed, as what is left there of calls that have returned would keep objects.
+(defun make-room (octets)
+  "Let Lisp look now for objects that nobody can reach if else it would while OCTETS of new ones are
+made: by then these would be in its way, since it moves what can be reached."
+  (when (< (octets-before-garbage) octets (sb-ext:bytes-consed-between-gcs))
+    (scrub-stack)
+    (sb-ext:gc)))
+
+(defun room-p (octets)
+  "True if this Lisp has room for OCTETS of new objects; garbage is collected if they are many."
+  (flet ((enough-p () (< (+ (dynamic-usage) octets) (* 9/10 (heap-bytes)))))
+    (or (< octets (/ (heap-bytes) 100))
+        (enough-p)
+        (progn (scrub-stack) (give-memory-back) (enough-p)))))
 
 ;;; Near its end a stack has pages that must not be touched. The first is opened when a program
 ;;; touches it, so that there is room for the handlers; the page before it then closes it again as

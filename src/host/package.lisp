@@ -2,7 +2,7 @@
 
 (defpackage :ars-magna.host
   (:documentation "What the simulator needs of SBCL and of libraries beyond Common Lisp, one
-idea per file: threads, files, the compiler. No other folder names what SBCL does not document.")
+part per file: threads, files, the compiler. No other folder names what SBCL does not document.")
   (:use :cl)
   (:import-from :alexandria
                 #:clamp #:ensure-list #:once-only #:parse-body #:removef

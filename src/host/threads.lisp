@@ -1,10 +1,31 @@
-;;;; threads.lisp -- the one door to bordeaux-threads.
+;;;; threads.lisp -- threads, locks and atomic changes: the one door to bordeaux-threads.
 
 (in-package :ars-magna.host)
 
-(export '(make-lock with-lock call-if-free make-semaphore wait-on-semaphore wait-a-while
-          wait-patiently call-when-free *leaving-p* call-when-leaving start-thread own-thread-p
-          join-thread interrupt-thread current-thread users-thread-p yield-thread spread-specials))
+(export '(atomic-count swap-if memory-barrier make-lock with-lock call-if-free make-semaphore
+          wait-on-semaphore wait-a-while wait-patiently call-when-free *leaving-p*
+          call-when-leaving start-thread own-thread-p join-thread interrupt-thread current-thread
+          users-thread-p yield-thread spread-specials call-telling-names bound-elsewhere-text
+          run-elsewhere-text))
+
+;;; A PLACE here is the slot of a structure, by its accessor, the CAR or CDR of a cons, or the value
+;;; of a symbol.
+
+(deftype atomic-count ()
+  "The type of a structure's slot that ATOMIC-INCF and ATOMIC-DECF can change."
+  'sb-ext:word)
+
+(defmacro swap-if (place old new)
+  "Set PLACE to NEW if it is OLD, the same object. True if it was."
+  (with-gensyms (before)
+    `(let ((,before ,old))
+       (eq ,before (compare-and-swap ,place ,before ,new)))))
+
+(defmacro memory-barrier ()
+  "Let other threads see what this one has written so far before it reads or writes any more."
+  '(sb-thread:barrier (:memory)))
+
+;;;; Threads and locks
 
 ;;; No thread is killed: threads are asked to end, and then joined. One that is in users' code which
 ;;; does not return may be interrupted, at the user's word.
@@ -121,3 +142,55 @@ Threads start with global values; this carries the dynamic ones over."
   (let ((values (mapcar #'symbol-value symbols)))
     (lambda (&rest arguments)
       (progv symbols values (apply function arguments)))))
+
+;;;; Names that code of other threads has bound to robots of its own
+
+;;; WITH-SIMULATION binds robots' names, and only the thread of its body sees that. Another thread
+;;; finds the robot of the top level under such a name, perhaps without knowing. Who notices that
+;;; something is asked of that one can tell why.
+
+(defvar *bound-names* (list '())
+  "A list whose element is a list (thread number name...) for each WITH-SIMULATION under way.")
+
+(defvar *bindings-made* (list 0) "A list of how often names have been bound so.")
+
+(defun call-telling-names (names function)
+  "Call FUNCTION, in whose extent NAMES are bound to robots for this thread only, and let others
+know. Return its values."
+  (let ((entry (list* (current-thread) (incf (car *bindings-made*)) names)))
+    (in-any-case
+      (progn (atomic-push entry (car *bound-names*))
+             (funcall function))
+      (loop for entries = (car *bound-names*)
+            until (swap-if (car *bound-names*) entries (remove entry entries :test #'eq))))))
+
+(defun bound-elsewhere (name)
+  "Return the thread that has bound NAME last, and a number for when, if it is not this one, and
+this one has not bound NAME itself; or NIL."
+  (let ((entries (remove-if-not (lambda (entry) (member name (cddr entry) :test #'eq))
+                                (car *bound-names*))))
+    (if (find (current-thread) entries :key #'first)
+        nil
+        (values (first (first entries)) (second (first entries))))))
+
+(defun run-elsewhere-text ()
+  "Return in words how code here gets at the run of another thread, or NIL if none has one."
+  (let ((entry (find (current-thread) (car *bound-names*) :key #'first :test-not #'eq)))
+    (and entry
+         (format nil "That of (with-simulation (~(~{~A~^ ~}~)) ...), in ~A, is there only. Hand it ~
+                      over in a variable: (let ((simulation (current-simulation))) (make-thread ~
+                      (lambda () ... simulation)))."
+                 (cddr entry) (thread-name (first entry))))))
+
+(defun bound-elsewhere-text (name)
+  "Return in words how code here gets at the robot that another thread has bound NAME to, or NIL if
+none has; and a number for that binding."
+  (multiple-value-bind (thread number) (bound-elsewhere name)
+    (values (and thread
+                 (let ((name (string-downcase name)))
+                   (format nil "In this thread, ~A, ~A is the robot of the top level. That of ~
+                                (with-simulation (~A) ...), in ~A, is bound there only. Hand it ~
+                                over in a variable: (let ((robot ~A)) (make-thread (lambda () ~
+                                ... robot)))."
+                           (thread-name (current-thread)) name name (thread-name thread) name)))
+            number)))

@@ -1,8 +1,8 @@
-;;;; versions.lisp -- the versions of SBCL that were tried, and how internal names are found.
+;;;; versions.lisp -- the versions of SBCL that were tried, its internal names, and wrappers.
 
 (in-package :ars-magna.host)
 
-(export '(untried-host-text))
+(export '(untried-host-text wrap-function unwrap-function wrapped-p))
 
 ;;; Internal names of SBCL come and go. INTERNAL looks a name up when a file of this folder is
 ;;; compiled, among the names that it has had, and says clearly when there is none. No file names
@@ -72,3 +72,18 @@ if that is one."
       (format *error-output* "~&ars-magna: ~A~%" text))))
 
 (tell-if-untried)
+
+;;;; Functions of SBCL's or a library's, replaced by ones that call them
+
+(defun wrap-function (name wrapper &optional (type 'ars-magna))
+  "Call WRAPPER instead of the function NAME, which is not ours, with that function and its
+arguments. A second wrapper of the same TYPE, a symbol, replaces the first."
+  (internal (:sb-int #:encapsulate) name type wrapper))
+
+(defun unwrap-function (name &optional (type 'ars-magna))
+  "Undo WRAP-FUNCTION."
+  (internal (:sb-int #:unencapsulate) name type))
+
+(defun wrapped-p (name &optional (type 'ars-magna))
+  "True if the function NAME has a wrapper of TYPE."
+  (internal (:sb-int #:encapsulated-p) name type))

@@ -1,9 +1,10 @@
-;;;; floats.lisp -- which numbers are finite, and floats as their bits.
+;;;; numbers.lisp -- floats as bits, the number types of all layers, the words of random states.
 
 (in-package :ars-magna.host)
 
 (export '(double-high-bits double-bits make-double make-single finite-p positive-infinity-p
-          double-to-bits bits-to-double finite-double-p))
+          double-to-bits bits-to-double finite-double-p cell-index tick-count double random-words
+          words-of-state fill-words wrap-renewal))
 
 (declaim (inline double-high-bits double-bits make-double make-single))
 (defun double-high-bits (number)
@@ -65,3 +66,49 @@ number, and integers and ratios that are too large."
   (let ((high (ldb (byte 32 32) bits)))
     (make-double (- (logxor high (ash 1 31)) (ash 1 31))
                  (ldb (byte 32 0) bits))))
+
+;;; The number types that all layers share.
+
+(deftype cell-index ()
+  "The index of a grid cell: maps have at most 2^30 cells."
+  '(unsigned-byte 30))
+
+(deftype tick-count ()
+  "A moment or a span of simulated time, in ticks."
+  '(unsigned-byte 61))
+
+(declaim (ftype (function (t) double-float) other-double))
+(defun other-double (number)
+  (coerce (the real number) 'double-float))
+
+(declaim (inline double))
+(defun double (number)
+  "Return NUMBER as a double-float. Conses nothing for the usual kinds of numbers."
+  (typecase number
+    (double-float number)
+    (fixnum (coerce number 'double-float))
+    (single-float (coerce number 'double-float))
+    (ratio (coerce number 'double-float))
+    ;; Not inline, so that the compiler does not complain where it cannot rule out complex numbers.
+    (t (other-double number))))
+
+;;; In all versions of SBCL that were tried a random state is 627 words of the Mersenne Twister
+;;; MT19937: two constants, the place of the next word, and 624 words.
+
+(deftype random-words ()
+  "What is in a random state."
+  '(simple-array (unsigned-byte 32) (627)))
+
+(declaim (inline words-of-state fill-words))
+(defun words-of-state (state)
+  "Return the words of the random state STATE, not a copy."
+  (the random-words (internal (:sb-kernel #:random-state-state) state)))
+
+(defun fill-words (seed words)
+  "Seed WORDS, of a random state, by SEED, an integer of 32 bits."
+  (internal (:sb-kernel #:init-random-state) seed words))
+
+(defun wrap-renewal (wrapper)
+  "Call WRAPPER, with SBCL's function and the words, where SBCL makes new words of words that have
+all been read."
+  (wrap-function (internal-name :sb-kernel '#:random-mt19937-update) wrapper))
