@@ -12,13 +12,11 @@
                  (:file "closures") (:file "code") (:file "environments")
                  (:file "compiler") (:file "debugger") (:file "threads") (:file "streams")))
    (:module "src/basics" :serial t
-    :components ((:file "package") (:file "text") (:file "public") (:file "numbers")
-                 (:file "printing") (:file "abridging") (:file "names") (:file "conditions")
-                 (:file "records") (:file "file-text") (:file "exits")
-                 (:file "lisp-errors") (:file "telling") (:file "fixed-point") (:file "double-parts")
-                 (:file "trigonometry") (:file "exponentials") (:file "dice") (:file "random")
-                 (:file "writing") (:file "keywords") (:file "digest") (:file "csv")
-                 (:file "markup")))
+    :components ((:file "package") (:file "text") (:file "public") (:file "names")
+                 (:file "conditions") (:file "arguments") (:file "records")
+                 (:file "lisp-errors") (:file "telling") (:file "fixed-point")
+                 (:file "trigonometry") (:file "exponentials") (:file "dice")
+                 (:file "random") (:file "files") (:file "formats")))
    (:module "src/definitions" :serial t
     :components ((:file "package") (:file "sources") (:file "places-in-text")
                  (:file "definitions") (:file "user-macros") (:file "registry")

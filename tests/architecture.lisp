@@ -271,7 +271,7 @@ describes a slot."
 
 (test cli.alone-ends-the-process
   ;; One refuses to.
-  (is (equal '("src/basics/exits.lisp")
+  (is (equal '("src/basics/conditions.lisp")
              (files-mentioning '("sb-ext:exit" "sb-ext:quit" "uiop:quit" "end-process")
                                '("src/" "rpl/" "worlds/")))))
 

@@ -1,10 +1,11 @@
-;;;; conditions.lisp -- what goes wrong when the simulator is misused.
+;;;; conditions.lisp -- what goes wrong when the simulator is misused; refused exits.
 
 (in-package :ars-magna.basics)
 
 (export '(check-argument reject-argument malformed-definition-expected malformed-definition-place
           malformed-definition-clause warn-of-definition doubt-definition reject-name plain-name
-          reject-use outlived reject-outlived names-to-show malformed-definition-definition))
+          reject-use outlived reject-outlived names-to-show malformed-definition-definition
+          call-refusing-exits refuse-exits call-allowing-exits))
 
 ;;; A misused library signals one of these. A robot that fails in a task does not: it
 ;;; reports an error code through its command's continuation (manual 3.1.1).
@@ -163,3 +164,30 @@ names MEANT could be meant."
 (defun reject-use (control &rest arguments)
   "Signal MISUSE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
   (error 'misuse :text (printing-words () (apply #'format nil control arguments))))
+
+;;;; Code that would end the Lisp in which it runs together with others'
+
+(defvar *refusal* nil
+  "What is said, a string, while code runs that is not to end this Lisp; else NIL.")
+
+(defun refuse-exit (function &rest arguments)
+  "Apply FUNCTION, which ends this Lisp, to ARGUMENTS. Signals MISUSE if that is refused."
+  (when *refusal*
+    (reject-use "~A" *refusal*))
+  (apply function arguments))
+
+(wrap-function 'sb-ext:exit #'refuse-exit)
+
+(defun call-refusing-exits (function &optional (text "EXIT would end the whole program here. ~
+                                                        Signal an error instead, or return."))
+  "Call FUNCTION, in which EXIT signals MISUSE, with TEXT."
+  (let ((*refusal* (format nil text))) (funcall function)))
+
+(defun refuse-exits (text)
+  "Let EXIT signal MISUSE with TEXT in each thread of this Lisp, where nothing else is said; or with
+NIL end this Lisp again."
+  (setf (global-value '*refusal*) text))
+
+(defun call-allowing-exits (function)
+  "Call FUNCTION, in which EXIT ends this Lisp, whatever goes on around it."
+  (let ((*refusal* nil)) (funcall function)))

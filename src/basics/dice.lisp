@@ -1,8 +1,9 @@
-;;;; dice.lisp -- all chance in the simulator comes from here.
+;;;; dice.lisp -- all chance in the simulator; and digests, one number for a state.
 
 (in-package :ars-magna.basics)
 
-(export '(dice make-dice copy-dice text-word))
+(export '(dice make-dice copy-dice text-word text-checksum digest make-digest digest-add
+          digest-word digest-mention))
 
 ;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the
 ;;; same numbers on every machine and every release of the compiler. A simulation owns one
@@ -70,17 +71,15 @@
   (check-argument make-dice seed (integerp seed) "an integer")
   (%make-dice (mix-word (logxor (mix-word (ldb (byte 64 0) seed)) (text-word purpose)))))
 
-(declaim (inline roll-word roll chance roll-between roll-within))
-(defun roll-word (dice)
-  (declare (type dice dice))
-  (let ((state (ldb (byte 64 0) (+ (dice-state dice) +golden-gamma+))))
-    (setf (dice-state dice) state)
-    (mix-word state)))
+(declaim (inline roll chance roll-between roll-within))
 
 (addition roll)
 (defun roll (dice)
   "Return a double-float uniform in [0, 1)."
-  (* (the double-float (float (ash (roll-word dice) -11) 1d0)) #.(power-of-two -53)))
+  (declare (type dice dice))
+  (let ((state (ldb (byte 64 0) (+ (dice-state dice) +golden-gamma+))))
+    (setf (dice-state dice) state)
+    (* (the double-float (float (ash (mix-word state) -11) 1d0)) #.(power-of-two -53))))
 
 (addition chance)
 (defun chance (probability dice)
@@ -134,3 +133,55 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
       (let ((radius (sqrt (the (double-float 0d0) (* -2d0 (logarithm (- 1d0 (roll dice)))))))
             (angle (* 2d0 pi (roll dice))))
         (+ (double mean) (* (double deviation) radius (cosine angle))))))
+
+;;;; Digests
+
+(define-record (digest (:constructor make-digest ()
+                         "Return a digest to which nothing has been added."))
+  "A sum over data, in order, that differs if any of them differs (FNV-1a, 64 bits)."
+  (value #xCBF29CE484222325 word "the digest's sum so far, 64 bits" :writable :export))
+
+(declaim (inline digest-word))
+(defun digest-word (digest word)
+  "Add WORD, 64 bits, to DIGEST."
+  (setf (digest-value digest)
+        (mix-word (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
+
+(defgeneric digest-mention (object digest)
+  (:documentation "Add to DIGEST what tells OBJECT apart from others, or else what is in it. Return
+DIGEST."))
+
+(defun digest-add (digest datum)
+  "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by
+their elements, functions as such, other objects by what tells them apart. Return DIGEST."
+  (declare #.*hot* (type digest digest))
+  (typecase datum
+    (null (digest-word digest (load-time-value (name-word nil))))
+    (double-float
+     (digest-word digest (double-to-bits datum)))
+    (fixnum (digest-word digest (ldb (byte 64 0) datum)))
+    (integer (digest-word digest (ldb (byte 64 0) datum)))
+    (ratio (if (finite-p datum)
+               (digest-add digest (coerce datum 'double-float))
+               (digest-add digest (list (numerator datum) (denominator datum)))))
+    (real (digest-add digest (coerce datum 'double-float)))
+    ((or symbol string) (digest-word digest (name-word datum)))
+    (character (digest-word digest (char-code datum)))
+    (cons (digest-word digest 3)
+     (loop for tail = datum then (cdr tail)
+           while (consp tail)
+           do (digest-add digest (car tail))
+           finally (digest-add digest tail)))
+    ((simple-array (unsigned-byte 8) (*)) (digest-word digest (length datum))
+     (loop for octet across datum do (digest-word digest octet)))
+    (simple-vector (digest-word digest (length datum))
+     (loop for element across datum do (digest-add digest element)))
+    (vector (digest-word digest (length datum))
+     (loop for element across datum do (digest-add digest element)))
+    (function (digest-word digest 1))
+    (t (digest-mention datum digest)))
+  digest)
+
+(defun text-checksum (text &optional (before 0))
+  "Return a number of 32 bits for the characters of TEXT, and for BEFORE, a number of that kind."
+  (ldb (byte 32 0) (mix-word (logxor before (text-word text)))))

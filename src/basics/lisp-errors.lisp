@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(*error-codes* note-error-code symbols-seen variable-slip code-slip our-own-p))
+(export '(our-own-p))
 
 ;;; What SBCL reports of a wrong type differs between its versions: the type that its compiler has
 ;;; derived, the variable that was to be bound. Tables of experiments hold these texts, and two
@@ -96,47 +96,11 @@ none; and true. Return false as a third value for other types."
   (let ((end (search (format nil "~%See also:") text)))
     (if end (subseq text 0 end) text)))
 
-(defun arithmetic-text (condition)
-  (loop for (type text) in *arithmetic-texts*
-        when (typep condition type) return text))
-
-(defun symbols-seen (package test)
-  "Return the symbols that PACKAGE sees, that are not Lisp's and for which TEST is true, in order of
-their names."
-  (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
-    (do-symbols (symbol package)
-      (when (and (not (eq lisp (symbol-package symbol))) (funcall test symbol))
-        (pushnew symbol symbols)))
-    (sort symbols #'string<)))
-
-(defun variable-slip (name)
-  "Return in words the variable that NAME, which has no value, may be a slip for; or NIL."
-  (let ((meant (and (symbol-package name)
-                    (first (symbols-seen (symbol-package name)
-                                         (lambda (symbol)
-                                           (and (special-variable-p symbol nil)
-                                                (not (constantp symbol))
-                                                (resembles-p name symbol))))))))
-    (and meant (string-downcase (unqualified-text meant)))))
-
-(define-global *error-codes* '() "The error codes of commands, keywords.")
-
-(defun note-error-code (code)
-  "Remember that CODE, a keyword, is an error code of commands."
-  (pushnew code *error-codes*))
-
-(defun code-slip (name)
-  "Return in words the error code that is called like NAME, which has no value; or NIL."
-  (let ((code (find-symbol (symbol-name name) "KEYWORD")))
-    (and (member code *error-codes*) (format nil "~(~S~)" code))))
-
 (defun named-text (condition)
-  (let ((name (unqualified-text (cell-error-name condition))))
-    (typecase condition
-      (undefined-function (format nil "The function ~A is undefined.~@[ ~A~]"
-                                  name (funcall *report-addition* condition)))
-      (unbound-variable (format nil "The variable ~A has no value.~@[ ~A~]"
-                                name (funcall *report-addition* condition))))))
+  (format nil "The ~:[variable ~A has no value~;function ~A is undefined~].~@[ ~A~]"
+          (typep condition 'undefined-function)
+          (unqualified-text (cell-error-name condition))
+          (funcall *report-addition* condition)))
 
 (defun our-own-p (symbol)
   "True if SYMBOL is of a package of this system."
@@ -160,10 +124,6 @@ them is ours; or NIL."
                     collect (symbol-name symbol))
               (symbol-name ours)))))
 
-(defun case-failure-p (condition)
-  "True if CONDITION is that no clause of ECASE or the like was for a value."
-  (string= "CASE-FAILURE" (type-of condition)))
-
 ;; What Lisp says shows the stream.
 (defun refusal-text (condition)
   "Return our text for the stream error CONDITION if the system refuses input or output; NIL of
@@ -181,8 +141,11 @@ others."
   (ignore-errors
    (when (lisps-own-p (type-of condition))
      (typecase condition
-       (arithmetic-error (arithmetic-text condition))
+       (arithmetic-error
+        (second (assoc-if (lambda (type) (typep condition type)) *arithmetic-texts*)))
        (sb-ext:name-conflict (conflict-text condition))
        ((or undefined-function unbound-variable) (named-text condition))
        (stream-error (refusal-text condition))
-       (type-error (unless (case-failure-p condition) (type-error-text condition)))))))
+       ;; That no clause of ECASE or the like was for a value is told by Lisp.
+       (type-error (unless (string= "CASE-FAILURE" (type-of condition))
+                     (type-error-text condition)))))))

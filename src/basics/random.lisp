@@ -16,11 +16,6 @@
 (defparameter *lisps-dice* 'cl:*random-state*
   "The name of the variable whose value CL:RANDOM rolls.")
 
-(declaim (inline short-seed))
-(defun short-seed (word)
-  (declare (type word word))
-  (ldb (byte 32 0) (mix-word word)))
-
 ;;; Seeding. What a seed makes of the words of a random state takes microseconds, and few programs
 ;;; roll. So only the first word, which is the seed itself, is set, with a mark behind it; the rest
 ;;; follows when the first roll asks SBCL for new numbers. A copy of such words means the same.
@@ -52,23 +47,19 @@
   (when (marked-p words)
     (fill-words (aref words +first-word+) words)))
 
-(defun fill-and-renew (renew words)
-  "Do what RENEW, SBCL's function, does with WORDS of which all have been read."
-  (fill-if-marked words)
-  (funcall renew words))
+(wrap-renewal (lambda (renew words)
+                (fill-if-marked words)
+                (funcall renew words)))
 
-(wrap-renewal #'fill-and-renew)
-
-(defun seeding-waits-p ()
-  "True if this SBCL asks for new words in such a way that they can be filled by then."
+(defparameter *seeding-waits-p*
   (flet ((state (filled-p)
            (let* ((state (make-random-state nil)) (words (words-of-state state)))
              (mark-seeded words 1992)
              (when filled-p (fill-if-marked words))
              state)))
-    (= (random (expt 2 64) (state nil)) (random (expt 2 64) (state t)))))
-
-(defparameter *seeding-waits-p* (seeding-waits-p) "Whether seeding may wait for the first roll.")
+    (= (random (expt 2 64) (state nil)) (random (expt 2 64) (state t))))
+  "Whether seeding may wait for the first roll, as this SBCL asks for new words so that they can be
+filled by then.")
 
 (defun seed-state (state short)
   "Return the random state STATE, seeded by SHORT, a number of 32 bits."
@@ -79,7 +70,7 @@
 
 (defun reseed (state seed)
   "Let the random state STATE be what SEEDED-LISPS-DICE returns for SEED, an integer."
-  (seed-state state (short-seed (ldb (byte 64 0) seed))))
+  (seed-state state (ldb (byte 32 0) (mix-word (ldb (byte 64 0) seed)))))
 
 (defun seeded-lisps-dice (seed)
   "Return a random state for CL:RANDOM that depends on the integer SEED only."
@@ -120,9 +111,27 @@ seeded by the integers SEED and TICK."
         (tick-dice-tick dice) tick
         (tick-dice-seeded-p dice) nil))
 
-(defun word-of-tick (dice)
-  (logxor (ldb (byte 64 0) (tick-dice-seed dice))
-          (mix-word (ldb (byte 64 0) (tick-dice-tick dice)))))
+(defun seed-tick-dice (dice)
+  "Seed DICE, without a new random state if they have one."
+  (let ((seed (logxor (ldb (byte 64 0) (tick-dice-seed dice))
+                      (mix-word (ldb (byte 64 0) (tick-dice-tick dice)))))
+        (state (tick-dice-state dice)))
+    (if state
+        (reseed state seed)
+        (setf (tick-dice-state dice) (seeded-lisps-dice seed)))
+    (setf (tick-dice-seeded-p dice) t)))
+
+(declaim (inline users-dice))
+(defun users-dice ()
+  "Return the random state that users' code called here is to roll."
+  (let ((dice *tick-dice*))
+    (cond (dice (unless (tick-dice-seeded-p dice) (seed-tick-dice dice))
+                (tick-dice-state dice))
+          (t *random-state*))))
+
+(defmacro with-users-dice (&body body)
+  "Run BODY, which calls users' code, with the dice that it is to roll by CL:RANDOM."
+  `(let ((*random-state* (users-dice))) ,@body))
 
 ;; The state itself is changed: while users' code is called it is bound once more.
 (defun reseed-lisps-dice (seed &optional (state *random-state*))
@@ -181,23 +190,3 @@ returned earlier, or NIL, if they have not been rolled since."
   (let ((words (words-of-state *random-state*)))
     (replace words (rolled-words rolled))
     (setf (aref words +place-of-place+) (rolled-place rolled))))
-
-(defun seed-tick-dice (dice)
-  "Seed DICE, without a new random state if they have one."
-  (let ((seed (word-of-tick dice)) (state (tick-dice-state dice)))
-    (if state
-        (reseed state seed)
-        (setf (tick-dice-state dice) (seeded-lisps-dice seed)))
-    (setf (tick-dice-seeded-p dice) t)))
-
-(declaim (inline users-dice))
-(defun users-dice ()
-  "Return the random state that users' code called here is to roll."
-  (let ((dice *tick-dice*))
-    (cond (dice (unless (tick-dice-seeded-p dice) (seed-tick-dice dice))
-                (tick-dice-state dice))
-          (t *random-state*))))
-
-(defmacro with-users-dice (&body body)
-  "Run BODY, which calls users' code, with the dice that it is to roll by CL:RANDOM."
-  `(let ((*random-state* (users-dice))) ,@body))

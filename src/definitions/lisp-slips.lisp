@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(note-dispatch-character value-behind function-meant ours-called))
+(export '(*error-codes* note-error-code variable-slip note-dispatch-character value-behind
+          function-meant ours-called))
 
 (defun ours-called (name)
   "Return the function of ours that is called like NAME, a string or another symbol, and the name of
@@ -36,6 +37,15 @@ PREDICATE, and how to use it; or NIL."
               (format nil "There is ~(~A:~A~)." (package-name package) symbol)
               (format nil "~A has it: say (in-package :~(~:*~A~)) first."
                       (package-name package))))))))
+
+(defun symbols-seen (package test)
+  "Return the symbols that PACKAGE sees, that are not Lisp's and for which TEST is true, in order of
+their names."
+  (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
+    (do-symbols (symbol package)
+      (when (and (not (eq lisp (symbol-package symbol))) (funcall test symbol))
+        (pushnew symbol symbols)))
+    (sort symbols #'string<)))
 
 ;;; Functions.
 
@@ -79,6 +89,27 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
           return (format nil "It is the name of ~:[a~;an~] ~A: '~(~A~)."
                           (find (char (usual-name registry) 0) "aeiou")
                           (usual-name registry) (unqualified-text name))))
+
+(defun variable-slip (name)
+  "Return in words the variable that NAME, which has no value, may be a slip for; or NIL."
+  (let ((meant (and (symbol-package name)
+                    (first (symbols-seen (symbol-package name)
+                                         (lambda (symbol)
+                                           (and (special-variable-p symbol nil)
+                                                (not (constantp symbol))
+                                                (resembles-p name symbol))))))))
+    (and meant (string-downcase (unqualified-text meant)))))
+
+(define-global *error-codes* '() "The error codes of commands, keywords.")
+
+(defun note-error-code (code)
+  "Remember that CODE, a keyword, is an error code of commands."
+  (pushnew code *error-codes*))
+
+(defun code-slip (name)
+  "Return in words the error code that is called like NAME, which has no value; or NIL."
+  (let ((code (find-symbol (symbol-name name) "KEYWORD")))
+    (and (member code *error-codes*) (format nil "~(~S~)" code))))
 
 (defun variable-slip-text (name)
   (when (and (symbolp name) (symbol-package name))

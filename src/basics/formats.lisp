@@ -1,8 +1,8 @@
-;;;; csv.lisp -- a line of a table, with commas, as RFC 4180 has it but for a plain newline.
+;;;; formats.lisp -- lines of tables as RFC 4180 has them; texts within JSON, XML and HTML.
 
 (in-package :ars-magna.basics)
 
-(export '(csv-number-p csv-line csv-texts broken-line))
+(export '(csv-number-p csv-line csv-texts broken-line write-json-string write-xml-text *entities*))
 
 ;;; A row is one line: texts have no line ends in them (see PLAIN-TEXT). The library for this would
 ;;; take ten times as long, and loads half of Unicode to do so.
@@ -154,3 +154,28 @@
                    (texts-with-quotes line)
                    (texts-between-commas line))))
     (if (find #\' (the simple-string line)) (mapcar #'unescaped texts) texts)))
+
+;;;; JSON, XML and HTML
+
+(defun write-json-string (text stream &key in-page)
+  "Write TEXT to STREAM as a string of JSON, which JavaScript reads too. If IN-PAGE, nothing in it
+can end the script of a page that it stands in."
+  (write-char #\" stream)
+  (loop for char across text
+        for code = (char-code char)
+        do (cond ((find char "\"\\") (format stream "\\~C" char))
+                 ((or (< code 32) (<= #xD800 code #xDFFF) (and in-page (char= char #\<)))
+                  (format stream "\\u~4,'0X" code))
+                 (t (write-char char stream))))
+  (write-char #\" stream))
+
+(defparameter *entities*
+  '((#\& . "&amp;") (#\< . "&lt;") (#\> . "&gt;") (#\" . "&quot;"))
+  "What XML and HTML write for the characters that they take for their own.")
+
+(defun write-xml-text (text stream)
+  "Write TEXT to STREAM as it stands in XML and HTML, between tags or in an attribute's double
+quotes."
+  (loop for char across text
+        for entity = (cdr (assoc char *entities*))
+        do (if entity (write-string entity stream) (write-char char stream))))
