@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.basics)
 
+(export '(+number-text+))
+
 ;;; A fixed-point number is an integer that counts units of 2^-PLACES. Integer arithmetic gives the
 ;;; same results on every machine. Nothing here runs after the simulator is loaded, but for angles
 ;;; beyond a million radians.
@@ -152,7 +154,8 @@ the last cell."
          (setf (aref cells ,count) (progn ,@body))
          nil))))
 
-(define-constant +number-text+ "a real number, from -1.7e308 to 1.7e308" :test #'string=)
+(define-constant +number-text+ "a real number, from -1.7e308 to 1.7e308" :test #'string=
+  :documentation "In words, what a double-float can stand for.")
 
 (defmacro check-number (operator place)
   "Signal WRONG-ARGUMENT unless PLACE is a double-float or a real number that can be made one. Which

@@ -3,8 +3,8 @@
 (in-package :ars-magna.host)
 
 (export '(method-code declared-lambda-list same-code-p structure-reader-p code-references
-          lambda-list-of callable-with-p function-file files-besides-functions call-as-from-file
-          tell-sources))
+          lambda-list-of takes-count-p callable-with-p function-file files-besides-functions
+          call-as-from-file tell-sources))
 
 ;;; Since SBCL 2.4.10, the names of called functions are no constants of code: it calls them through
 ;;; a linkage table. The names of macros, constants and inline functions that were used are in the
@@ -103,13 +103,16 @@ numbers."
   "Return the lambda list of the function or macro called NAME, a symbol, or of a function itself."
   (sb-introspect:function-lambda-list name))
 
+(defun takes-count-p (lambda-list count)
+  "True if LAMBDA-LIST, an ordinary one, takes COUNT arguments, of which any may be keywords."
+  (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list lambda-list)
+    (and (<= (length required) count)
+         (or rest-p keys (<= count (+ (length required) (length optional)))))))
+
 (defun callable-with-p (function count)
   "True if FUNCTION, or the one so called, can be called with COUNT arguments, as far as is known."
   (multiple-value-bind (list unknown-p) (lambda-list-of function)
-    (or unknown-p
-        (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list list)
-          (and (<= (length required) count)
-               (or rest-p keys (<= count (+ (length required) (length optional)))))))))
+    (or unknown-p (takes-count-p list count))))
 
 ;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
 ;;; said.

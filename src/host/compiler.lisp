@@ -216,16 +216,14 @@ a file whose forms are being evaluated around it."
 
 ;;; SBCL has no hook for the end of a unit.
 
-(defun watch-units ()
-  (wrap-function 'compile-file
-                 (lambda (function &rest arguments)
-                   (compile-in-unit (lambda () (apply-in-own-file function arguments)))))
-  (wrap-function 'load
-                 (lambda (function &rest arguments)
-                   (call-in-unit :load (lambda () (apply-in-own-file function arguments)))))
-  (wrap-function (internal-name :sb-c '#:%with-compilation-unit)
-                 (lambda (function body &rest options &key override &allow-other-keys)
-                   (apply function (lambda () (call-in-unit :compilation body override))
-                          options))))
+(wrap-function 'compile-file
+               (lambda (function &rest arguments)
+                 (compile-in-unit (lambda () (apply-in-own-file function arguments)))))
 
-(watch-units)
+(wrap-function 'load
+               (lambda (function &rest arguments)
+                 (call-in-unit :load (lambda () (apply-in-own-file function arguments)))))
+
+(wrap-function (internal-name :sb-c '#:%with-compilation-unit)
+               (lambda (function body &rest options &key override &allow-other-keys)
+                 (apply function (lambda () (call-in-unit :compilation body override)) options)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.host)
 
-(export '(function-arguments form-behind-comma walk-expressions bound-in-walk-p variables-of-walk
+(export '(function-arguments form-behind-comma bound-in-walk-p variables-of-walk
           variable-kind local-variable-p known-variable-p special-variable-p local-function-p
           known-function-p macro-expander lisps-own-p extended-environment evaluate-form
           walk-form expand-in-walk users-symbol-p variable-name-p variable-forms
@@ -24,11 +24,6 @@ true; or NIL twice if the compiler does not know."
   "Return the form behind OBJECT if that is a comma in a backquoted form, or NIL."
   (and (internal (:sb-int #:comma-p) object)
        (internal (:sb-int #:comma-expr) object)))
-
-(defun walk-expressions (form environment function)
-  "Return FORM with each form in it replaced by what FUNCTION returns for it, its context and its
-environment. FUNCTION's second value is true where the walk is not to enter the replacement."
-  (internal (:sb-walker #:walk-form) form environment function))
 
 (defun bound-in-walk-p (variable environment)
   "True if VARIABLE is bound by a form that the walk which visits ENVIRONMENT has entered."
@@ -125,7 +120,7 @@ walk out of what is put there. What takes the place of an expression stands wher
   (declare (type function visit))
   (let ((entered nil))
     (labels ((walk (form environment)
-               (walk-expressions form environment #'replacement))
+               (internal (:sb-walker #:walk-form) form environment #'replacement))
              (inside (form environment)
                (setf entered form)
                (expanded form form environment))

@@ -8,17 +8,13 @@
   "Return how many bytes objects take, including garbage."
   (internal (:sb-kernel #:dynamic-usage)))
 
-(defun collection-trigger ()
-  "Return at how many bytes SBCL collects garbage; NIL if this SBCL does not say."
-  (ignore-errors
-   (internal (:sb-sys #:sap-ref-word)
-             (internal (:sb-sys #:foreign-symbol-sap) "auto_gc_trigger" t)
-             0)))
-
 (defun octets-before-garbage ()
   "Return how many bytes of objects can be made before SBCL next collects garbage; a very large
 number if this SBCL does not say."
-  (let ((trigger (collection-trigger)))
+  (let ((trigger (ignore-errors
+                  (internal (:sb-sys #:sap-ref-word)
+                            (internal (:sb-sys #:foreign-symbol-sap) "auto_gc_trigger" t)
+                            0))))
     (if trigger (- trigger (dynamic-usage)) most-positive-fixnum)))
 
 (defun scrub-stack ()

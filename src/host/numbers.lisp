@@ -2,21 +2,11 @@
 
 (in-package :ars-magna.host)
 
-(export '(double-high-bits double-bits make-double make-single finite-p positive-infinity-p
-          double-to-bits bits-to-double finite-double-p cell-index tick-count double random-words
-          words-of-state fill-words wrap-renewal))
+(export '(make-double make-single finite-p positive-infinity-p double-to-bits bits-to-double
+          finite-double-p cell-index tick-count double random-words words-of-state fill-words
+          wrap-renewal))
 
-(declaim (inline double-high-bits double-bits make-double make-single))
-(defun double-high-bits (number)
-  "Return the upper 32 bits of the double-float NUMBER, as a signed integer."
-  (declare (type double-float number))
-  (internal (:sb-kernel #:double-float-high-bits) number))
-
-(defun double-bits (number)
-  "Return an integer whose lower 64 bits are those of the double-float NUMBER."
-  (declare (type double-float number))
-  (internal (:sb-kernel #:double-float-bits) number))
-
+(declaim (inline make-double make-single))
 (defun make-double (high low)
   "Return the double-float whose bits are HIGH, a signed, and LOW, an unsigned integer of 32 bits."
   (declare (type (signed-byte 32) high) (type (unsigned-byte 32) low))
@@ -36,7 +26,7 @@
 (defun finite-double-p (number)
   "True unless NUMBER, a double-float, is infinite or no number."
   (declare (type double-float number))
-  (/= #x7FF00000 (logand #x7FF00000 (double-high-bits number))))
+  (/= #x7FF00000 (logand #x7FF00000 (internal (:sb-kernel #:double-float-high-bits) number))))
 
 (defun other-finite-p (object)
   (typecase object
@@ -58,7 +48,7 @@ number, and integers and ratios that are too large."
 (defun double-to-bits (number)
   "Return the 64 bits of NUMBER, a double-float, as an integer that is not negative."
   (declare (type double-float number))
-  (ldb (byte 64 0) (double-bits number)))
+  (ldb (byte 64 0) (internal (:sb-kernel #:double-float-bits) number)))
 
 (defun bits-to-double (bits)
   "Return the double-float with BITS, an integer of 64 bits: DOUBLE-TO-BITS undone."

@@ -14,10 +14,6 @@
   (defparameter *tried-versions* '("2.2.9" "2.5.2" "2.6.4")
     "The versions of SBCL with which the tests pass, oldest first.")
 
-  (defun host-text ()
-    "Return the Lisp this runs on, as text: \"SBCL 2.5.2.debian\"."
-    (format nil "~A ~A" (lisp-implementation-type) (lisp-implementation-version)))
-
   (defun find-internal (package names)
     "Return the first symbol among NAMES, strings or symbols, that SBCL's PACKAGE has; else NIL."
     (let ((package (find-package package)))
@@ -28,9 +24,9 @@
     "Return the first symbol among NAMES, strings or symbols, that SBCL's PACKAGE has. Signals an
 ERROR if it has none of them."
     (or (find-internal package names)
-        (error "~A has no ~A:~{~A~^ or ~}. ARS MAGNA runs on SBCL ~A to ~A. Use one of these, or ~
-                add the new name to the files in src/host."
-               (host-text) package names
+        (error "SBCL ~A has no ~A:~{~A~^ or ~}. ARS MAGNA runs on SBCL ~A to ~A. Use one of ~
+                these, or add the new name to the files in src/host."
+               (lisp-implementation-version) package names
                (first *tried-versions*) (first (last *tried-versions*))))))
 
 (defmacro internal ((package &rest names) &rest arguments)
@@ -65,13 +61,7 @@ if that is one."
     (cond ((later-version-p version (first (last *tried-versions*))) (sentence "newer"))
           ((later-version-p (first *tried-versions*) version) (sentence "older")))))
 
-(defun tell-if-untried ()
-  "Say so, on the error output, if this SBCL is none of those between the first and the last tried."
-  (let ((text (untried-host-text)))
-    (when text
-      (format *error-output* "~&ars-magna: ~A~%" text))))
-
-(tell-if-untried)
+(format *error-output* "~@[~&ars-magna: ~A~%~]" (untried-host-text))
 
 ;;;; Functions of SBCL's or a library's, replaced by ones that call them
 
