@@ -20,11 +20,10 @@
    (:module "src/definitions" :serial t
     :components ((:file "package") (:file "sources") (:file "places-in-text")
                  (:file "definitions") (:file "user-macros") (:file "registry")
-                 (:file "own-definitions") (:file "messages") (:file "troubles") (:file "askers")
-                 (:file "inquiries") (:file "user-code") (:file "parameters") (:file "physics")
-                 (:file "parameters-of-runs") (:file "kinds") (:file "facts")
-                 (:file "define-kind") (:file "argument-types") (:file "lisp-slips")
-                 (:file "tests-in-code") (:file "operators")))
+                 (:file "own-definitions") (:file "messages") (:file "troubles")
+                 (:file "inquiries") (:file "user-code") (:file "parameters")
+                 (:file "physics") (:file "parameters-of-runs") (:file "kinds")
+                 (:file "facts") (:file "operators") (:file "slips")))
    (:module "src/copying" :serial t
     :components ((:file "package") (:file "digesting") (:file "copiers") (:file "manners")
                  (:file "copying") (:file "holding") (:file "fields") (:file "contradictions")

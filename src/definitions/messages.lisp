@@ -130,36 +130,35 @@ it otherwise."
     (cond (listener (funcall listener))
           ((echoed-p message queue) (echo-message message queue)))))
 
+(defun queue-items (kind items &rest options)
+  (queue-message (apply #'make-message kind items options) *message-queue*)
+  (values))
+
 (public error-set)
 (defun error-set (&rest stuff)
   "Queue an error message made of the items STUFF, printed by OUT's rules. Return nothing
 (manual 3.7)."
-  (queue-message (make-message :error stuff) *message-queue*)
-  (values))
+  (queue-items :error stuff))
 
 (public warning-set)
 (defun warning-set (&rest stuff)
   "Queue a warning made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
-  (queue-message (make-message :warning stuff) *message-queue*)
-  (values))
+  (queue-items :warning stuff))
 
 (defun warn-notably (&rest stuff)
   "Queue a warning made of the items STUFF that is shown like an error if nobody reads it. Return
 nothing."
-  (queue-message (make-message :warning stuff :notable-p t) *message-queue*)
-  (values))
+  (queue-items :warning stuff :notable-p t))
 
 (defun warn-at-once (&rest stuff)
   "Queue a warning made of the items STUFF that is shown as it comes if nobody listens. Return
 nothing."
-  (queue-message (make-message :warning stuff :notable-p :at-once) *message-queue*)
-  (values))
+  (queue-items :warning stuff :notable-p :at-once))
 
 (public message-set)
 (defun message-set (&rest stuff)
   "Queue a message made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
-  (queue-message (make-message :message stuff) *message-queue*)
-  (values))
+  (queue-items :message stuff))
 
 (defun take-messages (&optional (queue *message-queue*))
   "Empty QUEUE. Return its messages, oldest first, at most *MESSAGE-LIMIT* of them. If older

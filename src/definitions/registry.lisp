@@ -134,7 +134,8 @@ UNKNOWN-NAME if ERRORP is true."
 
 (defun entry-to-replace (name registry)
   "Return the entry in REGISTRY whose place a definition of NAME would take, or NIL."
-  (find-if (lambda (entry) (same-entry-p entry name registry)) (registry-entries registry)))
+  (find name (registry-entries registry)
+        :key #'entry-name :test (if (registry-by-symbol-p registry) #'eq #'same-name-p)))
 
 (defun definition-to-replace (name registry)
   "Return the object in REGISTRY whose place a definition of NAME would take, or NIL."
@@ -150,11 +151,6 @@ UNKNOWN-NAME if ERRORP is true."
 (defun users-p (entry)
   "True if ENTRY is a definition of a user's, not of the simulator's own."
   (not (equal *own-source* (entry-source entry))))
-
-(defun same-entry-p (entry name registry)
-  (if (registry-by-symbol-p registry)
-      (eq name (entry-name entry))
-      (same-name-p name (entry-name entry))))
 
 (defun entries-with (new old before registry)
   "Return the entries of REGISTRY with NEW: directly before the object BEFORE, in the place of OLD,
@@ -259,8 +255,7 @@ SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of w
 
 (defun check-undefinable (registry entry)
   (when (or (registry-fixed-p registry)
-            (and (registry-sealed-p registry)
-                 (equal *own-source* (entry-source entry))))
+            (and (registry-sealed-p registry) (not (users-p entry))))
     (reject-use "The ~A ~(~A~) cannot be undefined: the simulator needs it."
                 (registry-text registry) (entry-name entry))))
 

@@ -12,19 +12,13 @@
 ;;; A file is read here without regard to its packages: words are compared as words, and nothing
 ;;; is interned in any package that a user has.
 
-(defun text-file (path)
-  "Return PATH if that is a file of Lisp text, not a compiled one."
-  (and path
-       (not (equalp "fasl" (pathname-type path)))
-       (probe-file path)))
-
 (defun source-here ()
   "Return the source of the form that is being compiled or loaded, or NIL."
-  (let ((file (text-file (if (edited-file)
-                             (native-path (edited-file))
-                             (or *compile-file-truename* *load-truename*)))))
-    (when file
-      (ignore-errors (list (native-name file) (file-digest file))))))
+  (let ((file (if (edited-file)
+                  (native-path (edited-file))
+                  (or *compile-file-truename* *load-truename*))))
+    (when (and file (not (equalp "fasl" (pathname-type file))) (probe-file file))
+      (ignore-errors (list (native-name (probe-file file)) (file-digest file))))))
 
 (defun source-file (source)
   "Return what the system calls the file of SOURCE, a string, or NIL."
@@ -262,11 +256,6 @@ at the beginning and at the end."
                    (setf last char))
                  (setf blank (not code) i end))))))
 
-(defun text-digest (text)
-  (let ((digest (make-digest)))
-    (loop for char across text do (digest-add digest char))
-    (digest-value digest)))
-
 (defun form-end (text start)
   (loop with depth = 0 and i = start
         while (< i (length text))
@@ -295,8 +284,12 @@ whose operator is WITHOUT, a string, if given."
   ;; Any file can be read so, and what its bytes mean does not matter here.
   (let ((text (read-file-into-string file :external-format :latin-1)))
     (recalling (text without)
-      (let ((code (code-alone text)))
-        (text-digest (if without (code-without without code) code))))))
+      (let ((code (code-alone text)) (digest (make-digest)))
+        (add-characters (if without (code-without without code) code) digest)
+        (digest-value digest)))))
+
+(defun add-characters (text digest)
+  (loop for char across text do (digest-add digest char)))
 
 (defun form-digest (form)
   "Return a number for FORM: for its shape, what its symbols are called, and its data."
@@ -326,7 +319,7 @@ order in which they come up; KNOWN has those that have."
                                    (symbol-name atom)
                                    (or (gethash atom known)
                                        (setf (gethash atom known) (hash-table-count known))))))
-    (string (loop for char across atom do (digest-add digest char)))
+    (string (add-characters atom digest))
     (integer (add-integer atom digest))
     (ratio (add-integer (numerator atom) digest) (add-integer (denominator atom) digest))
     (t (digest-add digest atom))))

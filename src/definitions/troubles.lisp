@@ -36,8 +36,7 @@ WITH-SIMULATION signal it in a run that is to :SIGNAL errors, see WITH-SIMULATIO
 (defun trouble-set (cause text &rest stuff)
   "Queue an error message made of the items STUFF which tells of CAUSE, a condition in users' code
 or a failure of a plan; TEXT says it in a line. Return nothing."
-  (queue-message (make-message :error stuff :cause cause :summary text) *message-queue*)
-  (values))
+  (queue-items :error stuff :cause cause :summary text))
 
 (defun error-of-message (message)
   (make-condition 'user-code-error :text (message-summary message) :cause (message-cause message)))

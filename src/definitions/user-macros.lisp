@@ -64,18 +64,13 @@ list: a keyword, or a form where there should be a list. Return NIL if it is som
                                (format nil "~(~A~) is no list" (unqualified-text argument))
                                (misfit-text parameter argument)))))))
 
-(defun unread-slot (form)
-  "Return the symbol in FORM that Nisp's reader would have read as a slot, such as !>robot.cameras;
-or NIL."
-  (part-with (lambda (part)
-               (and part (symbolp part)
-                    (< 2 (length (symbol-name part)))
-                    (starts-with-subseq "!>" (symbol-name part))))
-             form))
-
 (defun doubt-readtable (form)
-  "Warn if FORM has in it what only Nisp's reader reads, as a symbol."
-  (let ((slot (unread-slot form)))
+  "Warn if FORM has in it, as a symbol, what only Nisp's reader reads, such as !>robot.cameras."
+  (let ((slot (part-with (lambda (part)
+                           (and part (symbolp part)
+                                (< 2 (length (symbol-name part)))
+                                (starts-with-subseq "!>" (symbol-name part))))
+                         form)))
     (when slot
       (doubt-definition "~A has been read as a symbol, not as a slot. Begin your file or session ~
                          with (in-readtable :nisp)." slot))))
