@@ -25,9 +25,7 @@
                  (:file "physics") (:file "parameters-of-runs") (:file "kinds")
                  (:file "facts") (:file "operators") (:file "slips")))
    (:module "src/copying" :serial t
-    :components ((:file "package") (:file "digesting") (:file "copiers") (:file "manners")
-                 (:file "copying") (:file "holding") (:file "fields") (:file "contradictions")
-                 (:file "given")))
+    :components ((:file "package") (:file "copiers") (:file "copying") (:file "state")))
    (:module "base" :pathname "src" :components ((:file "base")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")

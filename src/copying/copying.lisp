@@ -1,8 +1,8 @@
-;;;; copying.lisp -- the objects of a run, copied into another that goes on by itself.
+;;;; copying.lisp -- the objects of a run, copied for another; what users give, copied.
 
 (in-package :ars-magna.copying)
 
-(export '(copying copy-values copy-slots))
+(export '(copying copy-values copy-slots given))
 
 ;;; A COPIER walks from what it is given to all that can be reached, and remembers what it copied to
 ;;; what: two objects that refer to the same one do so in the copies. It copies an object first, and
@@ -221,9 +221,7 @@ instance of a class of a user's of which nobody has said how it is copied: what 
     (condition nil)
     (function (and (closure-p value) (not (typep value 'standard-object))))
     (structure-object (and (null (kind-of value)) (eq :copy (manner-way (manner value)))))
-    (standard-object (eq (first (compute-applicable-methods #'copy-plan-value (list value nil)))
-                         (find-method #'copy-plan-value '()
-                                      (list (find-class 'standard-object) (find-class t)))))
+    (standard-object (default-method-p value 'standard-object))
     (t (and (value-cell-p value) (not (exit-cell-p value))))))
 
 (defun copy-values (list instead-of)
@@ -236,3 +234,45 @@ by their copies. For anything else there is what INSTEAD-OF, a function, returns
                                          (values nil nil)
                                          (values (funcall instead-of value) t))))
         (copying (copier) (forked list copier)))))
+
+;;;; What users give
+
+(defconstant +longest-given+ 100000 "How many conses and elements a datum has at most.")
+(defconstant +deepest-given+ 200 "How deep its lists stand in lists at most.")
+
+(defun copy-given (datum)
+  "Return DATUM, what somebody has given us, with the lists and vectors in it copied, so that he can
+change it no more; other objects are shared. A second value is true if that cannot be, as it goes on
+without end or too far."
+  (let ((left +longest-given+))
+    (labels ((deeper (depth)
+               (when (or (minusp (decf left)) (> depth +deepest-given+))
+                 (return-from copy-given (values nil t))))
+             (copy (datum depth)
+               (typecase datum
+                 (string (copy-seq datum))
+                 (cons (loop with first = (list nil) with last = first
+                             for tail = datum then (cdr tail)
+                             while (consp tail)
+                             do (deeper depth)
+                                (setf last (setf (cdr last)
+                                                 (list (copy (car tail) (1+ depth)))))
+                             finally (setf (cdr last) tail)
+                                     (return (rest first))))
+                 (simple-vector (cl:map 'vector (lambda (element)
+                                                  (deeper depth)
+                                                  (copy element (1+ depth)))
+                                        datum))
+                 (t datum))))
+      (copy datum 1))))
+
+(defun given (operator name datum)
+  "Return a copy of DATUM, which OPERATOR got as its argument NAME. Signals WRONG-ARGUMENT if it has
+no end."
+  (multiple-value-bind (copy endless-p) (copy-given datum)
+    (when endless-p
+      (reject-argument operator name "what was given"
+                       (format nil "lists that end, with at most ~D elements in all, and at most ~
+                                    ~D in one another"
+                               +longest-given+ +deepest-given+)))
+    copy))
