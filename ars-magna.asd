@@ -28,8 +28,8 @@
     :components ((:file "package") (:file "copiers") (:file "copying") (:file "state")))
    (:module "base" :pathname "src" :components ((:file "base")))
    (:module "src/geometry" :serial t
-    :components ((:file "package") (:file "types") (:file "operands") (:file "points")
-                 (:file "intervals") (:file "angles")))
+    :components ((:file "package") (:file "types") (:file "points") (:file "intervals")
+                 (:file "angles")))
    (:module "src/nisp" :serial t
     :components ((:file "package") (:file "control") (:file "known-types") (:file "typed-lists")
                  (:file "binding")

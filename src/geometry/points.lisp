@@ -1,12 +1,73 @@
-;;;; points.lisp -- vector arithmetic on points, extended to intervals (manual 3.2.1, Table 3.1).
+;;;; points.lisp -- arithmetic on points, numbers and intervals (manual 3.2.1, Table 3.1).
 
 (in-package :ars-magna.geometry)
 
-;;; Each destructive operation reads all that it needs of both operands before it stores, so
-;;; that (subtract! a a) is right, and A is as it was if the result is too large; none of them
-;;; conses. The others work on a fresh copy.
+;;; Every operation takes operands of one dimension: spans (numbers and intervals) or regions
+;;; (points and point intervals). Mixing an element with an interval lifts the element, which
+;;; costs nothing here: its lower and upper bounds are the same number (manual 3.2.1).
 
-(declaim (inline %add! %add-region! %products %mul! %neg!))
+(deftype finite ()
+  "The numbers that a double-float can stand for."
+  '(and real (satisfies finite-p)))
+
+(deftype span ()
+  "What has one dimension."
+  '(or finite interval))
+
+(deftype region ()
+  "What has two dimensions."
+  '(or pt pt-interval))
+
+(declaim (inline low high low-x high-x low-y high-y))
+
+(defun low (span)
+  (if (interval-p span) (%interval-min span) (double span)))
+
+(defun high (span)
+  (if (interval-p span) (%interval-max span) (double span)))
+
+(defun low-x (region)
+  (if (pt-p region) (%pt-x region) (%interval-min (%pt-interval-x region))))
+
+(defun high-x (region)
+  (if (pt-p region) (%pt-x region) (%interval-max (%pt-interval-x region))))
+
+(defun low-y (region)
+  (if (pt-p region) (%pt-y region) (%interval-min (%pt-interval-y region))))
+
+(defun high-y (region)
+  (if (pt-p region) (%pt-y region) (%interval-max (%pt-interval-y region))))
+
+(defun reject-operand (operator name value expected)
+  "Signal WRONG-ARGUMENT: OPERATOR takes, as its operand NAME, no VALUE but what EXPECTED says."
+  (reject-argument operator name value
+                   (if (and (realp value) (not (finite-p value))) +number-text+ expected)))
+
+(defmacro dispatch (operator operands expected &body clauses)
+  "Evaluate the first of CLAUSES, ((TYPE...) FORM...), whose types the variables OPERANDS have.
+If there is none, or the result is too large, signal WRONG-ARGUMENT: OPERATOR takes what EXPECTED
+says in words."
+  (flet ((test (types)
+           `(and ,@(loop for operand in operands
+                         for type in types
+                         collect `(typep ,operand ',type))))
+         (refuse (operand)
+           `(reject-operand ',operator ',operand ,operand ,expected)))
+    `(within-floats (,operator ,(first (last operands)))
+       (cond ,@(loop for (types . forms) in clauses
+                     collect `(,(test types) ,@forms))
+             ,@(loop for operand in operands
+                     for place from 0
+                     for types = (loop for (types) in clauses collect (nth place types))
+                     collect `((not (typep ,operand '(or ,@types))) ,(refuse operand)))
+             ;; Each could be right alone; then the last does not suit the others.
+             (t ,(refuse (first (last operands))))))))
+
+;;; Arithmetic. Each destructive operation reads all that it needs of both operands before it
+;;; stores, so that (subtract! a a) is right, and A is as it was if the result is too large; none of
+;;; them conses. The others work on a fresh copy.
+
+(declaim (inline %add! %add-region! %products %neg!))
 
 (defun %add! (interval low high)
   (%set-interval! interval (+ (%interval-min interval) low) (+ (%interval-max interval) high)))
@@ -28,10 +89,6 @@
         (c (* (%interval-max interval) low))
         (d (* (%interval-max interval) high)))
     (values (min a b c d) (max a b c d))))
-
-(defun %mul! (interval low high)
-  (multiple-value-bind (least greatest) (%products interval low high)
-    (%set-interval! interval least greatest)))
 
 (public add!)
 (defun add! (a b)
@@ -99,7 +156,8 @@ interval; the FACTOR of an interval may be an interval itself (manual, Table 3.1
   (dispatch mul! (a factor) "a PT, INTERVAL or PT-INTERVAL and a number"
     ((pt finite) (let ((factor (double factor)))
                  (set-pt! a (* (%pt-x a) factor) (* (%pt-y a) factor))))
-    ((interval span) (%mul! a (low factor) (high factor)))
+    ((interval span)
+     (multiple-value-call #'%set-interval! a (%products a (low factor) (high factor))))
     ((pt-interval span)
      (let ((low (low factor)) (high (high factor)))
        (multiple-value-call #'%set-region! a

@@ -9,14 +9,11 @@
 ;;; them, so that a destructive operation changes its first operand only (manual 3.2.1).
 
 ;;; What a double-float cannot stand for, infinite or no number is in none of these; nor does
-;;; DISPATCH (see operands.lisp) let anything be computed that would be.
-
-(define-constant +finite-text+ "a real number, from -1.7e308 to 1.7e308" :test #'string=
-  :documentation "In words, what a double-float can stand for.")
+;;; DISPATCH (see points.lisp) let anything be computed that would be.
 
 (defmacro check-finite (operator place)
   "Signal WRONG-ARGUMENT unless PLACE is a number that a double-float can stand for."
-  `(check-argument ,operator ,place (finite-p ,place) +finite-text+))
+  `(check-argument ,operator ,place (finite-p ,place) +number-text+))
 
 (define-condition beyond-floats (wrong-argument)
   ()
@@ -156,33 +153,23 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading
     (pt (%make-pt-interval (lift (%pt-x x)) (lift (%pt-y x))))
     (pt-interval (%make-pt-interval (lift (%pt-interval-x x)) (lift (%pt-interval-y x))))))
 
-(declaim (inline pt-interval-x pt-interval-y))
+(defmacro define-side-accessor (name raw axis)
+  "Define NAME, which reads what RAW does of a point interval, its side along AXIS, and sets it."
+  `(progn
+     (addition ,name)
+     (settable ,name)
+     (declaim (inline ,name))
+     (defun ,name (pt-interval)
+       ,(format nil "Return the INTERVAL along ~A of PT-INTERVAL, its own: changing it changes ~
+                     PT-INTERVAL. Setting~%it copies the bounds of an interval." axis)
+       (,raw pt-interval))
+     (defun (setf ,name) (interval pt-interval)
+       (check-argument ,name interval (interval-p interval) "an interval")
+       (%set-interval! (,raw pt-interval) (%interval-min interval) (%interval-max interval))
+       interval)))
 
-(addition pt-interval-x)
-(settable pt-interval-x)
-(defun pt-interval-x (pt-interval)
-  "Return the INTERVAL along x of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
-it copies the bounds of an interval."
-  (%pt-interval-x pt-interval))
-
-(addition pt-interval-y)
-(settable pt-interval-y)
-(defun pt-interval-y (pt-interval)
-  "Return the INTERVAL along y of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
-it copies the bounds of an interval."
-  (%pt-interval-y pt-interval))
-
-(defun (setf pt-interval-x) (interval pt-interval)
-  (check-argument pt-interval-x interval (interval-p interval) "an interval")
-  (%set-interval! (%pt-interval-x pt-interval)
-                  (%interval-min interval) (%interval-max interval))
-  interval)
-
-(defun (setf pt-interval-y) (interval pt-interval)
-  (check-argument pt-interval-y interval (interval-p interval) "an interval")
-  (%set-interval! (%pt-interval-y pt-interval)
-                  (%interval-min interval) (%interval-max interval))
-  interval)
+(define-side-accessor pt-interval-x %pt-interval-x "x")
+(define-side-accessor pt-interval-y %pt-interval-y "y")
 
 (defun side-length (side)
   (- (%interval-max side) (%interval-min side)))
