@@ -31,10 +31,8 @@
     :components ((:file "package") (:file "types") (:file "points") (:file "intervals")
                  (:file "angles")))
    (:module "src/nisp" :serial t
-    :components ((:file "package") (:file "control") (:file "known-types") (:file "typed-lists")
-                 (:file "binding")
-                 (:file "types") (:file "slots") (:file "values") (:file "matching")
-                 (:file "reader") (:file "loading")))
+    :components ((:file "package") (:file "control") (:file "binding") (:file "types")
+                 (:file "reader")))
    (:module "src/world" :serial t
     :components ((:file "package") (:file "clauses") (:file "attributes")
                  (:file "asked-values") (:file "built-in-attributes") (:file "substances")

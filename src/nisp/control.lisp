@@ -1,6 +1,8 @@
-;;;; control.lisp -- Nisp's IF and LOOP, assignment, vectors, and doing nothing.
+;;;; control.lisp -- IF and LOOP, assignment, vectors; taking types out of lists.
 
 (in-package :ars-magna.nisp)
+
+(export '(untyped-bindings untyped-lambda-list lambda-list-variables))
 
 ;;; From here on IF and LOOP mean ours in this package; both expand to Common Lisp's at once.
 
@@ -64,3 +66,107 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
 (defun (setf vref) (value vector index)
   (check-vref vector index)
   (setf (elt vector index) value))
+
+;;;; The types that programs use, by name
+
+;;; Types are known by name, whatever package it was read in. A layer registers a type when it
+;;; is loaded; after that the registry is only read.
+
+(defstruct (nisp-type (:constructor make-nisp-type (name)) (:copier nil))
+  "What is known of the type called NAME. CLASS is its Lisp name, if it has registered slots;
+SLOTS an alist from slot names to reader functions' names; MAKER a function or NIL."
+  (name "" :type string :read-only t)
+  (class nil :type symbol)
+  (slots '() :type list)
+  (maker nil :type (or null function))
+  (parameters '() :type list))
+
+(defvar *nisp-types* (make-hash-table :test 'equal)
+  "All registered types by name.")
+
+(defun find-nisp-type (name)
+  (values (gethash (string name) *nisp-types*)))
+
+(defun ensure-nisp-type (name)
+  (or (find-nisp-type name)
+      (setf (gethash (string name) *nisp-types*) (make-nisp-type (string name)))))
+
+(defun names-of-classes (package)
+  "Return the names of the classes that PACKAGE, the name of a package or nothing's, offers."
+  (and (find-package package)
+       (loop for symbol being the external-symbols of package
+             when (find-class symbol nil) collect (symbol-name symbol))))
+
+(defun known-types ()
+  "Return the names of the types that programs use, in order: those registered, and classes that
+the packages of users have."
+  (sort (remove-duplicates (append (loop for name being the hash-keys of *nisp-types* collect name)
+                                   (names-of-classes "NISP")
+                                   (names-of-classes "ARS"))
+                           :test #'string=)
+        #'string<))
+
+;;;; Lists without types
+
+;;; A hyphen and a type after a variable declare its type (manual 3.1). Types are documentation:
+;;; they are checked for being there and then dropped, known or not. A name that may be a slip for
+;;; that of a known type is warned of.
+
+(defun hyphen-p (form)
+  (and (symbolp form) (string= form "-")))
+
+(defun lambda-keyword-p (form)
+  (member form lambda-list-keywords))
+
+(defun type-like (type)
+  "Return the name of a known type for which TYPE, which is unknown, may be a slip; or NIL."
+  (and type
+       (symbolp type)
+       (not (find-nisp-type type))
+       (not (find-class type nil))
+       (find-if (lambda (name) (resembles-p type name)) (known-types))))
+
+(defun doubt-type (operator type)
+  (when (type-like type)
+    (doubt-definition "~A: there is no type ~(~A~). Did you mean ~(~A~)?"
+                      operator type (type-like type))))
+
+(defun without-types (operator list what)
+  "Return LIST, of WHAT in words, without each hyphen and the type that follows it. OPERATOR, a
+string, is named in the error if a hyphen has no variable before it or no type behind it."
+  (unless (listp list) (reject-clause operator list (format nil "a list of ~A" what)))
+  (loop with typed = t                  ; nothing to declare yet
+        with tail = list
+        while (consp tail)
+        for element = (pop tail)
+        if (hyphen-p element)
+          do (when (or typed (atom tail) (hyphen-p (first tail)))
+               (reject-clause operator list "each hyphen between a variable and its type"))
+             (doubt-type operator (pop tail))
+             (setf typed t)
+        else
+          do (setf typed (lambda-keyword-p element))
+          and collect element))
+
+(defun untyped-lambda-list (lambda-list &optional (operator "lambda"))
+  "Return LAMBDA-LIST, an ordinary one in which a hyphen and a type may follow each variable, as
+an ordinary lambda list. OPERATOR, a string, is named in errors (manual 3.1)."
+  (without-types operator lambda-list "parameters"))
+
+(defun untyped-bindings (bindings &optional (operator "let"))
+  "Return BINDINGS as LET takes them, without the hyphen and type that may follow each one.
+OPERATOR, a string, is named in errors (manual 3.1)."
+  (without-types operator bindings "bindings"))
+
+(defun parameter-variables (parameter)
+  (if (atom parameter)
+      (list parameter)
+      (destructuring-bind (name &optional default (supplied nil supplied-p)) parameter
+        (declare (ignore default))
+        (cons (if (consp name) (second name) name)
+              (and supplied-p (list supplied))))))
+
+(defun lambda-list-variables (lambda-list)
+  "Return the variables that LAMBDA-LIST, an ordinary one without types, binds."
+  (mapcan #'parameter-variables
+          (remove-if #'lambda-keyword-p lambda-list)))

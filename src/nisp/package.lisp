@@ -1,7 +1,7 @@
 ;;;; package.lisp -- the Nisp dialect, as far as the manual uses it (manual 3.1).
 
 (defpackage :ars-magna.slots
-  (:documentation "The accessors of slots by name, see slots.lisp: !_X for the slot x of any type.")
+  (:documentation "The accessors of slots by name, see types.lisp: !_X for the slot x of any type.")
   (:use))
 
 (ars-magna.host:define-package :ars-magna.nisp

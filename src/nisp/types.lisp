@@ -1,8 +1,8 @@
-;;;; types.lisp -- the types of the manual, and MAKE for all of them (manual 3.1).
+;;;; types.lisp -- the types of the manual and their slots by name, MAKE (manual 3.1).
 
 (in-package :ars-magna.nisp)
 
-(export '(define-nisp-type make-object))
+(export '(define-nisp-type make-object define-nisp-slot slot-ref slot-names))
 
 (public void)
 (deftype void ()
@@ -48,14 +48,6 @@ arguments, or call it with them if it is written #'function. DOCUMENTATION is fo
                         constructor
                         `(lambda ,lambda-list ,constructor))))
 
-(defun takes-p (parameters count)
-  (let* ((keyword (position-if #'lambda-keyword-p parameters))
-         (required (or keyword (length parameters)))
-         (optional (member '&optional parameters)))
-    (cond ((< count required) nil)
-          ((intersection parameters '(&rest &key)) t)
-          (t (<= count (+ required (length (rest optional))))))))
-
 (defun make-object (type &rest arguments)
   "Return a new object of the type called TYPE, made from ARGUMENTS as that type wants them. An
 unknown TYPE and a wrong number of ARGUMENTS are errors."
@@ -66,7 +58,7 @@ unknown TYPE and a wrong number of ARGUMENTS are errors."
                    (sort (loop for type being the hash-values of *nisp-types*
                                when (nisp-type-maker type) collect (nisp-type-name type))
                          #'string<)))
-    (unless (takes-p (nisp-type-parameters known) (length arguments))
+    (unless (takes-count-p (nisp-type-parameters known) (length arguments))
       (reject-use "(make ~A~{ ~S~}): a ~A is made by (make ~A~{ ~(~A~)~})."
                   type arguments (nisp-type-name known)
                   (nisp-type-name known) (nisp-type-parameters known)))
@@ -77,3 +69,153 @@ unknown TYPE and a wrong number of ARGUMENTS are errors."
   "Return a new object of TYPE, a name that is not evaluated, made from ARGUMENTS, such as
 (make PT 1 2) (manual 3.1)."
   `(make-object ',type ,@arguments))
+
+;;;; Slots by name
+
+;;; Slot `x' of any type is read by the generic function ARS-MAGNA.SLOTS::!_X, and set by (SETF
+;;; !_X): dispatch, subtypes and caching are CLOS's. The reader turns !_x and !>p.x into calls
+;;; of it, and a form with a type, !(PT x), into a call of that type's own reader. Structures and
+;;; classes that users define need not be registered: all of their slots can be reached.
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (define-function-class slot-accessor
+    "A function that reads or sets the slot of one name in objects of all types.")
+
+  (defun slot-accessor-name (slot)
+    "Return the symbol that names the accessor of the slot called SLOT."
+    (intern (concatenate 'string "!_" (string slot)) :ars-magna.slots))
+
+  (defun ensure-slot-accessor (slot)
+    "Return the name of the accessor of the slot called SLOT, defining it if need be."
+    (let ((name (slot-accessor-name slot)))
+      (unless (fboundp name)
+        (ensure-generic-function `(setf ,name) :lambda-list '(value object)
+                                               :generic-function-class 'slot-accessor)
+        (ensure-generic-function name :lambda-list '(object)
+                                      :generic-function-class 'slot-accessor
+                                      :documentation "Return the slot of OBJECT with this name."))
+      name)))
+
+;;; Which slots there are.
+
+(defun class-slots (class)
+  "Return an alist from names to readers of the slots of CLASS, inherited ones last."
+  (loop for class in (class-ancestors class)
+        for type = (find-nisp-type (class-name class))
+        when (and type (eq (nisp-type-class type) (class-name class)))
+          append (nisp-type-slots type)))
+
+(defun users-class-p (class)
+  "True if CLASS is neither ours nor Lisp's: then its slots are open to programs."
+  (let ((package (symbol-package (class-name class))))
+    (and (typep class '(or structure-class standard-class))
+         package
+         (not (package-locked-p package))
+         (not (starts-with-subseq "ARS-MAGNA." (package-name package))))))
+
+(defun own-slots (object)
+  "Return the names, symbols, of the slots of OBJECT if its class is a user's."
+  (let ((class (class-of object)))
+    (when (users-class-p class)
+      (class-slot-names class))))
+
+(defun slot-names (object)
+  "Return the names of the slots of OBJECT that programs can reach, as strings."
+  (sort (remove-duplicates (append (mapcar #'car (class-slots (class-of object)))
+                                   (mapcar #'symbol-name (own-slots object)))
+                           :test #'string=)
+        #'string<))
+
+(defun reject-slot (object slot setter)
+  (let ((known (slot-names object)))
+    (when (and setter (member slot known :test #'string=))
+      (reject-use "Slot ~A of a ~A cannot be set." slot (type-of object)))
+    (reject-name (format nil "slot of ~:[a ~A~;NIL~]" (null object)
+                         (let ((type (type-of object)))
+                           (if (symbolp type) (symbol-name type) type)))
+                 slot known)))
+
+(defmethod no-applicable-method ((accessor slot-accessor) &rest arguments)
+  (let* ((object (first (last arguments)))
+         (name (generic-name accessor))
+         (setter (consp name))
+         (slot (subseq (symbol-name (if setter (second name) name)) 2))
+         (own (find slot (own-slots object) :test #'string=)))
+    (cond ((null own) (reject-slot object slot setter))
+          (setter (setf (slot-value object own) (first arguments)))
+          (t (slot-value object own)))))
+
+;;; Registering them.
+
+(defun register-slot (class slot reader)
+  "Remember that READER (a function's name, or NIL) reads the slot called SLOT of CLASS."
+  (let ((type (ensure-nisp-type class))
+        (slot (string slot)))
+    (setf (nisp-type-class type) class
+          (nisp-type-slots type)
+          (acons slot reader (remove slot (nisp-type-slots type) :key #'car :test #'string=)))))
+
+(defun typed-reader (type slot)
+  "Return the name of the function that reads SLOT of the type called TYPE, and sets it with
+SETF if it can be set; the accessor for all types if TYPE has none of its own."
+  (let* ((known (find-nisp-type type))
+         (class (and known (find-class (nisp-type-class known) nil))))
+    (or (and class (cdr (assoc (string slot) (class-slots class) :test #'string=)))
+        (ensure-slot-accessor slot))))
+
+(defmacro define-nisp-slot (type name reader &optional writer)
+  "Let programs reach the slot NAME of objects of TYPE, a class, and of its subtypes. READER is
+the name of a function of the object; WRITER, if the slot can be set, is (SETF READER) or the
+name of a function of the value and the object."
+  (let ((accessor (slot-accessor-name name))
+        (direct (and (symbolp reader)
+                     (if writer
+                         (equal writer `(setf ,reader))
+                         (not (fboundp `(setf ,reader)))))))
+    `(progn
+       (eval-when (:compile-toplevel :load-toplevel :execute)
+         (ensure-slot-accessor ',name))
+       (register-slot ',type ',name ',(and direct reader))
+       (defmethod ,accessor ((object ,type)) (,reader object))
+       ,@(when writer
+           `((defmethod (setf ,accessor) (value (object ,type))
+               ,(if (symbolp writer)
+                    `(,writer value object)
+                    `(setf (,(second writer) object) value)))))
+       ',name)))
+
+;;; Access by a name known at run time.
+
+(defun slot-ref (object slot)
+  "Return the slot of OBJECT called SLOT, a symbol or string. Can be set. A name that its type
+has no slot of is an error that lists those it has."
+  (funcall (ensure-slot-accessor slot) object))
+
+(defun (setf slot-ref) (value object slot)
+  (funcall (fdefinition `(setf ,(ensure-slot-accessor slot))) value object))
+
+(define-compiler-macro slot-ref (&whole form object slot)
+  (let ((accessor (and (typep slot '(cons (eql quote) (cons symbol null)))
+                       (slot-accessor-name (second slot)))))
+    (if (and accessor (fboundp accessor))
+        `(,accessor ,object)
+        form)))
+
+;;;; Points and intervals (manual 3.2.1)
+
+(define-nisp-type pt (x y) #'make-pt
+  "A point or vector in the plane.")
+(define-nisp-slot pt x pt-x (setf pt-x))
+(define-nisp-slot pt y pt-y (setf pt-y))
+
+(define-nisp-type interval (min max) #'make-interval
+  "A number known to be between two others.")
+(define-nisp-slot interval min interval-min (setf interval-min))
+(define-nisp-slot interval max interval-max (setf interval-max))
+
+(define-nisp-type pt-interval (a b) #'make-pt-interval
+  "A box, by its two intervals or by two opposite corners.")
+(define-nisp-slot pt-interval x pt-interval-x (setf pt-interval-x))
+(define-nisp-slot pt-interval y pt-interval-y (setf pt-interval-y))
+(define-nisp-slot pt-interval dx pt-interval-dx)
+(define-nisp-slot pt-interval dy pt-interval-dy)
