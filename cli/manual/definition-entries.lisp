@@ -73,7 +73,7 @@ project's; the file is NIL if it is not known."
               :use (format nil "(~(~S~) value)" (attribute-name attribute))
               :facts (attribute-facts attribute)
               :text "An attribute, which things have and designators tell; see DEFATTRIBUTE."
-              :file (or file "src/world/built-in-attributes.lisp")))
+              :file (or file "src/world/thing.lisp")))
 
 (defun substance-entry (name substance file)
   (make-entry :name (string-downcase name) :chapter :substances

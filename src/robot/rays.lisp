@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-;;; A ray passes from cell to cell (grid-walk.lisp); a fan is a number of evenly spaced rays, turned
+;;; A ray passes from cell to cell (WALK-GRID); a fan is a number of evenly spaced rays, turned
 ;;; into each other by one rotation instead of a sine and a cosine each. Nothing is allocated but
 ;;; a list of the cells that were found. Each is found once: while a scan lasts, the flags of the
 ;;; cells found carry the mark +SEEN+ instead of +OCCUPIED+, so that they are passed like empty

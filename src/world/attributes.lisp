@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.world)
 
-(export '(attribute define-attribute attribute-of built-in-attribute-p attribute-key *attributes*))
+(export '(attribute define-attribute attribute-of built-in-attribute-p attribute-key *attributes*
+          asking-form-p range-p value-limits discrete-p in-domain-p can-be-false-p asks-range-p))
 
 ;;; An attribute is discrete, with a list of possible values, or numeric. Attributes that
 ;;; nobody defined may be stored and matched but are never sensed unasked. Manual 3.3, 3.4.2
@@ -155,3 +156,65 @@ of the possible values, unevaluated. Options, in any order:
   :documentation text -- ours: what the attribute is
 Signals MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment (lambda () (attribute-forms name domain options))))
+
+;;; What may be asked of an attribute: a value, a range, or any of some. Robots and manipulations
+;;; ask in the same words, lists (attribute value [threshold]), manual 3.4.2 and 5.5.1; but a robot
+;;; compares with what it senses, a manipulation with what is so.
+
+(defun asking-form-p (form)
+  "True if FORM is a list (attribute value) or (attribute value threshold), whatever the values of
+that attribute are. A value is an atom or a list that ends, a threshold NIL or not below 0; numbers
+are from -1e15 to 1e15."
+  (and (proper-list-p form)
+       (<= 2 (length form) 3)
+       (first form) (symbolp (first form))
+       (askable-p (second form))
+       (or (null (third form)) (amount-p (third form)))))
+
+(defun askable-p (value)
+  "True if VALUE, an atom or a list that ends, has no number in it that is beyond reason."
+  (if (consp value)
+      (and (proper-list-p value) (every #'askable-p value))
+      (or (not (realp value)) (quantity-p value))))
+
+(defun range-p (value)
+  "True if VALUE is a range: a list of two numbers, the lower one first."
+  (and (number-pair-p value) (<= (first value) (second value))))
+
+(defun value-limits (value)
+  "Return the least and the greatest number that VALUE, a number or a list of two, stands for; NIL
+for anything else."
+  (cond ((realp value) (values value value))
+        ((number-pair-p value) (values (first value) (second value)))))
+
+;;; By attribute; NIL is one that nobody has defined.
+
+(defun discrete-p (attribute)
+  "True if ATTRIBUTE, or NIL, is known to have one of a list of values."
+  (and attribute (eq :discrete (attribute-kind attribute))))
+
+(defun in-domain-p (attribute value)
+  "True if VALUE is one of those that ATTRIBUTE, which is discrete, can have."
+  (and (member value (attribute-domain attribute) :test #'value-equal) t))
+
+(defun can-be-false-p (attribute)
+  "True if for ATTRIBUTE, or NIL, the value NIL means false rather than unspecified."
+  (and attribute (member nil (attribute-domain attribute)) t))
+
+(defun asks-range-p (attribute value)
+  "True if VALUE, asked for of ATTRIBUTE, or NIL, has the shape of a range and means one, not any
+of two values."
+  (and (number-pair-p value) (not (discrete-p attribute))))
+
+(define-facts (attribute attribute)
+  "Values" (if (eq :numeric (attribute-kind attribute))
+               "numbers"
+               (listed (attribute-domain attribute)))
+  "Chance of a right reading" (and (eq :discrete (attribute-kind attribute))
+                                   (attribute-success attribute))
+  "Standard deviation of readings" (and (eq :numeric (attribute-kind attribute))
+                                        (format nil "~A, far away at most ~A times that"
+                                                (attribute-base attribute)
+                                                (attribute-max-mult attribute)))
+  "Chance of being sensed unasked" (attribute-noticed attribute)
+  "Sensed more often when these are asked for" (listed (attribute-supporters attribute)))

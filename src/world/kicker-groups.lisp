@@ -285,3 +285,12 @@ See reading 170."
         (world-dice-set world) (cl:map 'simple-vector (lambda (purpose) (make-dice seed purpose))
                                        +dice-purposes+))
   world)
+
+;;; What can be done about one that fails again and again.
+
+;; An origin that has nobody to blame is of a group that was read ahead.
+(defmethod recurring-code ((origin origin))
+  (recurring-code (origin-attachment origin)))
+
+(defmethod recurring-remedy ((origin origin))
+  (recurring-remedy (origin-attachment origin)))

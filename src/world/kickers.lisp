@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.world)
 
-(export '(*kickers* kicker define-kicker attachment *kicker-generation*))
+(export '(*kickers* kicker define-kicker attachment *kicker-generation* call-put-kicker
+          find-attachment detached-kicker doubt-idle-kickers))
 
 ;;; A KICKER is abstract; an ATTACHMENT is a kicker on a thing. A thing has at most one kicker
 ;;; of each name. Redefining a kicker changes it wherever it is attached: worlds notice by
@@ -135,3 +136,160 @@ Signals MALFORMED-DEFINITION. Return the name."
                    ,@(kicker-functions definition (first lambda-list) options body)
                    :test-attributes ',(attributes-read-in (getf options :test))))
                (variable-forms name))))))
+
+;;; Putting kickers on things and taking them off.
+
+(defun find-attachment (thing name)
+  "Return the kicker called NAME on THING, as attached, or NIL."
+  (find name (thing-kickers thing) :key #'attachment-name :test #'same-name-p))
+
+(defun detached-kicker (thing name)
+  "Return what stands for a kicker called NAME that was on THING, as attached, and is no more."
+  (let ((attachment (make-attachment (make-kicker name) thing)))
+    (setf (attachment-alive-p attachment) nil)
+    attachment))
+
+(defun detach-kicker (thing name)
+  (let ((attachment (find-attachment thing name)))
+    (when attachment
+      (setf (thing-kickers thing) (remove attachment (thing-kickers thing)))
+      (leave-group attachment))))
+
+(defun detach-all-kickers (thing)
+  (mapc #'leave-group (thing-kickers thing))
+  (setf (thing-kickers thing) '()))
+
+(defun attach-kicker (thing kicker)
+  "Put KICKER on THING instead of any other of its name. Return the attachment."
+  (detach-kicker thing (kicker-name kicker))
+  (setf (kicker-checked-p kicker) t)
+  (let ((attachment (make-attachment kicker thing)))
+    (setf (thing-kickers thing) (append (thing-kickers thing) (list attachment)))
+    (when (and (thing-world thing) (thing-alive-p thing))
+      (join-group attachment (thing-world thing)))
+    attachment))
+
+(public set-kicker)
+(defun set-kicker (thing kicker-name)
+  "Attach to THING the kicker called KICKER-NAME, a symbol, or given as itself (manual 5.3.1).
+Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is when it runs.
+See reading 171."
+  (check-argument set-kicker thing (thing-p thing) (argument-type-text 'thing thing))
+  (let ((kicker (find-kicker kicker-name)))
+    (changing ((world-of-living thing) set-kicker thing (kicker-name kicker))
+      (attach-kicker thing kicker))))
+
+(define-operator 'set-kicker '(thing name) #'set-kicker)
+
+(defun call-put-kicker (thing name &key (prob 1) test body)
+  "Do what PUT-KICKER says; without a BODY, remove the kicker NAME."
+  (check-argument put-kicker thing (thing-p thing) (argument-type-text 'thing thing))
+  (let ((kicker (and body (fill-kicker (make-kicker name) (title "put-kicker" name)
+                                       prob test body))))
+    (changing ((world-of-living thing) call-put-kicker thing name
+                        :prob prob :test test :body body)
+      (if kicker
+          (attach-kicker thing kicker)
+          (detach-kicker thing name)))))
+
+(define-operator 'call-put-kicker '(thing name) #'call-put-kicker :rest 'datum)
+
+(public put-kicker)
+(define-user-macro put-kicker (name target &optional options &body body)
+  "Define a kicker NAME for one thing alone, with options as for DEFKICKER, instead of any other of
+that name on it; or, with an empty BODY, remove its kicker NAME, even a global one (manual
+5.3.1). TARGET is (variable thing); the variable is bound to the thing in test and body. Return
+the kicker as attached, if any."
+  (let ((definition (title "put-kicker" name)))
+    (check-name definition name "kicker")
+    (unless (and (proper-list-p target) (= 2 (length target)))
+      (reject-clause definition target "(variable thing)"))
+    (destructuring-bind (variable thing) target
+      (if (every #'null body)
+          `(progn (call-put-kicker ,thing ',name) nil)
+          `(call-put-kicker ,thing ',name
+                            ,@(kicker-functions definition variable options body))))))
+
+;;; What is said of kickers that can never run.
+
+;;; All threads that run worlds share kickers. The slots CHECKED-P and TEST-OUTCOME change in one
+;;; direction only, by single writes, so a race can at most repeat a warning.
+
+(defun code-names-p (name package)
+  "True if the code of a function whose name is in PACKAGE, or of another kicker, has NAME, that of
+a kicker, in it."
+  (flet ((names-it-p (function) (member name (code-references function))))
+    (or (loop for kicker in (all-kickers)
+                thereis (and (not (eq name (kicker-name kicker)))
+                             (names-it-p (kicker-body kicker))))
+        (and package
+             (do-symbols (symbol package)
+               (when (and (users-symbol-p symbol) (fboundp symbol)
+                          (not (macro-function symbol))
+                          (names-it-p (fdefinition symbol)))
+                 (return t)))))))
+
+(defun perhaps-used-p (entry world)
+  "True if a program may put the kicker of ENTRY on things of WORLD: a function names it, or it is
+from another file than the map, or named there more than once."
+  (let ((name (entry-name entry)) (file (source-file (entry-source entry)))
+        (map-entry (lookup-entry (map-name (world-map world)) *maps*)))
+    (if file
+        (not (and map-entry
+                  (equal file (source-file (entry-source map-entry)))
+                  (eql 1 (count-in-file (name-string name) file))))
+        (code-names-p name (symbol-package name)))))
+
+(defun doubt-unused-kicker (entry world)
+  "Say if the kicker of ENTRY is new, no program seems to use it, and nothing in WORLD has it, nor
+will by any map."
+  (let ((kicker (entry-object entry)))
+    (unless (or (shiftf (kicker-checked-p kicker) t)
+                (perhaps-used-p entry world)
+                (some (lambda (map) (on-map-p kicker map)) (all-maps)))
+      (warn-once (list :kicker (kicker-name kicker)) world
+                 (format nil "No thing has the kicker ~(~A~), so it never ran. Attach it: ~
+                              (obj (NAME :kickers (~:*~(~A~))) ...) in the map, or ~
+                              (set-kicker THING '~:*~(~A~))."
+                         (kicker-name kicker))))))
+
+(defun doubt-untrue-kicker (kicker world)
+  "Say if KICKER is on a thing of WORLD, and its test was never true and asks for what nothing has."
+  (let ((key (and (eq :no (kicker-test-outcome kicker))
+                  (some-kicker (lambda (each) (eq each kicker)) world)
+                  (find-if-not (lambda (key) (or (attribute-of key) (carried-p key world)))
+                               (kicker-test-attributes kicker)))))
+    (when key
+      (warn-once (list :kicker (kicker-name kicker)) world
+                 (format nil "The :test of the kicker ~(~A~) was never true. It reads ~(~S~), ~
+                              which no thing here has and no DEFATTRIBUTE declares."
+                         (kicker-name kicker) key)))))
+
+(defun doubt-idle-kickers (world)
+  "Say, when a run in WORLD ends, which kickers were most likely meant to do something in it, and
+cannot."
+  (dolist (entry (registry-entries *kickers*))
+    (doubt-unused-kicker entry world)
+    (doubt-untrue-kicker (entry-object entry) world)))
+
+;;; What can be done about a kicker that fails again and again.
+
+(defun where-to-mend (attachment)
+  (let* ((kicker (attachment-kicker attachment))
+         (file (function-file (kicker-body kicker))))
+    (cond (file (format nil "in ~A, and load that again" file))
+          ((eq kicker (find-kicker (kicker-name kicker) nil)) "by DEFKICKER")
+          (t "by PUT-KICKER"))))
+
+(defmethod recurring-code ((attachment attachment))
+  (kicker-body (attachment-kicker attachment)))
+
+(defmethod recurring-remedy ((attachment attachment))
+  (let ((name (attachment-name attachment)))
+    (format nil "Mend the kicker ~A ~A; or take it off: ~
+                 (put-kicker ~(~A~) (thing (find-thing \"~A\")))."
+            name (where-to-mend attachment) name (attachment-thing attachment))))
+
+(define-facts (kicker kicker)
+  "Chance in a tick" (kicker-prob kicker)
+  "Only when its test holds" (and (kicker-test kicker) "yes"))

@@ -81,6 +81,9 @@ Return the name."
         ((symbolp value) (substance-parameter value))
         (t (double (second value)))))
 
+(define-facts (substance substance)
+  "Parameter" (substance-%parameter substance))
+
 ;;; Our choice; the manual's session views the inside of a wooden box as about 120.
 
 (public wood metal bricks slate)

@@ -2,7 +2,76 @@
 
 (in-package :ars-magna.world)
 
-(export '(thing thing-holders-text value-like note-unknown-substance))
+(export '(location-contents location-position location-world location-closed-p location-full-p
+          location-name location-words thing thing-holders-text value-like note-unknown-substance))
+
+;;; The location of a thing is :FLOOR (then it has a position of its own), something that
+;;; holds it -- a thing or, in the layer above, a hand or storage bin -- or NIL: nowhere, as
+;;; for prototypes and what has been destroyed. What holds things answers these questions.
+
+(defgeneric location-contents (location)
+  (:documentation "Return the list of things directly in LOCATION, a thing, hand or storage bin,
+in order of arrival. Can be set; the setter does not touch the things."))
+
+(defgeneric (setf location-contents) (things location))
+
+(defgeneric location-position (location)
+  (:documentation "Return, as two values, the coordinates x and y of LOCATION, in metres."))
+
+(defgeneric location-world (location)
+  (:documentation "Return the world that LOCATION is in, or NIL."))
+
+(defgeneric location-closed-p (location)
+  (:documentation "True if nothing can be kicked, put or taken out of LOCATION: a closed thing or
+storage bin."))
+
+(defgeneric location-full-p (location)
+  (:documentation "True if nothing can be made in LOCATION because it holds as many things as it
+can, whatever their size.")
+  (:method (location)
+    (declare (ignore location))
+    nil))
+
+(defgeneric location-name (location)
+  (:documentation "Return the symbol or string that LOCATION is called, for messages."))
+
+(defgeneric location-words (location)
+  (:documentation "Return what LOCATION is called in the middle of a sentence, and whose it is.")
+  (:method (location) (location-name location)))
+
+(addition remaining-capacity)
+(defgeneric remaining-capacity (location)
+  (:documentation "Return, in units of size, how much can still be put into LOCATION: its capacity
+less the sizes of what is directly in it (a double-float, at least 0). Signals WRONG-ARGUMENT.")
+  (:method (location)
+    (check-argument remaining-capacity location nil "a thing, hand or storage bin")))
+
+;;; The attributes that the simulator itself knows (manual, table 3.3). The manual gives the sensing
+;;; parameters of :color and :size and the supporters of :capacity. The rest are our choice: what
+;;; blocks the way or the view, or is closed, is plain to see if one looks for it; weight and
+;;; capacity are guesses from afar; a substance that is a symbol is read right in :success of all
+;;; cases.
+
+;; As reading 121 says.
+(defattribute :obsmove (t nil)
+  :success .95 :noticed .3 :supported-by (:size :weight))
+(defattribute :obsview (t nil)
+  :success .95 :noticed .5 :supported-by (:size))
+(defattribute :closed (t nil)
+  :success .9 :noticed .3 :supported-by (:capacity))
+(public red green blue violet lightred lightblue lightgreen lightviolet)
+(defattribute :color (red green blue violet lightred lightblue lightgreen lightviolet)
+  :success .4 :noticed .4 :supported-by (:substance))
+(defattribute :size numeric
+  :base .8 :max-mult 4 :noticed .7 :supported-by (:capacity :obsview :weight))
+(defattribute :weight numeric
+  :base .5 :max-mult 4 :noticed .2 :supported-by (:size :substance))
+(defattribute :capacity numeric
+  :base .6 :max-mult 4 :noticed .3 :supported-by (:size :weight))
+(defattribute :substance numeric
+  :success .8 :base 1 :max-mult 3 :noticed .5 :supported-by (:color))
+
+(setf *built-in-attributes* (defined-names *attributes*))
 
 ;;; The attributes of a thing are an object descriptor (manual 3.3): a list of lists (key
 ;;; value), replaced and never altered in place. Those that physics needs are cached in typed

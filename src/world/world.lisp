@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.world)
 
-(export '(world do-cell world-rank-count thing-of-rank do-things))
+(export '(world do-cell world-rank-count thing-of-rank do-things change-world changing writing
+          first-time-p said-p note-looked-after looked-after-p warn-once doubt-angle))
 
 ;;; A world is made fresh from its map's recipe. Nothing in it depends on anything but the map
 ;;; and the seed. Serial numbers count from 1 in order of creation, so that things in order of
@@ -131,3 +132,99 @@ in order of arrival. NIL outside the map. Signals WRONG-ARGUMENT."
     (when index
       (do-cell (thing index world) (push thing things)))
     (nreverse things)))
+
+;;; Changes.
+
+;;; Whoever runs a world changes it within its ticks: kickers, events, commands. What users do from
+;;; anywhere else goes to the world's owner, its timeline, by one generic function: the layer above
+;;; sends it to the thread that may do it, and notes it in the journal. A world says which thread
+;;; is changing it; so nobody else has to.
+
+(defgeneric change-world (timeline world function operator arguments)
+  (:documentation
+   "Make a change to WORLD, whose timeline is TIMELINE, by calling FUNCTION with no arguments, where
+and when that is allowed, and return its values. It is what the operator called OPERATOR, a symbol,
+does with the list ARGUMENTS.")
+  (:method ((timeline null) world function operator arguments)
+    (declare (ignore world operator arguments))
+    (funcall function)))
+
+(declaim (inline writing-p))
+(defun writing-p (world)
+  "True if this thread is changing WORLD, or there is no world to change."
+  (or (null world)
+      (eq (world-writer (the world world)) (current-thread))))
+
+(defun call-writing (function world)
+  "Call FUNCTION, which may change WORLD. Called by its owner."
+  (let ((before (world-writer world)))
+    (setf (world-writer world) (current-thread))
+    (unwind-protect (funcall function)
+      (setf (world-writer world) before))))
+
+(defmacro writing ((world) &body body)
+  "Run BODY, in which this thread may change WORLD. Only its owner may do so."
+  `(flet ((write-it () ,@body))
+     (declare (dynamic-extent #'write-it))
+     (call-writing #'write-it ,world)))
+
+(defun world-of-living (thing)
+  "Return the world that THING is in, or NIL if it is a prototype or has been destroyed, so that
+what becomes of it is nobody's business."
+  (and (thing-alive-p thing) (thing-world thing)))
+
+(defmacro changing ((world operator &rest arguments) &body body)
+  "Run BODY, which changes WORLD (NIL: nobody's, as of prototypes), where that is allowed; it is
+what OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside ticks."
+  (once-only (world)
+    `(flet ((change-it () ,@body))
+       (if (writing-p ,world)
+           (change-it)
+           ;; A closure of its own, so that none is made above.
+           (change-world (world-timeline ,world) ,world (lambda () (change-it))
+                         ',operator (list ,@arguments))))))
+
+;;; Warnings.
+
+;;; What is allowed, but most likely not what the user wanted, is said once: further warnings about
+;;; the same name would only hide others. Saved runs know a world's slots by name: NOTED-NAMES has
+;;; all that has been said, though it began with names of attributes.
+
+;;; Plans of live runs warn in a thread of their own: NOTED-NAMES is read and changed under a lock.
+
+(defvar *saying-lock* (make-lock "what has been said"))
+
+(defun said-p (key world)
+  "True if a warning about KEY has been queued in the run of WORLD."
+  (with-lock (*saying-lock*)
+    (and (member key (world-noted-names world) :test #'equal) t)))
+
+(defun first-time-p (key world)
+  "True if nothing has been said yet about KEY in the run of WORLD; from now on it has."
+  (with-lock (*saying-lock*)
+    (unless (member key (world-noted-names world) :test #'equal)
+      (push key (world-noted-names world))
+      t)))
+
+(defun note-looked-after (world)
+  "Note that the program has looked itself at what was under way in the run of WORLD."
+  (first-time-p '(:looked-after) world))
+
+(defun looked-after-p (world)
+  "True if the program has looked itself at what was under way in the run of WORLD."
+  (said-p '(:looked-after) world))
+
+(defun warn-once (key world items &key (notable t))
+  "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had one about KEY,
+such as a list of a topic and a name. It is shown like an error if nobody reads it and NOTABLE is
+true, or a function that returns true by then. Return true if it was queued."
+  (when (first-time-p key world)
+    (queue-message (make-message :warning (ensure-list items) :notable-p notable) *message-queue*)
+    t))
+
+(defun doubt-angle (operator world angle)
+  "Say once for OPERATOR, a symbol or string, in WORLD if ANGLE, in radians, was perhaps meant in
+degrees."
+  (when (perhaps-degrees-p angle)
+    (warn-once (list :angle operator) world
+               (format nil "~(~A~): ~A" operator (degrees-advice angle)))))

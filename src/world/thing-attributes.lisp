@@ -1,0 +1,259 @@
+;;;; thing-attributes.lisp -- reading and setting the attributes of things, and slips in them (5.3).
+
+(in-package :ars-magna.world)
+
+(export '(note-strange-name warn-of-slips))
+
+(defun carried-p (key world)
+  "True if any thing of WORLD says something of the attribute KEY."
+  (do-things (thing world)
+    (when (assoc key (thing-attributes thing) :test #'eq)
+      (return-from carried-p t))))
+
+;;; What programs ask of a thing, or give it, many a time: of most names it is known what they may
+;;; be slips for. What is asked for may also be a slip for what a thing has that nobody declared.
+
+(define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
+  "For names that are not declared, the name that each may be a slip for, or NIL.")
+
+(defun carried-name-like (key world)
+  "Return the name of an undeclared attribute, of a thing of WORLD, for which KEY may be a slip; or
+NIL."
+  (do-things (thing world)
+    (loop for (other) in (thing-attributes thing)
+          when (and (not (attribute-of other)) (resembles-p key other))
+            do (return-from carried-name-like other))))
+
+(defun known-likeness (key world)
+  "Return the name, declared or had by a thing of WORLD, for which KEY, undeclared, may be a slip."
+  (multiple-value-bind (like known-p) (gethash key *likenesses*)
+    (if known-p
+        like
+        (setf (gethash key *likenesses*)
+              (or (declared-name-like key) (carried-name-like key world))))))
+
+(defun note-slip (operator thing key &key read)
+  "Warn, once, if OPERATOR was given KEY for an attribute of THING, in a world, which is declared by
+nobody, had by nothing, and looks like a declared one or, if it is READ, like one that is had."
+  (let ((world (thing-world thing)))
+    (when (and world (not (attribute-of key)))
+      (let ((like (known-likeness key world)))
+        (when (and like
+                   (or read (declared-name-like key))
+                   (not (said-p key world))
+                   (not (carried-p key world)))
+          (warn-once key world
+                     (format nil "~(~A~) of ~(~A~): ~(~S~) is not declared, and nothing here has ~
+                                  it; did you mean ~(~S~)?"
+                             operator (thing-name thing) key like)))))))
+
+(public get-attribute)
+(settable get-attribute)
+(defun get-attribute (thing attribute)
+  "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
+which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it, as SORT does. An
+ATTRIBUTE that may be a slip for one that is declared or that a thing has gets a warning, once in a
+run."
+  (check-argument get-attribute thing (thing-p thing) (argument-type-text 'thing thing))
+  (let* ((key (attribute-key attribute))
+         (entry (assoc key (thing-attributes thing) :test #'eq)))
+    (unless entry (note-slip 'get-attribute thing key :read t))
+    (second entry)))
+
+(defun merge-descriptors (new old)
+  "Return the object descriptor OLD with what NEW says instead; order as in OLD, then as in NEW."
+  (append (loop for entry in old
+                collect (or (assoc (first entry) new :test #'eq) entry))
+          (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
+
+(defun refresh-physics (thing)
+  "Make the cached slots of THING agree with its attributes."
+  (flet ((number-of (key)
+           (let ((value (get-attribute thing key))) (if (realp value) (double value) 0d0)))
+         (truth-of (key) (and (get-attribute thing key) t)))
+    (setf (thing-obsmove-p thing) (truth-of :obsmove)
+          (thing-obsview-p thing) (truth-of :obsview)
+          (thing-closed-p thing) (truth-of :closed)
+          (thing-size thing) (number-of :size)
+          (thing-weight thing) (number-of :weight)
+          (thing-capacity thing) (number-of :capacity)
+          (thing-substance-p thing) (truth-of :substance)
+          (thing-substance-parameter thing)
+          (substance-value-parameter (get-attribute thing :substance)))))
+
+;;; Setting.
+
+(defun change-attributes (thing descriptor)
+  "Give THING the attributes in DESCRIPTOR and make caches and flags agree."
+  (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
+  ;; What REFRESH-PHYSICS reads.
+  (when (intersection '(:obsmove :obsview :closed :size :weight :capacity :substance)
+                      (mapcar #'first descriptor))
+    (refresh-physics thing)
+    (when (eq (thing-location thing) :floor)
+      (set-mark thing (world-stock (thing-world thing)))
+      (refresh-cell-flags (thing-world thing) (thing-index thing)))))
+
+(defun checked-entry (operator name value)
+  (let ((key (attribute-key name)))
+    (check-attribute-value operator key value)
+    (list key (if (eq key :draw-function) (draw-function-said value) value))))
+
+(defun normal-descriptor (operator descriptor)
+  "Return the object descriptor DESCRIPTOR with keywords as names, a copy. Signals WRONG-ARGUMENT."
+  (unless (descriptor-p descriptor)
+    (reject-argument operator "descriptor" descriptor
+                     "a list of lists (attribute value), each attribute once"))
+  (loop for (name value) in (given operator "descriptor" descriptor)
+        collect (checked-entry operator name value)))
+
+(defun descriptor-p (object)
+  (and (proper-list-p object)
+       (loop for entry in object
+             always (and (proper-list-p entry) (= 2 (length entry))
+                         (first entry) (symbolp (first entry))))
+       (loop for ((name) . rest) on object
+             never (find name rest :key #'first :test #'same-name-p))))
+
+(public set-attribute)
+(defun set-attribute (thing attribute new-value)
+  "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
+or unspecified. Of lists, strings and vectors THING gets copies. Signals WRONG-ARGUMENT for a value
+that the attribute cannot have. Warns as GET-ATTRIBUTE does."
+  (check-argument set-attribute thing (thing-p thing) (argument-type-text 'thing thing))
+  (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
+  (let ((descriptor (if (typep new-value '(or symbol number))
+                        (list (checked-entry 'set-attribute attribute new-value))
+                        (normal-descriptor 'set-attribute (list (list attribute new-value))))))
+    (note-slip 'set-attribute thing (first (first descriptor)))
+    (changing ((world-of-living thing) set-attribute
+               thing attribute (second (first descriptor)))
+      (change-attributes thing descriptor)))
+  new-value)
+
+(defun set-attribute-again (thing attribute new-value)
+  (call-with-data #'set-attribute thing attribute new-value))
+
+(define-operator 'set-attribute '(thing name datum) #'set-attribute-again)
+
+(defun (setf get-attribute) (new-value thing attribute)
+  (set-attribute thing attribute new-value))
+
+(public change-attribute)
+(defun change-attribute (thing descriptor)
+  "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
+(manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
+  (check-argument change-attribute thing (thing-p thing) (argument-type-text 'thing thing))
+  (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
+    (loop for (key) in descriptor do (note-slip 'change-attribute thing key))
+    (changing ((world-of-living thing) change-attribute thing descriptor)
+      (change-attributes thing descriptor)))
+  thing)
+
+(defun change-attribute-again (thing descriptor)
+  (call-with-data #'change-attribute thing descriptor))
+
+(define-operator 'change-attribute '(thing datum) #'change-attribute-again)
+
+;;; Slips of the pen.
+
+;;; Things may have attributes that no DEFATTRIBUTE declares, and specifications may ask for them.
+;;; A name that looks like a declared one is remarked on where a thing is defined; one that no
+;;; thing of the world has, where it is asked for, once in a run.
+
+(defparameter *options-of-things*
+  '((:prototype "(obj (~A :prototype box) ...)" "(new-thing ~A place (...) :prototype box)")
+    (:kickers "(obj (~A :kickers (sway)) ...)" "(make-new-thing '~A place '(...) :kickers '(sway))")
+    (:contents "(obj ~A (x y) (...) thing...)" "(make-new-thing '~A place '(...) :contents list)"))
+  "What is said of a thing beside its attributes: the option, and how it is written in a map and on
+the fly.")
+
+(defun option-called (name)
+  "Return what *OPTIONS-OF-THINGS* says of the option that NAME, an attribute's, is or is a slip
+for; or NIL."
+  (let ((key (attribute-key name)))
+    (or (assoc key *options-of-things*)
+        (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
+
+(defun slips-in (descriptor)
+  "Return a list of lists (name like): the names in the object DESCRIPTOR that are not declared, but
+may be slips for the declared name LIKE, or, if that is NIL, are options of things."
+  (loop for (name) in descriptor
+        for like = (declared-name-like name)
+        when (or like (option-of-things-p name))
+          collect (list name like)))
+
+(defun option-of-things-p (name)
+  "True if NAME, an attribute's, is that of an option, and no attribute is declared so."
+  (and (option-called name) (not (attribute-of (attribute-key name)))))
+
+(defun text-of-slip (thing-name slip &optional map-p)
+  "Return in words what the thing has that is no attribute, and how it is written, in a map if
+MAP-P."
+  (destructuring-bind (name like &aux (option (option-called name))) slip
+    (if like
+        (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
+                thing-name name like)
+        (format nil "~(~A~) has ~(~S~) among its attributes, where it does nothing; write ~@?"
+                thing-name name (if map-p (second option) (third option))
+                (string-downcase thing-name)))))
+
+(defun warn-of-slips (definition name descriptor &key clause)
+  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION, in its CLAUSE if it is a
+map's."
+  (dolist (slip (slips-in descriptor))
+    (warn-of-definition "~A~@[ (~A)~]: ~A" definition
+                        (clause-place (or clause (assoc (first slip) descriptor)))
+                        (text-of-slip name slip clause))))
+
+(defun note-slips (name descriptor world)
+  "Warn, once, of what may be slips in DESCRIPTOR of the thing NAME, made on the fly in WORLD."
+  (dolist (slip (slips-in descriptor))
+    (warn-once (first slip) world (text-of-slip name slip))))
+
+(defun note-strange-name (key world)
+  "Warn, once, if the attribute KEY of a specification is declared by nobody and had by nothing."
+  (unless (or (attribute-of key)
+              (said-p key world)
+              (carried-p key world))
+    (warn-once key world
+               (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~
+                            ~]~:[~;: that is what a thing is made with, and no attribute~]"
+                       key (declared-name-like key) (option-of-things-p key)))))
+
+;;; An attribute that is declared anew may no longer have the values that things have.
+
+(defun value-trouble (key value)
+  "Return what is wrong with VALUE for the attribute KEY, a string, or NIL."
+  (handler-case (progn (check-attribute-value 'defattribute key value) nil)
+    (wrong-argument (condition) (princ-to-string condition))))
+
+(defun unfit-recipe (recipes key)
+  "Return the first of RECIPES, or of those in them, whose things have a value that KEY cannot have;
+and what is wrong with it."
+  (find-recipe (lambda (recipe)
+                 (value-trouble key (second (assoc key (recipe-attributes recipe) :test #'eq))))
+               recipes))
+
+(defmethod attribute-redefined :before (old new)
+  (declare (ignore old new))
+  (clrhash *likenesses*))
+
+(defmethod attribute-redefined ((old attribute) new)
+  (dolist (map (all-maps))
+    (multiple-value-bind (recipe trouble)
+        (unfit-recipe (map-things map) (attribute-name new))
+      (when (and recipe (not (from-this-file-p (map-name map) *maps*)))
+        (warn-of-definition "In map ~(~A~), ~(~A~) has a value that it could not be given any ~
+                             more: ~A"
+                            (map-name map) (recipe-name recipe) trouble)))))
+
+(define-facts (thing thing)
+  "Where" (let ((location (thing-location thing)))
+            (cond ((null location) "nowhere")
+                  ((eq location :floor)
+                   (format nil "(~,2F,~,2F)" (thing-x thing) (thing-y thing)))
+                  (t (thing-holders-text thing))))
+  "Attributes" (thing-attributes thing)
+  "Contents" (listed (thing-contents thing))
+  "Kickers" (listed (mapcar #'attachment-name (thing-kickers thing))))
