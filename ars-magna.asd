@@ -47,13 +47,11 @@
                  (:file "asking") (:file "pacing") (:file "stopping") (:file "clock")
                  (:file "schedule") (:file "soundness")))
    (:module "src/robot" :serial t
-    :components ((:file "package") (:file "blueprint") (:file "parts") (:file "planned-way")
-                 (:file "odometer") (:file "corners") (:file "sweeping") (:file "sight")
-                 (:file "reach") (:file "designator") (:file "motion") (:file "place-sense")
-                 (:file "tracks") (:file "new-designators") (:file "inside") (:file "making")
-                 (:file "retiring") (:file "defrobot") (:file "own-changes") (:file "rays")
-                 (:file "visibility") (:file "noise") (:file "matching") (:file "sightings")
-                 (:file "scanning") (:file "views") (:file "tending") (:file "soundness")))
+    :components ((:file "package") (:file "parts") (:file "odometer") (:file "sight")
+                 (:file "designator") (:file "motion") (:file "tracks") (:file "inside")
+                 (:file "making") (:file "defrobot") (:file "own-changes") (:file "rays")
+                 (:file "matching") (:file "sightings") (:file "scanning") (:file "tending")
+                 (:file "soundness")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command") (:file "steps") (:file "error-codes")
                  (:file "failing") (:file "operation") (:file "issuing") (:file "ownership")

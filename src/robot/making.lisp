@@ -1,8 +1,9 @@
-;;;; making.lisp -- robots, made by their blueprints and put back to their start (manual 5.2).
+;;;; making.lisp -- robots made by their blueprints, put back, and retired (manual 5.2).
 
 (in-package :ars-magna.robot)
 
-(export '(blueprint-robot make-robot robot-of-blueprint start-trouble))
+(export '(blueprint-robot make-robot robot-of-blueprint start-trouble check-in-run retire-robot
+          close-robot settle-robot resident-p))
 
 ;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
 ;;; name; a fresh simulation makes another by the same blueprint.
@@ -96,3 +97,113 @@ See reading 215."
 
 (defmethod reset :after ((robot robot))
   (stand-at-start robot))
+
+;;; Retiring.
+
+;;; A robot is retired when its definition, its map or its run is replaced. What it was doing is
+;;; interrupted; whoever still holds it and commands it is told so.
+
+(defun retire-robot (robot reason)
+  "Let ROBOT take no more commands, for REASON, a sentence without its full stop."
+  (setf (robot-retired robot) reason))
+
+(defun close-robot (robot)
+  "Tell those who asked for it that the run of ROBOT is over."
+  (call-each #'funcall (shiftf (robot-enders robot) '())))
+
+(defun check-in-run (resource operator)
+  "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
+  (let ((robot (if (robot-p resource) resource (part-robot resource))))
+    (when (robot-retired robot)
+      (reject-outlived "~(~A~): the run of this ~(~A~) is over: ~A.~@[ Command the robot that the ~
+                        variable ~(~A~) holds now.~]"
+                       operator (robot-name robot) (robot-retired robot)
+                       (and (successor robot) (robot-name robot))))))
+
+(defun successor (robot)
+  "Return the robot that is called as ROBOT, which is retired, and takes commands, or NIL."
+  (let ((other (find-robot (robot-name robot) nil)))
+    (and other (null (robot-retired other)) other)))
+
+(defun robots-called (name)
+  "Return the robots whose name is the symbol NAME in the worlds that top-level code works in."
+  (loop for map in (all-maps)
+        append (and (map-resident map)
+                    (remove name (world-robots (map-resident map))
+                            :key #'robot-name :test-not #'eq))))
+
+(defun interrupt-robot (robot)
+  "Interrupt all that ROBOT and its parts are doing. Called by the owner of its world."
+  (abandon (timeline-of robot) (robot-resources robot)))
+
+(defun take-out (robot reason)
+  "Retire ROBOT, interrupt what it is doing, and take it out of its world."
+  (let ((world (robot-world robot)))
+    (deferring-interrupts
+      (in-any-case
+        (retire-robot robot reason)
+        (close-robot robot)
+        (interrupt-robot robot)
+        (setf (world-robots world) (remove robot (world-robots world)))))))
+
+(defun ask-owner (world function)
+  "Call FUNCTION where WORLD stands still."
+  (ask (ensure-timeline world) function))
+
+(defun take-out-all (name reason)
+  "Take all robots called NAME out of the worlds that top-level code works in."
+  (dolist (robot (robots-called name))
+    (ask-owner (robot-world robot) (lambda () (take-out robot reason)))))
+
+(defun robot-made-by (blueprint world)
+  "Return the robot in WORLD that was made by BLUEPRINT and is not retired, or NIL."
+  (find-if (lambda (robot)
+             (and (eq blueprint (robot-blueprint robot)) (null (robot-retired robot))))
+           (world-robots world)))
+
+(defun settle-in (world blueprint)
+  "Return the robot in WORLD made by BLUEPRINT, the only one of its name; this thread owns WORLD."
+  (or (robot-made-by blueprint world)
+      (progn
+        (dolist (robot (world-robots world))
+          (when (eq (robot-name robot) (blueprint-name blueprint))
+            (take-out robot "it has been defined anew")))
+        (make-robot blueprint world))))
+
+(defun resident-p (world)
+  "True if WORLD is the one that top-level code works in, of a map that no other has replaced."
+  (let ((map (world-map world)))
+    (and (eq world (map-resident map))
+         (eq map (find-map (map-name map) nil)))))
+
+;; Another thread may settle the same robot meanwhile: who owns the world decides. It may also have
+;; put another world in the place of this one: then that is the one to settle in.
+(defun settle-robot (blueprint)
+  "Put a robot made by BLUEPRINT into the resident world of its map, instead of any that was made by
+an earlier definition of its name, and return it; the one that is there already, if any."
+  (loop
+    (let ((world (map-resident-world (find-map (blueprint-map blueprint)))) (robot nil))
+      (check-start blueprint (world-map world))
+      (unless (robot-made-by blueprint world)
+        (take-out-all (blueprint-name blueprint) "it has been defined anew"))
+      (ask-owner world (lambda ()
+                         (when (resident-p world) (setf robot (settle-in world blueprint)))))
+      (when robot (return robot)))))
+
+(defmethod take-back ((blueprint blueprint))
+  (take-out-all (blueprint-name blueprint) "its definition has been taken back"))
+
+(defun in-order-of-definition (robots)
+  "Return ROBOTS in the order in which they were defined."
+  (sort (copy-list robots) #'<
+        :key (lambda (robot)
+               (or (position (robot-name robot) (all-blueprints) :key #'blueprint-name) -1))))
+
+(defmethod reinstate ((blueprint blueprint))
+  (let ((robot (blueprint-robot blueprint)))
+    (when (robot-p robot)
+      (let ((world (robot-world robot)))
+        (setf (robot-retired robot) nil
+              (world-robots world) (in-order-of-definition
+                                    (adjoin robot (world-robots world)))))))
+  blueprint)

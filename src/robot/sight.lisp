@@ -1,8 +1,63 @@
-;;;; sight.lisp -- whether one point can be seen from another (manual 3.4.3).
+;;;; sight.lisp -- what can be seen from a point, and what is next to a robot.
 
 (in-package :ars-magna.robot)
 
-(export '(line-clear-p in-sight-p))
+(export '(line-clear-p in-sight-p within-reach-p in-same-cell-p reached-p))
+
+;;; Much stands at whole coordinates, so lines that pass exactly where four cells meet are common,
+;;; and rounding would decide which of the two cells beside the corner they meet. They meet neither:
+;;; a line goes on if one of the two lets it through. Two that touch at the corner close it, so that
+;;; oblique walls have no holes. What moves and what sees agree on this (manual 2.1).
+
+(declaim (inline whole-part))
+(defun whole-part (x)
+  (declare (type double-float x))
+  (the fixnum (floor (the (double-float -1d9 1d9) x))))
+
+(declaim (inline within-cell))
+(defun within-cell (coordinate cell)
+  "Return COORDINATE, or the nearest inside CELL if rounding took it out."
+  (declare (type double-float coordinate) (type fixnum cell))
+  ;; The number before the far border is the greatest that is less.
+  (max (float cell 1d0)
+       (min coordinate (* (float (1+ cell) 1d0) (- 1d0 double-float-negative-epsilon)))))
+
+(define-constant +contact-gap+ 1d-6
+  :documentation "How far from what blocks it a robot stops, in metres. No farther than this from a
+corner, along either axis, a line passes through it.")
+
+(define-constant +blocking+ (logior +wall+ +obsmove+)
+  :documentation "The flags of a cell that keeps robots out.")
+
+(defun closed-cell-p (world x y mask)
+  "True if the cell of WORLD that holds (X,Y) has a flag of MASK, or is outside the map."
+  (let ((index (map-index (world-map world) x y)))
+    (or (null index)
+        (logtest mask (aref (world-flags world) index)))))
+
+(defun beyond-corner (world mask x y column row)
+  "If (X,Y) is at a corner of the cell at COLUMN and ROW, and a line from there is not stopped by
+the two cells beside the corner, return the point just beyond it, in the cell opposite, as two
+values; else NIL. Cells with a flag of MASK stop the line."
+  (let ((corner-x (round x)) (corner-y (round y)))
+    (flet ((other (cell corner) (if (= cell corner) (1- corner) corner)))
+      (let ((other-column (other column corner-x)) (other-row (other row corner-y)))
+        (unless (or (> (abs (- x corner-x)) +contact-gap+)
+                    (> (abs (- y corner-y)) +contact-gap+)
+                    (and (closed-cell-p world other-column row mask)
+                         (closed-cell-p world column other-row mask)))
+          (values (within-cell (double corner-x) other-column)
+                  (within-cell (double corner-y) other-row)))))))
+
+(defun past-corner (world mask x y dx dy)
+  "If a line in direction (DX,DY) that is stopped at (X,Y) only meets a corner there and goes on,
+return the point just beyond it, as two values; else NIL. Cells with a flag of MASK stop the line."
+  (flet ((before (position direction)
+           (if (plusp direction) (1- (round position)) (round position))))
+    (unless (or (zerop dx) (zerop dy))
+      (beyond-corner world mask x y (before x dx) (before y dy)))))
+
+;;; Whether one point can be seen from another (manual 3.4.3).
 
 ;;; Sight passes from cell to cell until a wall, or a cell where something on the floor obstructs
 ;;; it. Neither the cell of the eye nor that of the target does. The walk ends after as many borders
@@ -49,3 +104,49 @@ there and goes on beyond it."
           (clear-p (+ left side) top)
           (clear-p left (+ top side))
           (clear-p (+ left side) (+ top side))))))
+
+;;; What is local to a robot, and what it has arrived at (manual 2.1, 3.4.1, 3.5).
+
+;;; Searches, tracks, hands and approaches share one idea of what is next to a robot, that of
+;;; WITHIN-REACH-P. A cell that blocks robots cannot be entered, so all that is in it counts as next
+;;; to a robot that stands at the cell. What a robot has arrived at is always within its reach.
+
+(define-constant +contact+ (* 1.001d0 +contact-gap+)
+  :documentation "No farther than this from a cell, in metres, a robot stands at it: the gap, and
+what rounding adds to it.")
+(define-constant +farthest-reach+ 1.001d0
+  :documentation "No robot reaches farther than this along an axis, in metres.")
+
+(defun in-same-cell-p (robot x y)
+  "True if (X,Y), in metres, is in the cell of ROBOT."
+  (and (= (floor x) (floor (robot-x robot)))
+       (= (floor y) (floor (robot-y robot)))))
+
+(defun at-cell-p (robot x y)
+  "True if ROBOT stands in the cell of (X,Y), or no farther from it than the contact gap."
+  (flet ((gap (position start)
+           (max (- start position) (- position (1+ start)))))
+    (and (<= (gap (robot-x robot) (floor x)) +contact+)
+         (<= (gap (robot-y robot) (floor y)) +contact+))))
+
+(defun within-reach-p (robot x y)
+  "True if (X,Y), in metres, is local to ROBOT: less than a metre away, or in the same cell, or in a
+cell that blocks ROBOT and that it stands at (reading 108)."
+  (let ((dx (- (double x) (robot-x robot))) (dy (- (double y) (robot-y robot))))
+    (declare (type double-float dx dy))
+    (and (<= (abs dx) +farthest-reach+)
+         (<= (abs dy) +farthest-reach+)
+         (or (< (+ (* dx dx) (* dy dy)) 1d0)
+             (in-same-cell-p robot x y)
+             (and (at-cell-p robot x y)
+                  (closed-cell-p (robot-world robot) x y +blocking+))))))
+
+(defun reached-p (robot x y last-step block)
+  "True if ROBOT, which has just driven for a tick, has thereby arrived at (X,Y). LAST-STEP is true
+if it could come that far in the tick; BLOCK, if something blocked it. Nothing may hide what is
+there (reading 108)."
+  (or (in-same-cell-p robot x y)
+      (and (within-reach-p robot x y)
+           (or last-step
+               (and block (at-cell-p robot x y)))
+           (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot) (double x) (double y)))))
