@@ -42,9 +42,8 @@
                  (:file "placing") (:file "recipes") (:file "thing-attributes") (:file "forking")
                  (:file "residents") (:file "defmap") (:file "soundness")))
    (:module "src/time" :serial t
-    :components ((:file "package") (:file "request") (:file "agenda") (:file "interruptions")
-                 (:file "custody") (:file "phases") (:file "timeline") (:file "thinking")
-                 (:file "asking") (:file "pacing") (:file "stopping") (:file "clock")
+    :components ((:file "package") (:file "request") (:file "agenda") (:file "custody")
+                 (:file "timeline") (:file "asking") (:file "pacing") (:file "clock")
                  (:file "schedule") (:file "soundness")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "odometer") (:file "sight")

@@ -3,7 +3,7 @@
 (in-package :ars-magna.cli)
 
 ;;; A thread looks now and then at what the session is at, as that of a live run is watched by its
-;;; own (src/time/stopping.lisp).
+;;; own (src/time/pacing.lisp).
 
 (defparameter *hog-patience* 3
   "How many seconds a batch may be in one call of users' code before that is named.")

@@ -3,7 +3,8 @@
 (in-package :ars-magna.time)
 
 (export '(event agenda make-agenda queue-event queue-again +longest-delay+ cancel-event
-          interrupt-event pending-event advance-agenda pending-events))
+          interrupt-event pending-event advance-agenda pending-events request-name
+          note-interruption interruption))
 
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
 ;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; what lies
@@ -252,3 +253,28 @@ in the order of queueing."
         (activate copy twin)
         (unless (resource-p resource) (claim copy twin (forked resource fork)))
         (shelve copy twin)))))
+
+;;; Whose request was interrupted last on a resource, and by whose.
+
+(defgeneric request-name (request)
+  (:documentation "Return what REQUEST asks for, as people call it.")
+  (:method ((request request)) (request-operator request)))
+
+(define-record (interruption (:constructor make-interruption (tick what asker by by-asker)))
+  "That WHAT, asked for by ASKER, was interrupted in TICK by BY, which BY-ASKER asked for."
+  (tick 0 tick-count "the tick in which it was" :export)
+  (what nil t "the name of what was interrupted" :export)
+  (asker nil t "a note of who had asked for that" :export)
+  (by nil t "the name of what interrupted it" :export)
+  (by-asker nil t "a note of who had asked for that" :export))
+
+(defun note-interruption (request rival tick)
+  "Remember, for people to read, that RIVAL interrupts REQUEST on the resource of that in TICK."
+  (let ((resource (event-resource request)))
+    (when (resource-p resource)
+      (setf (resource-interruption resource)
+            (make-interruption tick
+                               (request-name request) (request-asker request)
+                               (request-name rival) (request-asker rival))))))
+
+(define-shared interruption)

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.time)
 
-(export '(request request-entry perform resource note-asked))
+(export '(request request-entry perform resource note-asked phase-number changing-phase-p
+          telling-phase-p))
 
 ;;; A request names an operator and has its arguments. It waits in a timeline (see timeline.lisp)
 ;;; until a tick begins; then it is performed, in the order of asking. Layers above include the
@@ -48,3 +49,26 @@ the other can tell by that whether somebody else came between" :export)))
 (defun note-asked (resource)
   "Note that RESOURCE is asked for, if it is one that can tell."
   (when (resource-p resource) (atomic-incf (resource-asked resource))))
+
+;;; What the parts of a tick are called.
+
+;;; Phases are counted from 1, and 0 is between ticks. What happens in one the run's tick says. In
+;;; those that change the world a fork does again by itself whatever users' code does there.
+
+(define-constant +phases+
+    '(:requests :events :kickers :settling :continuations :observers :participants :keeping)
+  :test #'equal
+  :documentation "The names of the phases of a tick, in order.")
+
+(defmacro phase-number (name)
+  "Return the number of the phase of a tick that is called NAME, a keyword, not evaluated."
+  (1+ (or (position name +phases+)
+          (reject-name "phase" name +phases+))))
+
+(defun changing-phase-p (phase)
+  "True if the world changes in the phase with the number PHASE."
+  (<= (phase-number :requests) phase (phase-number :settling)))
+
+(defun telling-phase-p (phase)
+  "True if the phase with the number PHASE comes after the world has changed."
+  (<= (phase-number :continuations) phase))
