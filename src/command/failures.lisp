@@ -1,8 +1,119 @@
-;;;; failures.lisp -- which command failed last on a robot, and why: for people to read.
+;;;; failures.lisp -- whose command a robot carries out, and which failed last: for people.
 
 (in-package :ars-magna.command)
 
-(export '(failure-sentences))
+(export '(command-failure under-way-text interruption-text failure-sentences))
+
+(defstruct (command-failure (:conc-name failure-)
+                            (:constructor make-failure
+                                (tick asked command resource arguments asker code text
+                                 interrupter))
+                            (:copier nil))
+  "That COMMAND, asked for after the tick ASKED by ASKER, ended in TICK with the error CODE, of
+which TEXT was the message. INTERRUPTER is a list (name asker) of what interrupted it, if that is
+known."
+  (tick 0 :type fixnum :read-only t)
+  (asked 0 :type fixnum :read-only t)
+  (command nil :type symbol :read-only t)
+  (resource nil :read-only t)
+  (arguments '() :type list :read-only t)
+  (asker nil :read-only t)
+  (code nil :read-only t)
+  (text "" :type string :read-only t)
+  (interrupter '() :type list :read-only t))
+
+(defun interruption-of (request tick)
+  "Return what is known of the interruption of REQUEST just now, when TICK has been counted; or NIL.
+Where requests are carried out, the tick that they begin has not been counted yet."
+  (let ((interruption (resource-interruption (event-resource request))))
+    (and interruption
+         (<= tick (interruption-tick interruption) (1+ tick))
+         (eq (request-name request) (interruption-what interruption))
+         interruption)))
+
+(defun note-failure (robot request code text &key tick asked resource)
+  "Let ROBOT remember that REQUEST, which was asked of RESOURCE after the tick ASKED, ends in TICK
+with the error CODE and the message TEXT."
+  (let ((interruption (and (eq code :interrupt) (interruption-of request tick))))
+    (setf (robot-failure robot)
+          (make-failure (if interruption (interruption-tick interruption) tick)
+                        asked (request-name request) resource (request-arguments request)
+                        (request-asker request) code text
+                        (and interruption
+                             (list (interruption-by interruption)
+                                   (interruption-by-asker interruption)))))))
+
+;;; The newest request always wins, whoever asks: the prompt, a plan, a continuation, a program. So
+;;; whoever drives a robot from several sides at once needs to see who drives it now.
+
+(defmethod request-name ((operation operation))
+  (command-name (operation-command operation)))
+
+(defun mind-of (resource)
+  "Return the mind of RESOURCE if that is a robot, or NIL."
+  (and (robot-p resource) (robot-mind resource)))
+
+(defun occupant (resource)
+  "Return the request that RESOURCE, a robot or part, carries out, also in the background; or NIL."
+  (let ((event (resource-event resource))
+        (track (and (camera-p resource) (camera-tracking resource))))
+    (cond ((typep event 'request) event)
+          (track (track-operation track))
+          ((mind-of resource) (occupant (mind-of resource))))))
+
+(defun newest-interruption (resource)
+  "Return the last interruption on RESOURCE, also of thoughts if it is a robot; or NIL."
+  (let ((own (resource-interruption resource))
+        (thought (and (mind-of resource) (resource-interruption (mind-of resource)))))
+    (cond ((null own) thought)
+          ((null thought) own)
+          ((> (interruption-tick thought) (interruption-tick own)) thought)
+          (t own))))
+
+(defun check-resource (operator resource)
+  (unless (typep resource '(or robot part))
+    (reject-argument operator 'resource resource "a robot, or a part of one")))
+
+(addition under-way)
+(defun under-way (resource)
+  "Return the name of the command that RESOURCE, a robot or part of one, carries out or waits to
+begin, and who asked for it, a string such as \"the prompt\", \"the plan fetch\", \"the continuation
+of robot-turn\" or \"Lisp (main thread)\". A camera that does nothing else but follow something
+carries out CAMERA-TRACK, a robot that does nothing else but think THINK. NIL if there is none. The
+newest command takes a resource over, whoever asks for it."
+  (check-resource 'under-way resource)
+  (let ((occupant (occupant resource)))
+    (when occupant
+      (values (request-name occupant) (note-text (request-asker occupant))))))
+
+(addition last-interruption)
+(defun last-interruption (resource)
+  "Return what was interrupted last on RESOURCE, a robot or part of one, by a newer request: a list
+(what asker by-what by-asker tick), the names of both, strings that say who asked for them, and the
+tick in which it was. A robot's thoughts count. NIL if nothing ever was."
+  (check-resource 'last-interruption resource)
+  (let ((interruption (newest-interruption resource)))
+    (when interruption
+      (list (interruption-what interruption)
+            (note-text (interruption-asker interruption))
+            (interruption-by interruption)
+            (note-text (interruption-by-asker interruption))
+            (interruption-tick interruption)))))
+
+(defun under-way-text (resource)
+  "Return in words what RESOURCE is doing, and for whom; NIL if nothing."
+  (multiple-value-bind (name asker) (under-way resource)
+    (when name (format nil "~(~A~), for ~A" name asker))))
+
+(defun interruption-text (resource)
+  "Return in words what was interrupted last on RESOURCE; NIL if nothing ever was."
+  (let ((interruption (last-interruption resource)))
+    (when interruption
+      (format nil "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"
+              (first interruption) (second interruption) (third interruption)
+              (fourth interruption) (fifth interruption)))))
+
+;;; Which command failed last, in words.
 
 (defun argument-as-typed (argument)
   "Return ARGUMENT of a command as one would type it in Lisp, as far as one can."

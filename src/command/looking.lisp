@@ -1,4 +1,4 @@
-;;;; looking.lisp -- views, and what all commands of cameras say (manual 3.4.3).
+;;;; looking.lisp -- the commands of cameras: views, searches, tracks, turns (3.4.2, 3.4.3).
 
 (in-package :ars-magna.command)
 
@@ -15,3 +15,284 @@
      (:report (view) (format nil "~A sees ~{~,2F~^ ~}" (operation-resource operation) view)))
     "Take a view with CAMERA."
   (succeed operation (take-view camera)))
+
+;;; Searches.
+
+;;; The search itself takes no time once its delay is over, but naming all that was found takes a
+;;; tick for each after the first. What has moved away by then is left out.
+
+(define-argument-type 'designator-type
+  (lambda (value) (member value '(:local :non-local)))
+  ":local or :non-local")
+
+(define-argument-type 'specification #'specification-p
+  "a descriptor specification: a list such as ((:color (red blue)) (:size (3 5) .5)), with values
+that the attributes can have, and of a range the lower end first"
+  #'specification-trouble)
+
+(define-argument-type 'place-type
+  (lambda (value) (and value (typep value '(or symbol string place-type))))
+  "the name of a place type")
+
+(defun found-text (operation designators)
+  (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
+
+(defun name-sightings (camera sightings)
+  "Return designators for those of SIGHTINGS that CAMERA still has. Of more than a robot keeps, the
+first are pushed out by the last."
+  (let ((designators (loop for sighting in sightings
+                           for designator = (designate sighting camera)
+                           when designator collect designator)))
+    (remove-if-not #'designator-valid-p designators)))
+
+(defun designate-first (operation sightings)
+  (let ((designator (first (name-sightings (operation-resource operation) sightings))))
+    (if designator
+        (succeed operation designator)
+        (fail-with operation :designator-not-found))))
+
+(define-step designate-found (operation (and (camera-p (operation-resource operation))
+                                             (proper-list-of-p #'sighting-p
+                                                               (operation-subject operation))))
+  "End OPERATION with designators for all sightings that are its subject."
+  (let ((designators (name-sightings (operation-resource operation) (operation-subject operation))))
+    (if designators
+        (succeed operation designators)
+        (fail-with operation :designator-not-found))))
+
+(defun designate-all (operation sightings)
+  "End OPERATION with designators for all of SIGHTINGS, when it has had the time to name
+them (reading 134)."
+  (setf (operation-subject operation) sightings)
+  (if (rest sightings)
+      (go-on operation 'designate-found (length (rest sightings)))
+      (designate-found operation)))
+
+;;; Places.
+
+(defun place-search-obstacle (camera place-type)
+  "Return the error code that keeps CAMERA from a search for places of PLACE-TYPE, or
+NIL (reading 69)."
+  (let ((type (find-place-type place-type nil)))
+    (cond ((camera-tracking camera) :already-tracking)
+          ((null type) :invalid-place-type)
+          ((place-type-invisible-p type) :invisible-place-type)
+          ((camera-location camera) :camera-enclosed))))
+
+(defun asked-name (place-type)
+  "Return the symbol for PLACE-TYPE, a name or a place type: the very one that was asked for."
+  (if (symbolp place-type)
+      place-type
+      (place-type-name (find-place-type place-type))))
+
+(defun search-for-places (operation camera place-type all)
+  (let ((obstacle (place-search-obstacle camera place-type)))
+    (if obstacle
+        (fail-with operation obstacle)
+        (funcall (if all #'designate-all #'designate-first)
+                 operation
+                 (look-for-places camera (find-place-type place-type) :all all
+                                  :name (asked-name place-type))))))
+
+(define-command camera-get-place-designator (operation (camera camera)
+                                             (place-type place-type "the name of a place type"))
+    ((designator "a designator of a place of that type, non-local"))
+    ((:family :looking) (:section "3.4.3") (:prompt "PLACE-DESIG") (:prefix "get-designator")
+     (:delay camera-desig-delay*)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:invalid-place-type (text-of "~*~A is not a place type"))
+              (:invisible-place-type (text-of "~*~A cannot be recognized at a distance"))
+              (:camera-enclosed (text-of "~A is inside a container"))
+              (:designator-not-found (text-of "~A found no ~A")))
+     (:report (designator) (found-text operation (list designator))))
+    "Look with CAMERA for a place of a type; of several, find any one. That it found none is an
+answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
+  (search-for-places operation camera place-type nil))
+
+(define-command camera-get-all-place-designators (operation (camera camera)
+                                                  (place-type place-type
+                                                   "the name of a place type"))
+    ((designators "a list of designators of places of that type, non-local"))
+    ((:family :looking) (:section "3.4.3") (:prompt "ALL-PLACE-DESIGS")
+     (:prefix "get-all-designators") (:delay camera-desig-delay*)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:invalid-place-type (text-of "~*~A is not a place type"))
+              (:invisible-place-type (text-of "~*~A cannot be recognized at a distance"))
+              (:camera-enclosed (text-of "~A is inside a container"))
+              (:designator-not-found (text-of "~A found no ~A")))
+     (:report (designators) (found-text operation designators)))
+    "Look with CAMERA for all places of a type. Takes a tick more for each after the first. That it
+found none is an answer: :DESIGNATOR-NOT-FOUND."
+  (search-for-places operation camera place-type t))
+
+;;; Things.
+
+(defun note-unknown-substances (specification)
+  "Tell of substances that are wanted in SPECIFICATION and that there are not."
+  (loop for (key value) in specification
+        when (eq key :substance)
+          do (dolist (choice (ensure-list value))
+               (when (and choice (symbolp choice)) (note-unknown-substance choice)))))
+
+(defun search-for-things (operation camera type specification all)
+  (note-unknown-substances specification)
+  (if (camera-tracking camera)
+      (fail-with operation :already-tracking)
+      (funcall (if all #'designate-all #'designate-first)
+               operation
+               (look-for-things camera type specification :all all))))
+
+(define-command camera-get-object-designator
+    (operation (camera camera)
+               (type designator-type "whether next to the robot")
+               (specification specification "what the object is like"))
+    ((designator "a designator of such an object"))
+    ((:family :looking) (:section "3.4.3") (:prompt "OBJ-DESIG") (:prefix "get-designator")
+     (:delay camera-desig-delay*)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:designator-not-found (text-of "~A found no such object")))
+     (:report (designator) (found-text operation (list designator))))
+    "Look with CAMERA for an object that fits a description; of several, find any one. That it found
+no such object is an answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
+  (search-for-things operation camera type specification nil))
+
+(define-command camera-get-all-object-designators
+    (operation (camera camera)
+               (type designator-type "whether next to the robot")
+               (specification specification "what the objects are like"))
+    ((designators "a list of designators of such objects"))
+    ((:family :looking) (:section "3.4.3") (:prompt "ALL-OBJ-DESIGS")
+     (:prefix "get-all-designators") (:delay camera-desig-delay*)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:designator-not-found (text-of "~A found no such object")))
+     (:report (designators) (found-text operation designators)))
+    "Look with CAMERA for all objects that fit a description. Takes a tick more for each after
+the first. That it found no such object is an answer: :DESIGNATOR-NOT-FOUND."
+  (search-for-things operation camera type specification t))
+
+;;; Tracks.
+
+;;; CAMERA-TRACK tells its continuation twice: with NIL when the track begins, and with a code when
+;;; it ends. If it cannot begin, it tells once.
+
+(defun track-obstacle (camera designator)
+  "Return the error code that keeps CAMERA from tracking DESIGNATOR, or NIL."
+  (let ((local (eq (designator-type designator) :local)))
+    (cond ((camera-tracking camera) :already-tracking)
+          ((and local (not (local-to-camera-p camera designator))) :local-not-local)
+          ((and (not local) (camera-location camera)) :camera-inside)
+          ((not (own-designator-p camera designator)) :lost-track)
+          ((if local (out-of-sight-p designator camera) (not (trackable-p designator camera)))
+           :lost-track))))
+
+(defun local-to-camera-p (camera designator)
+  "True if what the local DESIGNATOR denotes is where CAMERA is, and next to the
+robot (reading 140)."
+  (and (own-designator-p camera designator)
+       (eq (designator-location designator) (camera-location camera))
+       (designator-local-p* designator)))
+
+;; Warnings have said why, unless it was interrupted.
+(defmethod track-ended ((operation operation) code designator)
+  (setf (operation-finished-p operation) t)
+  (if (eq code :interrupt)
+      (report operation code '())
+      (note-failed operation code (error-text operation code)))
+  (notify operation code (list designator)))
+
+(defun interrupt-track (operation camera)
+  "End the track of CAMERA, if it has one, for OPERATION, which is at work."
+  (let ((track (camera-tracking camera)))
+    (when (and track (track-operation track))
+      (note-interruption (track-operation track) operation
+                         (timeline-tick (operation-timeline operation))))
+    (end-track camera :interrupt)))
+
+;; As reading 83 says.
+(defun begin-track (operation camera designator)
+  (report operation nil (list designator))
+  (notify operation nil (list designator))
+  (start-track camera designator operation))
+
+;; As reading 5 says.
+(define-command camera-track (operation (camera camera)
+                              (designator designator "what to track"))
+    ((designator "the designator"))
+    ((:family :looking) (:section "3.4.3") (:delay camera-desig-delay*) (:echo designator)
+     (:traits :begins)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:local-not-local (text-of "~*~A is not local any more"))
+              (:camera-inside (text-of "~A is inside a container and cannot track ~A"))
+              (:lost-track (text-of "~A lost track of ~A")))
+     (:report (designator)
+              (format nil "~A tracking ~A" (operation-resource operation) designator)))
+    "Turn CAMERA to what DESIGNATOR denotes and keep it so. The continuation is called when the
+track begins, with NIL, and again when it ends, with the error code that says how."
+  (let ((obstacle (track-obstacle camera designator)))
+    (if obstacle
+        (fail-with operation obstacle designator)
+        (begin-track operation camera designator))))
+
+;; As reading 84 says.
+(define-command camera-untrack (operation (camera camera))
+    ()
+    ((:family :looking) (:section "3.4.3") (:traits :stops) (:expected :not-tracking)
+     (:errors (:not-tracking (text-of "~A is not tracking anything")))
+     (:report () (format nil "~A stopped tracking" (operation-resource operation))))
+    "Stop CAMERA from tracking. The designator remains; the track's continuation gets :INTERRUPT."
+  (cond ((camera-tracking camera)
+         (interrupt-track operation camera)
+         (succeed operation))
+        (t (fail-with operation :not-tracking))))
+
+;;; Turns.
+
+;;; A camera turns exactly as told, and at once after its delay; what it reports is an estimate. Its
+;;; angle is relative to the robot and never normalised. Turning a camera interrupts its track.
+
+(defun turn-camera (operation camera angle)
+  "Turn CAMERA by ANGLE, in radians, for OPERATION; return an estimate of that (reading 144)."
+  (let ((world (robot-world (camera-robot camera))))
+    (interrupt-track operation camera)
+    (incf (camera-angle camera) (double angle))
+    (+ (double angle) (angle-error (world-dice world :looking)))))
+
+(defun turn-camera-to (operation camera direction)
+  "Turn CAMERA to DIRECTION, relative to the robot, the short way round, for OPERATION; return an
+estimate of the angle."
+  (turn-camera operation camera (angle-difference direction (camera-angle camera))))
+
+(defun camera-turned-text (operation angle)
+  (phrase "~A turned ~,2F" (operation-resource operation) angle))
+
+(define-command camera-turn (operation (camera camera)
+                             (angle angle "how far in radians, to the right if positive"))
+    ((angle "an estimate of the angle turned"))
+    ((:family :looking) (:section "3.4.3") (:delay camera-align-delay*)
+     (:report (angle) (camera-turned-text operation angle)))
+    "Turn CAMERA by ANGLE, relative to where it points."
+  (succeed operation (turn-camera operation camera angle)))
+
+(define-command camera-align-robot (operation (camera camera))
+    ((angle "an estimate of the angle turned"))
+    ((:family :looking) (:section "3.4.3") (:delay camera-align-delay*)
+     (:report (angle) (camera-turned-text operation angle)))
+    "Point CAMERA where the robot is heading."
+  (succeed operation (turn-camera-to operation camera 0)))
+
+(define-command camera-align-place (operation (camera camera))
+    ((angle "an estimate of the angle turned")
+     (place-type "the name of the place type that was sensed"))
+    ((:family :looking) (:section "3.4.3") (:delay camera-align-delay*)
+     (:errors (:no-place-type "No place type here to align with"))
+     (:report (angle place-type)
+              (format nil "~A, at a ~A" (camera-turned-text operation angle) place-type)))
+    "Point CAMERA in the nearest canonical direction of the place that the robot senses."
+  (let* ((robot (camera-robot camera)) (type (sense-place-type robot)))
+    (if type
+        (let ((direction (nearest-direction (canonical-directions robot type)
+                                            (camera-heading camera))))
+          (succeed operation
+                   (turn-camera-to operation camera (- direction (robot-angle robot)))
+                   (place-type-name type)))
+        (fail-with operation :no-place-type))))

@@ -225,3 +225,8 @@ MALFORMED-DEFINITION. Return NAME."
                          (manipulation-forms definition name parameters options body)))))
 
 (define-shared command manipulation manipulation-method)
+
+(define-facts (manipulation manipulation)
+  "Methods, the newest first" (format nil "~{~A~^; ~}"
+                                      (mapcar (lambda (method) (fact-text (method-form method)))
+                                              (manipulation-methods manipulation))))

@@ -207,3 +207,14 @@ an earlier definition of its name, and return it; the one that is there already,
               (world-robots world) (in-order-of-definition
                                     (adjoin robot (world-robots world)))))))
   blueprint)
+
+(define-facts (blueprint blueprint)
+  "Starts in" (format nil "~(~A~) at (~,2F,~,2F), heading ~,2F" (blueprint-map blueprint)
+                      (blueprint-x blueprint) (blueprint-y blueprint)
+                      (blueprint-angle blueprint))
+  "Cameras" (and (blueprint-cameras blueprint)
+                 (format nil "~:{~,2F radians wide, ~D pixel~:P~:^; ~}"
+                         (blueprint-cameras blueprint)))
+  "Hands" (listed (blueprint-hands blueprint))
+  "Bins" (listed (blueprint-bins blueprint))
+  "Parts of its own" (listed (mapcar #'first (blueprint-parts blueprint))))
