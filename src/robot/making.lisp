@@ -212,9 +212,8 @@ an earlier definition of its name, and return it; the one that is there already,
   "Starts in" (format nil "~(~A~) at (~,2F,~,2F), heading ~,2F" (blueprint-map blueprint)
                       (blueprint-x blueprint) (blueprint-y blueprint)
                       (blueprint-angle blueprint))
-  "Cameras" (and (blueprint-cameras blueprint)
-                 (format nil "~:{~,2F radians wide, ~D pixel~:P~:^; ~}"
-                         (blueprint-cameras blueprint)))
-  "Hands" (listed (blueprint-hands blueprint))
-  "Bins" (listed (blueprint-bins blueprint))
-  "Parts of its own" (listed (mapcar #'first (blueprint-parts blueprint))))
+  "Parts" (and (blueprint-parts blueprint)
+               (format nil "~{~(~A~@[ (~{~A ~A~^, ~})~]~)~^; ~}" ; Kind, initargs, kind, initargs.
+                       (loop for (kind . initargs) in (blueprint-parts blueprint)
+                             collect kind
+                             collect initargs))))
