@@ -102,7 +102,7 @@ says what has happened."
                  (when next (enqueue-dependents derived backlog next))))))
   (setf (backlog-highest backlog) 0))
 
-;;; Views, see views.lisp, are true for the instant of a change.
+;;; Views, see operators.lisp, are true for the instant of a change.
 
 (defun end-instants (instants)
   "Let the views in the list that is the element of INSTANTS be false again."

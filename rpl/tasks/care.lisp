@@ -1,8 +1,155 @@
-;;;; care.lisp -- what becomes of a plan whose Lisp code meets trouble; the plans' runner goes on.
+;;;; care.lisp -- what becomes of failures, errors and interrupts: of the task, and of its runner.
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(leave-plan))
+(export '(*failure-hooks* failure-of plan-backtrace operator-called-p leave-plan))
+
+(defun operator-called-p (form &rest names)
+  "True if FORM, of a plan's text, is a use of an operator that is called like one of NAMES."
+  (and (typep form '(cons symbol)) (member (first form) names :test #'string=)))
+
+(defun plan-backtrace (task frame)
+  "Return the expressions under way in TASK at FRAME and around it, innermost first."
+  (nconc (forms-under-way frame)
+         (loop for whole in (rest (lineage task)) nconc (forms-under-way (task-frame whole)))))
+
+(defun handled-failure (task frame)
+  "Return the failure that TASK at FRAME, or a task around it, is handling or cleaning up after."
+  (loop for each in (frames-around task frame)
+        when (typep (frame-data each) 'plan-failure) return (frame-data each)))
+
+(define-event *failure-hooks*
+  "Functions that are called with each failure, its task and frame, where it happens.")
+
+(defun failure-of (condition task frame)
+  "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it. It
+weighs as many steps as one could take meanwhile, so that a plan that only fails ends its slice."
+  (let ((failure (if (typep condition 'plan-failure)
+                     condition
+                     (make-condition 'lisp-failure :condition condition
+                                                   :backtrace (lisp-backtrace)))))
+    (unless (failure-task-path failure)
+      (weigh (if (typep failure 'lisp-failure) 5000 200) (task-runner task) task)
+      (setf (failure-task-path failure) (task-path task)
+            (failure-tick failure) (runner-tick (task-runner task))
+            (failure-plan-backtrace failure) (plan-backtrace task frame)
+            (failure-form failure) (first (failure-plan-backtrace failure))
+            (failure-cause failure) (or (failure-cause failure) (handled-failure task frame)))
+      (note-event task :failure failure)
+      (hear-of-trouble (runner-client (task-runner task)) task failure)
+      (tell-listeners *failure-hooks* failure task frame))
+    failure))
+
+(defun lisp-backtrace ()
+  "Return as a string the Lisp calls under way in a plan's code that has just signalled an error."
+  (let* ((calls (calls-under-way))
+         (signalled (member-if (lambda (name) (and (symbolp name) (string= "%SIGNAL" name)))
+                               calls :key #'first)))
+    (with-output-to-string (stream)
+      (loop for call in (if signalled (rest signalled) calls)
+            for number from 0
+            until (member (first call) '(run-steps step-leaf call-to-fate))
+            do (format stream "    ~D: ~A~%" number (form-text call 100))))))
+
+(defmethod value-behind ((task task))
+  "BEGIN-PLAN returns the task of a plan that goes on; RUN-PLAN, the values of one that it runs.")
+
+;;;; Repair
+
+;;; An interrupt from outside, such as Control-C or a time limit, may leave a reaction at any point,
+;;; also between two changes that belong together. What is true then is what tasks say of
+;;; themselves: their parents, states and frames. All else (who is ready, when who wakes, who hears
+;;; of which fluent) is made anew from that.
+
+(defun live-parts (task)
+  "Return TASK and the tasks that it consists of, as far as they are not over. Make right how they
+know each other."
+  (let ((children (loop for child = (task-newest-child task) then (task-older child)
+                        repeat 1000000
+                        while child
+                        when (and (eq task (task-parent child)) (not (task-over-p child)))
+                          collect child)))
+    (setf (task-newest-child task) (first children))
+    (loop for (child older) on children
+          for newer = nil then previous
+          for previous = child
+          do (setf (task-older child) older
+                   (task-newer child) newer))
+    (cons task (mapcan #'live-parts children))))
+
+(defun live-tasks (runner)
+  (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
+  (mapcan #'live-parts (reverse (runner-roots runner))))
+
+(defun repair-queues (runner tasks)
+  "Let those of TASKS that are ready, all there are, be queued in RUNNER."
+  (loop for ring across (runner-rings runner)
+        do (fill (ring-items ring) nil)
+           (setf (ring-start ring) 0
+                 (ring-count ring) 0))
+  (setf (runner-mask runner) 0
+        (runner-held runner) '()
+        (runner-spent runner) '()
+        (runner-courtesies runner) '()
+        (runner-blocks runner) (reduce #'+ tasks :key #'task-blocked))
+  (dolist (task tasks)
+    (when (or (eq :running (task-state task)) (courtesy-p (task-awaiting task)))
+      (setf (task-awaiting task) nil
+            (task-state task) :ready))
+    (when (eq :ready (task-state task)) (make-ready task))))
+
+(defun repair-timers (runner tasks)
+  "Let the timers of RUNNER be those that it has and those of TASKS, for tasks that are not over."
+  (let* ((heap (timers-heap (runner-timers runner)))
+         (timers (remove-duplicates (append (coerce heap 'list)
+                                            (remove nil (mapcar #'task-timer tasks)))
+                                    :test #'eq)))
+    (setf (fill-pointer heap) 0)
+    (dolist (timer timers)
+      (when (timer-p timer)
+        (setf (timer-place timer) nil)
+        (unless (and (task-p (timer-client timer)) (task-over-p (timer-client timer)))
+          (vector-push-extend timer heap)
+          (sift-up timer (1- (fill-pointer heap)) heap))))))
+
+(defun own-watchers (task)
+  (remove-if-not #'watcher-p
+                 (cons (task-awaiting task)
+                       (mapcar #'frame-data (frame-chain (task-frame task))))))
+
+(defun repair-hearing (runner tasks)
+  "Let TASKS of RUNNER hear of the fluents that they wait for, and of what they have missed."
+  (repair-fluents runner (mapcan #'own-watchers tasks)
+                  (lambda (watcher)
+                    (let ((client (watcher-client watcher)))
+                      (and (task-p client) (task-over-p client)))))
+  (dolist (task tasks)
+    (let ((watcher (task-awaiting task)))
+      (when (and (watcher-p watcher) (eq :waiting (task-state task)))
+        (handler-case (fluent-value (watcher-fluent watcher))
+          (error (trouble) (funcall (watcher-wake watcher) watcher nil trouble))
+          (:no-error (value) (when value (funcall (watcher-wake watcher) watcher value nil))))))))
+
+(defun finish-ending (task)
+  "Let TASK, which was about to evaporate or to end otherwise when its parts have, do so."
+  (when (and (eq :waiting (task-state task)) (null (task-newest-child task)))
+    (cond ((eq :evaporate (task-signal task)) (evaporate-now task))
+          ((task-signal task) (make-ready task)))))
+
+(defun repair (runner)
+  "Make RUNNER fit to go on, whatever it was left in the middle of."
+  (let ((tasks (live-tasks runner)))
+    (repair-queues runner tasks)
+    (repair-timers runner tasks)
+    (repair-hearing runner tasks)
+    (mapc #'finish-ending tasks)
+    (dolist (task tasks)
+      (when (and (task-doomed task) (not (task-over-p task))
+                 (null (task-signal task)) (null (task-cleaning task)))
+        (stop-waiting task)
+        (end-parts task)))))
+
+;;;; Care
 
 ;;; An error in a leaf becomes a failure of its task. While *BREAK-ON-USER-ERROR* is true, and
 ;;; somebody is there to answer, the debugger comes first; its restarts are: do the leaf again, let

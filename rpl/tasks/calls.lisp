@@ -1,0 +1,134 @@
+;;;; calls.lisp -- what arguments plans and functions take, and what plans call for commands.
+
+(in-package :ars-magna.rpl.tasks)
+
+(export '(shape-of shape-text keyword-slip misfit note-twin has-twin-p twin-text end-text
+          last-command last-pulse plan-function-p results-of-command pulse-of-command
+          teller-of-code))
+
+(define-record (shape (:constructor make-shape (least most fixed keys open)))
+  "How many arguments something takes, LEAST to MOST."
+  (least 0 fixnum)
+  (most most-positive-fixnum fixnum)
+  (fixed 0 fixnum "how many of the arguments are no keywords" :export)
+  (keys :none (or list (eql :none))
+        "the list of the keywords, or :NONE if there is no &KEY" :export)
+  (open nil t "true if other keywords do as well"))
+
+(defun keyword-of (parameter)
+  "Return the keyword that PARAMETER, after &KEY in a lambda list or a function type, goes by."
+  (let ((name (if (consp parameter) (first parameter) parameter)))
+    (cond ((consp name) (first name))
+          (t (make-keyword name)))))
+
+(defun shape-of (lambda-list)
+  "Return the shape that LAMBDA-LIST, an ordinary one or that of a function type, means."
+  (let ((mode nil) (least 0) (optional 0) (keys '()) (seen '()))
+    (dolist (parameter lambda-list)
+      (cond ((member parameter lambda-list-keywords)
+             (setf mode parameter)
+             (push parameter seen))
+            (t (case mode
+                 ((nil) (incf least))
+                 (&optional (incf optional))
+                 (&key (push (keyword-of parameter) keys))))))
+    (make-shape least
+                (if (intersection '(&rest &key &body) seen) most-positive-fixnum (+ least optional))
+                (+ least optional)
+                (if (member '&key seen) (nreverse keys) :none)
+                (member '&allow-other-keys seen))))
+
+(defun shape-text (lambda-list)
+  "Return LAMBDA-LIST as people write it."
+  (printing-words ()
+    (let ((*print-case* :downcase) (*print-pretty* nil))
+      (format nil "~:A" lambda-list))))
+
+(defun keyword-slip (shape rest &key (wrong-p #'keywordp))
+  "Return in words the keyword among REST, arguments or forms after the others, that is none of
+SHAPE's, or NIL. Those that WRONG-P is not true of may be keywords yet."
+  (unless (or (shape-open shape)
+              (loop for (key value) on rest by #'cddr
+                    thereis (and (eq key :allow-other-keys) value)))
+    (loop for (key) on rest by #'cddr
+          when (and (funcall wrong-p key)
+                    (not (member key (list* :allow-other-keys (shape-keys shape)))))
+            return (format nil "~(~S~)~@[ (did you mean ~(~S~)?)~]"
+                           key (and (keywordp key) (nearest-name key (shape-keys shape)))))))
+
+(defun misfit (shape arguments &key (wrong-p #'keywordp))
+  "Return in words what it is of ARGUMENTS, or the forms for them, that SHAPE does not take; NIL if
+they may fit. WRONG-P is as for KEYWORD-SLIP."
+  (let* ((count (length arguments))
+         (rest (nthcdr (shape-fixed shape) arguments)))
+    (cond ((not (<= (shape-least shape) count (shape-most shape)))
+           (format nil "~D argument~:P" count))
+          ((eq :none (shape-keys shape)) nil)
+          ((oddp (length rest)) "a keyword without a value")
+          (t (keyword-slip shape rest :wrong-p wrong-p)))))
+
+;;;; Plan functions for commands
+
+(defun note-twin (name call wait &optional fluent codes results)
+  "Note that plans write CALL, with the names of its arguments, of which the first is a part if
+there are several of them, instead of a call of NAME; and that (wait-for WAIT) then waits for the
+end, unless WAIT is NIL. FLUENT, a form, or NIL, then has one of CODES if something went wrong, and
+RESULTS, forms of fluents, what was found."
+  (setf (get name 'twin) (list call wait)
+        (get (first call) 'end) (list (second call) wait results)
+        (get (first call) 'codes) (list fluent codes)))
+
+(defun plan-function-p (name)
+  "True if NAME is a plan's function for a command."
+  (and (symbolp name) (get name 'end) t))
+
+(defun teller-of-code (name code)
+  "Return the form of the fluent that has CODE if what NAME, a plan's function, has begun ends so;
+NIL if it never does."
+  (destructuring-bind (&optional fluent codes) (and (symbolp name) (get name 'codes))
+    (and (symbolp code) (member code codes :test #'same-name-p) fluent)))
+
+(defun has-twin-p (name)
+  "True if plans call another function instead of the one called NAME."
+  (and (symbolp name) (get name 'twin) t))
+
+(defun wait-form-text (wait)
+  (let ((*print-pretty* nil)) (and wait (format nil "(wait-for ~(~A~))" wait))))
+
+(defun pulse-of-command (name)
+  "Return the form of the fluent that is pulsed when a command called NAME of a plan ends, or NIL."
+  (second (get name 'twin)))
+
+(defun twin-text (name)
+  "Return in words what plans write instead of a call of NAME."
+  (destructuring-bind (call wait) (get name 'twin)
+    (let ((*print-pretty* nil))
+      (format nil "~(~A~)~@[ ~A~]" call (wait-form-text wait)))))
+
+(defun end-text (name part)
+  "Return in words how plans wait for the end of what NAME, a plan's function, has begun on the part
+numbered PART, or NIL if nothing tells of that."
+  (destructuring-bind (&optional variable wait results) (get name 'end)
+    (declare (ignore results))
+    (wait-form-text (subst part variable wait))))
+
+(defun results-of-command (name part)
+  "Return the forms of the fluents that have what NAME, a plan's function, has found out by the part
+numbered PART."
+  (destructuring-bind (&optional variable wait results) (get name 'end)
+    (declare (ignore wait))
+    (subst part variable results)))
+
+(defgeneric last-command (client task)
+  (:documentation "Return the name of the plan's function that the plan TASK is of has called last,
+and the number of the part that it is for, if any, as CLIENT knows; NIL if it has called none.")
+  (:method (client task)
+    (declare (ignore client task))
+    nil))
+
+(defgeneric last-pulse (client task fluent)
+  (:documentation "Return the tick at which FLUENT was pulsed last by the end of a command, if that
+was one of the plan that TASK is of, as CLIENT knows; or NIL.")
+  (:method (client task fluent)
+    (declare (ignore client task fluent))
+    nil))
