@@ -1,4 +1,4 @@
-;;;; failing.lisp -- fail.
+;;;; failing.lisp -- failures: fail, handlers, retries, and what is done however something ends.
 
 (in-package :ars-magna.rpl.constructs)
 
@@ -29,3 +29,243 @@
       (hoisted-code form scope)
       `(make-failing :form ',(form-as-written form)
                       :arguments ,(value-lambda `(list ,@arguments) scope))))
+
+;;;; Handlers
+
+;;; A handler runs in an environment of the failure, which is remembered meanwhile. To retry is to
+;;; leave for the body.
+
+(defun handler-index (failure types)
+  (position-if (lambda (type) (failure-matches-p failure type)) types))
+
+(defun enter-handler (handler type failure frame)
+  (make-frame handler
+              (vector (frame-environment frame) (failure-subject failure type))
+              frame))
+
+(defun handler-code (clause scope)
+  "Return code for the handler of CLAUSE, (type ([variable]) form...)."
+  (destructuring-bind (type (&optional (variable (gensym "FAILURE"))) &rest body) clause
+    (declare (ignore type))
+    (binding-body-code body (variable-scope (single-scope scope) (list variable)))))
+
+(defun failure-specifier-p (type)
+  "True if TYPE can be what a clause is for: a symbol, or (or TYPE...)."
+  (if (consp type)
+      (and (symbolp (first type)) (same-name-p 'or (first type))
+           (rest type) (proper-list-p type)
+           (every #'failure-specifier-p (rest type)))
+      (and type (symbolp type))))
+
+(defun check-clause (clause form scope)
+  (unless (and (typep clause '(cons t (cons list t))) (proper-list-p clause)
+               (typep (second clause) '(or null (cons t null))))
+    (reject-clause (author) (if (consp clause) clause form)
+                   "clauses such as (type (variable) form...), with one variable or none"))
+  (unless (failure-specifier-p (first clause))
+    (reject-clause (author) clause
+                   (format nil "~A, or (or type...): ~(~S~) matches no failure"
+                           "t, the class of a failure or a condition type first"
+                           (abridged (first clause)))))
+  (check-variables (second clause) (scope-environment scope) clause))
+
+;;; Commands do not fail: a fluent tells how they ended.
+
+(defparameter *constructs-without-failures*
+  '("SEQ" "PAR" "PURSUE" "N-TIMES" "WAIT-FOR" "WAIT-TIME" "WAIT-UNTIL" "SET-VALUE" "PULSE"
+    "FLUENT-VALUE" "VREF" "WHENEVER" "WITH-POLICY" "WITH-VALVE")
+  "Operators that fail with the code of no command unless what is in them does.")
+
+(defun may-fail-so-p (form code)
+  "True if FORM, in a plan's text, may fail with class CODE: it is no command and no construct or
+function that is known not to."
+  (let ((operator (first form)))
+    (cond ((fail-p form) (let ((class (if (eq :class (second form)) (third form) (second form))))
+                           (or (not (keywordp class)) (eq class code))))
+          ((operator-in-p form '("FUNCALL" "APPLY" "FUNCTION" "LAMBDA" "EVAL")) t)
+          ((consp operator) nil)
+          (t (not (or (operator-in-p form *constructs-without-failures*)
+                      (plan-function-p operator)
+                      (eq (find-package "COMMON-LISP") (symbol-package operator))))))))
+
+(defun doubt-code (code body form)
+  "Warn if CODE, a class that FORM handles in BODY, is how a command in BODY may end, as nothing in
+that fails so."
+  (let* ((command (find-call (lambda (form) (teller-of-code (first form) code)) body))
+         (fluent (and command (teller-of-code (first command) code))))
+    (when (and command (not (find-call (lambda (form) (may-fail-so-p form code)) body)))
+      (doubt-own-form form "~(~A~) does not fail with class ~S when it ends so; ~(~A~) has that ~
+                            value then. After the wait write (if (fluent-value ~(~A~)) ...), or ~
+                            (fail :class (fluent-value ~(~A~))) in that."
+                      (first command) code fluent fluent fluent))))
+
+(define-construct with-failure-handling (clauses &body body)
+  "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
+whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
+(or ...). The handler may wait. (return value) ends the whole with VALUE and (retry) runs BODY anew;
+at the handler's end the failure goes on. Return all values of BODY."
+  (:parts (body node (scope-retry scope))
+          (types list `',(mapcar #'first clauses))
+          (handlers simple-vector `(vector ,@(loop for clause in clauses
+                                                   collect (handler-code clause scope)))))
+  (:code
+   (progn
+     (unless (proper-list-p clauses)
+       (reject-clause (author) form "a list of clauses such as (type (variable) form...)"))
+     (when (and clauses (atom (first clauses)))
+       (reject-clause (author) clauses (format nil "a list of clauses: write (~(~S~))"
+                                               (abridged clauses))))
+     (dolist (clause clauses)
+       (check-clause clause form scope)
+       (dolist (code (ensure-list (first clause))) (doubt-code code body form)))
+     (block-code nil form scope
+                 (lambda (scope)
+                   (with-gensyms (start)
+                     `(let ((,start ,(body-code body scope)))
+                        ,(build (inner-scope scope :retry start))))))))
+  (:steps
+   (begin
+    (next inside)
+    (enter body environment frame))
+   (inside (values (frame-up frame) value))
+   (handling
+    (setf (failure-passed-on-by memory) (nth (handler-index memory types) types))
+    (unwind task (frame-up frame) memory)))
+  (:unwind
+   (cond ((and (escape-p signal) (eq body (escape-target signal)))
+          (next begin)
+          (setf memory nil)
+          (values t frame nil))
+         ((and (in-state-p inside) (typep signal 'plan-failure))
+          (let ((index (handler-index signal types)))
+            (when index
+              (next handling)
+              (setf memory signal)
+              (values t
+                      (enter-handler (svref handlers index) (nth index types) signal frame)
+                      nil)))))))
+
+(define-construct handle-failure (clauses &body body)
+  "Do as WITH-FAILURE-HANDLING."
+  (:like with-failure-handling))
+
+(define-construct retry ()
+  "In a handler of WITH-FAILURE-HANDLING: run its body anew."
+  (:code
+   (if (scope-retry scope)
+       `(make-leave :form ',(form-as-written form) :target ,(scope-retry scope) :result +nothing+)
+       (reject-clause (author) form "retry only in a handler of handle-failure"))))
+
+;;;; How often a handler may retry
+
+;;; A counter is a variable; another one, that only macros know, holds what it started with.
+
+(defun start-variable (counter)
+  "Return the variable that holds what COUNTER, a symbol, started with."
+  (or (get counter 'start-variable)
+      (setf (get counter 'start-variable)
+            (make-symbol (format nil "START-OF-~A" counter)))))
+
+(defun check-counters (counters)
+  (dolist (counter counters)
+    (unless (typep counter '(cons (and symbol (not null)) (cons t null)))
+      (reject-clause "with-retry-counters" counter "(name number)"))))
+
+(define-construct with-retry-counters (counters &body body)
+  "Run BODY in a plan with COUNTERS, each (name number), for DO-RETRY, GET-COUNTER and
+RESET-COUNTER. A counter is a variable, too. (CRAM's, where it is none.)"
+  (:in-lisp (progn
+              (check-counters counters)
+              `(let ,(loop for (name number) in counters
+                           collect `(,(start-variable name) ,number))
+                 (let ,(loop for (name) in counters collect `(,name ,(start-variable name)))
+                   (declare (ignorable ,@(mapcar #'first counters)))
+                   ,@body)))))
+
+(define-construct do-retry (counter &body body)
+  "In a handler: run BODY, most likely (retry), if COUNTER is positive, and count it
+down. (CRAM's.)"
+  (:in-lisp `(when (plusp ,counter)
+               (decf ,counter)
+               ,@body)))
+
+(defun check-counter (operator counter environment)
+  (unless (and counter (symbolp counter) (local-variable-p (start-variable counter) environment))
+    (reject-clause operator counter "the name of a counter of the with-retry-counters around it")))
+
+(addition get-counter)
+(defmacro get-counter (counter &environment environment)
+  "Return how often DO-RETRY will still run for COUNTER, of WITH-RETRY-COUNTERS. (CRAM's.)"
+  (check-counter "get-counter" counter environment)
+  counter)
+
+(addition reset-counter)
+(defmacro reset-counter (counter &environment environment)
+  "Let COUNTER, of WITH-RETRY-COUNTERS, be what it was at first. Return that. (CRAM's.)"
+  (check-counter "reset-counter" counter environment)
+  `(setq ,counter ,(start-variable counter)))
+
+;;;; Cleanups
+
+;;; While the cleanup runs, the frame remembers the signal that is to go on after it, a completion
+;;; if none. A task that is cleaning up does not evaporate: see EVAPORATE.
+
+(defun start-cleanup (cleanup task frame signal)
+  (setf (frame-data frame) signal)
+  (push frame (task-cleaning task))
+  (note-event task :clean)
+  (make-frame cleanup (frame-environment frame) frame))
+
+(defun end-cleanup (task frame)
+  (setf (task-cleaning task) (remove frame (task-cleaning task)))
+  (unless (task-cleaning task) (note-event task :cleaned))
+  (shiftf (frame-data frame) nil))
+
+(defun after-cleanup (first signal task)
+  "SIGNAL ended a cleanup that FIRST was the reason for: return what is to go on."
+  (let ((failed (typep signal 'plan-failure)))
+    (when (or (eq first :evaporate) (and failed (not (completion-p first))))
+      (when failed (note-suppressed first signal task))
+      (values nil first))))
+
+(defun note-suppressed (first failure task)
+  (if (typep first 'plan-failure)
+      (push failure (failure-suppressed first))
+      (warn-notably "A cleanup failed in " (task-label task) ": " (failure-text failure))))
+
+(defun report-given-up (cleanup)
+  (warn-notably "The cleanup " (form-text cleanup) " in " (task-label (current-task))
+               " was given up at tick " (plan-time) ": it took longer than its limit."))
+
+(defun cleanup-form (cleanup limit)
+  "Return the form for CLEANUP that takes at most as many ticks as LIMIT, a form or NIL, says."
+  (if limit
+      (note-own-text `(pursue ,cleanup
+                              (seq (wait-time ,limit) (report-given-up ',cleanup))))
+      cleanup))
+
+(define-construct evap-protect (protected cleanup &key limit)
+  "Run PROTECTED, a form, in a plan, and CLEANUP however that ends: well, by failure, by evaporation
+or by being left. CLEANUP may wait; if LIMIT, a number of ticks, is given and over first, it is
+given up, with a warning. A failure of CLEANUP counts only if PROTECTED ended well. Return all
+values of PROTECTED."
+  (:parts (protected node (plan-code protected scope))
+          (cleanup node (plan-code (cleanup-form cleanup limit) (single-scope scope))))
+  (:steps
+   (begin
+    (next inside)
+    (enter protected environment frame))
+   (inside
+    (next cleaning-up)
+    (start-cleanup cleanup task frame (make-completion value)))
+   (cleaning-up
+    (let ((signal (end-cleanup task frame)))
+      (if (completion-p signal)
+          (receive task frame signal)
+          (unwind task (frame-up frame) signal)))))
+  (:unwind
+   (cond ((in-state-p inside)
+          (next cleaning-up)
+          (values t (start-cleanup cleanup task frame signal) nil))
+         ((in-state-p cleaning-up)
+          (after-cleanup (end-cleanup task frame) signal task)))))

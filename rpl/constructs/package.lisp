@@ -1,4 +1,4 @@
-;;;; package.lisp -- what the plan language has beyond Lisp: a file for each idea.
+;;;; package.lisp -- what the plan language has beyond Lisp.
 
 (ars-magna.host:define-package :ars-magna.rpl.constructs
   (:documentation "The constructs of RPL (manual, appendices C and D). Each is one form,

@@ -1,6 +1,64 @@
-;;;; waiting.lisp -- wait-for: waiting for a fluent.
+;;;; waiting.lisp -- waiting for time and for fluents, reacting to whatever happens, and deadlines.
 
 (in-package :ars-magna.rpl.constructs)
+
+(addition deadline-missed deadline-missed-ticks)
+
+(defun time-out (timer)
+  "Let the task that TIMER is for go on with NIL."
+  (let ((task (timer-client timer)))
+    (setf (task-timer task) nil)
+    (stop-waiting task)
+    (wake task nil timer)))
+
+(defun start-timer (task ticks)
+  (let ((runner (task-runner task)))
+    (setf (task-timer task)
+          (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) #'time-out task))))
+
+(defun ticks-of (span unit operator)
+  "Return SPAN, a number or fluent, of UNIT (:ticks or :seconds) in ticks, for OPERATOR."
+  (let ((span (fluent-value span)))
+    (unless (quantity-p span)
+      (reject-argument operator 'span span "a number from -1e15 to 1e15"))
+    (case unit
+      (:ticks span)
+      (:seconds (ceiling (* span (runner-ticks-per-second *runner*))))
+      (t (reject-argument operator 'unit unit ":ticks or :seconds")))))
+
+(defun check-unit (unit form)
+  (when (and (atom unit) (or (keywordp unit) (not (symbolp unit)))
+             (not (member unit '(:ticks :seconds))))
+    (reject-clause (author) form (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
+
+(defun check-span (span form)
+  (when (and (realp span) (minusp span))
+    (doubt-form form "~(~A~) does not wait for ~A, which is less than 0." (first form) span)))
+
+(defun span-lambda (operator span unit form scope)
+  "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, a use of
+OPERATOR, in ticks."
+  (check-unit unit form)
+  (check-span span form)
+  (value-lambda `(ticks-of ,span (or ,unit :ticks) ',operator) scope))
+
+(define-construct wait-time (span &key unit)
+  "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is :seconds (manual D.4; reading
+90). SPAN is a number up to 1e15; with 0 or less, the plan does not wait."
+  (:manual)
+  (:arguments span)
+  (:parts (span function (span-lambda 'wait-time span unit form scope)))
+  (:steps
+   (begin
+    (next waiting)
+    (let ((span (funcall span environment)))
+      (cond ((plusp span)
+             (park task (start-timer task span))
+             +parked+)
+            (t (values (frame-up frame) nil)))))
+   (waiting (values (frame-up frame) nil))))
+
+;;;; Waiting for a fluent
 
 (defun wake-waiter (watcher value trouble)
   "Let the task that WATCHER is for go on with VALUE, or fail of TROUBLE: it heard what it wanted."
@@ -60,3 +118,173 @@ return NIL (manual C). TIMEOUT is a number up to 1e15."
                (wait-until-heard task fluent)
                +parked+))))
    (waiting (values (frame-up frame) value))))
+
+;;;; Reacting to whatever happens
+
+(defun hear (watcher value trouble)
+  "Let the task that WATCHER is for start its body, or remember that it is to."
+  (declare (ignore value))
+  (let* ((task (watcher-client watcher))
+         (frame (task-frame task)))
+    (incf (watcher-pending watcher))
+    (when (and frame (eq watcher (frame-data frame)) (eq (task-state task) :waiting))
+      (when trouble
+        (setf (task-signal task) (failure-of trouble task frame)))
+      (wake task nil))))
+
+(defun listen-to (condition task)
+  "Return by what TASK hears of CONDITION, its SOURCE of events: a watcher; CONDITION itself if that
+is a view that misses nothing; NIL if it is no fluent, and cannot change."
+  (cond ((not (fluent-p condition)) nil)
+        ((misses-nothing-p condition) condition)
+        (t (let ((watcher (make-watcher condition #'hear task)))
+             (watch watcher)
+             watcher))))
+
+(defun await-event (task source)
+  "Let TASK wait until there is another event from SOURCE. Return what a step returns."
+  (cond ((watcher-p source)
+         (if (plusp (watcher-pending source))
+             (give-way task)
+             (park task (watcher-fluent source))))
+        ((null source) (wait-for-no-fluent task))
+        ((fluent-value source) (give-way task))
+        (t (wait-until-heard task source)))
+  +parked+)
+
+(defun answer-events (source missed)
+  "Note that the body will answer the events that SOURCE has, all, or one if MISSED is :all or a
+view counts them. Signals WRONG-ARGUMENT."
+  (check-argument whenever missed (member missed '(:once :all)) ":once or :all")
+  (cond ((not (watcher-p source)))
+        ((eq missed :all) (decf (watcher-pending source)))
+        (t (setf (watcher-pending source) 0))))
+
+(defun fluent-with-options-p (condition environment)
+  "True if CONDITION, as WHENEVER has it, is a list of a form and keywords, and no call."
+  (and (typep condition '(cons t (cons keyword)))
+       (or (eq :missed (second condition))
+           (consp (first condition))
+           (known-variable-p (first condition) environment))))
+
+(defun split-condition (condition scope)
+  "Return a list of the fluent's form and the form for :missed in CONDITION, as WHENEVER has it in
+SCOPE. Signals MALFORMED-DEFINITION."
+  (cond ((not (fluent-with-options-p condition (scope-environment scope))) (list condition :once))
+        ((and (typep condition '(cons t (cons (eql :missed) (cons t null))))
+              (typep (third condition) '(or (member :once :all) (and symbol (not keyword)) cons)))
+         (list (first condition) (third condition)))
+        (t (reject-clause (author) condition "(fluent :missed :once) or (fluent :missed :all)"))))
+
+(define-construct whenever (fluent &body body)
+  "Run BODY in a plan whenever FLUENT, or a network, becomes true or is pulsed, and at once if it is
+true. A pulse of what a network is computed from is one of the network, if that is true then.
+Several such events while BODY runs count as one, as (FLUENT :missed :once) says too; with
+(FLUENT :missed :all) as the first argument, or a view with :ALWAYS as FLUENT, as many runs follow.
+Ends only by RETURN, failure or evaporation (manual D.4)."
+  (:manual)
+  (:arguments (first (split-condition fluent scope)))
+  (:parts (condition function (awaited-lambda (first (split-condition fluent scope)) form scope))
+          (missed function (value-lambda (second (split-condition fluent scope)) scope))
+          (body node (body-code body (single-scope scope))))
+  (:code (block-code nil form scope #'build))
+  (:steps
+   (begin
+    (let ((condition (funcall condition environment)))
+      (setf memory (listen-to condition task))
+      (cond ((fluent-value condition) (next reacting) (enter body environment frame))
+            (t (next waiting) (await-event task memory)))))
+   (reacting
+    (next waiting)
+    (await-event task memory))
+   (waiting
+    (answer-events memory (funcall missed environment))
+    (next reacting)
+    (enter body environment frame)))
+  (:unwind
+   (let ((source (shiftf memory nil)))
+     (when (watcher-p source) (unwatch source)))
+   nil))
+
+;;;; Waiting for what need be no fluent
+
+(defun wait-until-text (condition)
+  "Return plan text that waits until CONDITION, a form, is true, and has its value."
+  (with-gensyms (met again value)
+    `(block ,met
+       (tagbody
+          ,again
+          (let ((,value ,condition))
+            (if (fluent-p ,value) (return-from ,met (wait-for ,value)))
+            (if ,value (return-from ,met ,value)))
+          (wait-time 1)
+          (go ,again)))))
+
+(defun doubt-polled (condition form)
+  "Warn if CONDITION, which FORM, a WAIT-UNTIL, tests, is known to be true at once."
+  (let ((advice (if (realp condition)
+                    (format nil "~S is a number, which counts as true. To let time pass, write ~
+                                 (wait-time ~:*~S)." condition)
+                    (test-advice condition))))
+    (when advice (doubt-own-form form "wait-until: ~A" advice))))
+
+(define-construct wait-until (condition)
+  "Wait in a plan until the form CONDITION is true; return its value. If it gives a fluent or a
+network, as (< level 46) does of a fluent, that is waited for; anything else is tested anew at each
+tick. CONDITION may itself wait. (Ours: what policies and AT-LOCATION watch is watched so.)"
+  (:code (progn (doubt-polled condition form)
+                (plan-code (note-expansion (wait-until-text condition) form) scope))))
+
+;;;; Deadlines
+
+(define-condition deadline-missed (plan-failure)
+  ((ticks :initarg :ticks :initform nil :reader deadline-missed-ticks))
+  (:documentation "What a WITH-DEADLINE is for was not done in time."))
+
+(setf (documentation 'deadline-missed-ticks 'function)
+      "Return how many ticks there were.")
+
+(defmethod write-failure ((failure deadline-missed) stream)
+  (format stream "Not done within ~A tick~:P" (deadline-missed-ticks failure)))
+
+(defun miss-deadline (timer)
+  "Let the task that TIMER is for fail, unless it is ending."
+  (let* ((task (timer-client timer))
+         (frame (task-frame task))
+         (*asker* (list "the deadline of " (car (frame-data frame)) " ticks of task "
+                        (task-serial task))))
+    (unless (task-signal task)
+      (decide task (failure-of (make-condition 'deadline-missed :ticks (car (frame-data frame)))
+                               task frame)))))
+
+(defun start-deadline (task ticks)
+  "Let TASK miss its deadline in TICKS. Return what its frame is to remember."
+  (let ((runner (task-runner task)))
+    (cons ticks (set-timer (runner-timers runner) (+ (runner-tick runner) ticks)
+                           #'miss-deadline task))))
+
+(defun end-deadline (task memory)
+  (when memory (cancel-timer (cdr memory) (runner-timers (task-runner task)))))
+
+(define-construct with-deadline ((span &key unit) &body body)
+  "Run BODY in a plan as a task of its own and return its value, one; if it has not ended SPAN ticks
+after its start, or seconds if UNIT is :seconds, it evaporates, and then the whole fails with a
+DEADLINE-MISSED. Its cleanups may take longer. Time goes on while it is suspended. SPAN is a number
+up to 1e15; with 0 or less there is time for what takes none (ours; CRAM's is a timeout-policy)."
+  (:arguments span)
+  (:parts (span function (span-lambda 'with-deadline span unit form scope))
+          (body node (body-code body scope)))
+  (:steps
+   (begin
+    (next over)
+    (setf memory (start-deadline task (max 0 (funcall span environment))))
+    (start-branch body task environment 0 (task-level task))
+    (await-parts task))
+   (over (values (frame-up frame) value)))
+  (:unwind
+   (end-deadline task (shiftf memory nil))
+   nil)
+  (:child-ended
+   (end-deadline task (shiftf memory nil))
+   (or (fail-or-escape task how result)
+       (complete task (and (eq how :succeeded) result)))))

@@ -1,4 +1,4 @@
-;;;; binding.lisp -- variables and local functions of a plan.
+;;;; binding.lisp -- variables, local functions and local macros of a plan.
 
 (in-package :ars-magna.rpl.language)
 
@@ -114,3 +114,137 @@ parts begun; its memory is the environment to be."
                                 :source ,(plan-code source (several-scope scope))
                                 :body ,(binding-body-code body
                                                           (variable-scope scope variables))))))
+
+;;;; flet, labels, macrolet and symbol-macrolet
+
+;;; A local function whose body waits becomes a procedure of its own, which only plans can call;
+;;; others are Lisp functions, kept in an environment. One that may wait (see SUSPENSION) becomes a
+;;; procedure unless its name is also used as #'name.
+
+(defun entry-lambda (parameters scope outer)
+  "Return the lambda expression that takes arguments for PARAMETERS, after the environment around
+them if OUTER, and returns the environment for a procedure's body."
+  (let ((make `(vector ,(and outer (scope-variable scope))
+                       ,@(lambda-list-variables parameters))))
+    (cond ((not outer)
+           (second (as-lisp `(function (lambda ,parameters ,make)) scope)))
+          ((intersection parameters lambda-list-keywords)
+           (leaf-lambda `(apply ,(as-lisp `(function (lambda ,parameters ,make)) scope) %arguments)
+                        scope '&rest '%arguments))
+          (t `(lambda (,(scope-variable scope) ,@parameters) ,make)))))
+
+(defun lambda-suspension (parameters body scope)
+  (suspension (note-own-text `(function (lambda ,parameters ,@body))) scope))
+
+(defun check-lambda-list (parameters scope)
+  "Signal MISPLACED-SUSPENSION if a default in PARAMETERS would wait."
+  (multiple-value-bind (suspends reason) (lambda-suspension parameters '() scope)
+    (when (eq suspends :must)
+      (reject-suspension reason (list 'lambda parameters)))))
+
+(defun mentions-function-p (name forms)
+  (cond ((atom forms) nil)
+        ((equal forms `(function ,name)) t)
+        (t (loop for tail on forms
+                   thereis (mentions-function-p name (car tail))))))
+
+(defun local-procedure-p (definition scope forms)
+  (destructuring-bind (name parameters . body) definition
+    (case (lambda-suspension (untyped-lambda-list parameters) body scope)
+      (:must t)
+      (:may (not (mentions-function-p name forms))))))
+
+(defun local-procedures (definitions scope recursive forms)
+  "Return those of DEFINITIONS that are to be procedures."
+  (loop with known = '()
+        for scope-now = (if recursive (procedure-scope scope known) scope)
+        for found = (remove-if-not (lambda (definition)
+                                     (or (member definition known)
+                                         (local-procedure-p definition scope-now forms)))
+                                   definitions)
+        until (or (not recursive) (= (length found) (length known)))
+        do (setf known found)
+        finally (return found)))
+
+(defun procedure-scope (scope definitions)
+  (if definitions
+      (inner-scope scope
+                   :procedures (append (loop for (name parameters) in definitions
+                                             collect (list name (gensym (string name))
+                                                           (scope-level scope)
+                                                           (untyped-lambda-list parameters)))
+                                       (scope-procedures scope))
+                   :environment (extended-environment (scope-environment scope)
+                                                      :function (mapcar #'first definitions)))
+      scope))
+
+(defun procedure-body-code (name form body scope)
+  (with-tags-code form (tags-in body) (several-scope scope)
+                  (lambda (scope)
+                    (block-code name form scope
+                                (lambda (scope) (binding-body-code body scope))))))
+
+(defun local-procedure-code (definition variable scope)
+  "Return code that completes the procedure in VARIABLE; SCOPE is that of DEFINITION."
+  (destructuring-bind (name parameters . body) definition
+    (let ((parameters (untyped-lambda-list parameters (string-downcase name))))
+      (check-lambda-list parameters scope)
+      `(setf (procedure-lambda-list ,variable) ',parameters
+             (procedure-entry ,variable) ,(entry-lambda parameters scope t)
+             (procedure-body ,variable)
+             ,(procedure-body-code name definition body
+                                   (variable-scope scope (lambda-list-variables parameters)))))))
+
+(defun functions-code (form definitions body scope recursive)
+  "Return code for FORM, an FLET or, if RECURSIVE, a LABELS."
+  (let* ((procedures (local-procedures definitions scope recursive (rest form)))
+         (functions (set-difference definitions procedures))
+         (names (mapcar #'first functions))
+         (around (if functions (function-scope scope names) scope))
+         (inner (procedure-scope around procedures))
+         (outer (if recursive inner (inner-scope scope :level (scope-level around))))
+         (variables (loop for (name) in procedures
+                          collect (second (assoc name (scope-procedures inner)))))
+         (body-code (binding-body-code body inner)))
+    `(let ,(loop for (name) in procedures
+                 for variable in variables
+                 collect `(,variable (make-procedure ',name)))
+       ,@(loop for definition in procedures
+               for variable in variables
+               collect (local-procedure-code definition variable outer))
+       ,(if functions
+            `(make-binding :form ',(form-as-written form)
+                           :fill ,(functions-lambda (first form) functions scope)
+                           :body ,body-code)
+            body-code))))
+
+(defun functions-lambda (operator definitions scope)
+  (let ((definitions (loop for (name parameters . body) in definitions
+                           collect (list* name (untyped-lambda-list parameters) body))))
+    (leaf-lambda (as-lisp `(,operator ,definitions
+                               (vector ,(scope-variable scope)
+                                       ,@(loop for (name) in definitions
+                                               collect `(function ,name))))
+                            scope)
+                 scope)))
+
+(define-plan-form "FLET" nil (definitions &rest body) (form scope)
+  (functions-code form definitions body scope nil))
+
+(define-plan-form "LABELS" nil (definitions &rest body) (form scope)
+  (functions-code form definitions body scope t))
+
+;;; Local macros.
+
+(define-plan-form "MACROLET" nil (definitions &rest body) (form scope)
+  (binding-body-code
+   body
+   (wrapped-scope scope `(macrolet ,definitions)
+                  :macro (loop with environment = (scope-environment scope)
+                               for definition in definitions
+                               collect (list (first definition)
+                                             (macro-expander definition environment))))))
+
+(define-plan-form "SYMBOL-MACROLET" nil (definitions &rest body) (form scope)
+  (binding-body-code body (wrapped-scope scope `(symbol-macrolet ,definitions)
+                                         :symbol-macro definitions)))

@@ -1,8 +1,8 @@
-;;;; calling.lisp -- calling plans from plans.
+;;;; calling.lisp -- calling plans from plans, and which plans a plan calls.
 
 (in-package :ars-magna.rpl.language)
 
-(export '(name-without-quote-p check-quote))
+(export '(name-without-quote-p check-quote enter-application))
 
 ;;; Calling. CALLER is compiled from the call's arguments: it takes the environment and a function,
 ;;; either the procedure's entry or a Lisp function, and calls that with them.
@@ -112,3 +112,53 @@ so (ours).")
                    :ars-user), or use the package NISP in yours." name))
     (reject-name "plan procedure or function" name (procedures-to-offer)
                  (known-operators (or (symbol-package name) *package*)))))
+
+;;;; Calls with a list of arguments
+
+(defstruct (application (:include call-plan-node) (:copier nil))
+  "A call of the plan and with the list of arguments that are the variables of its environment.")
+
+(define-global +application+
+    (make-application :form '(call-plan)
+                      :entry (lambda (environment)
+                               (apply #'enter-plan (svref environment 1) (svref environment 2))))
+  "The one application that there is.")
+
+(defmethod current-form ((node application) frame)
+  (destructuring-bind (plan arguments) (rest (coerce (frame-environment frame) 'list))
+    (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
+      (if name
+          (list* name arguments)
+          (list* 'call-plan plan arguments)))))
+
+(defun enter-application (plan arguments frame)
+  "Begin PLAN, a procedure or its name, with the list ARGUMENTS for FRAME. Return what a step
+returns."
+  (enter +application+ (vector (frame-environment frame) plan arguments) frame))
+
+(define-construct apply-plan (plan arguments)
+  "Run PLAN, a plan procedure or the name of one, with the list ARGUMENTS as part of a plan; return
+its values. (Ours: what APPLY is to FUNCALL, it is to CALL-PLAN.)"
+  (:arguments plan arguments)
+  (:parts (plan function (value-lambda plan scope))
+          (arguments function (value-lambda arguments scope)))
+  (:steps
+   (begin
+    (next inside)
+    (enter-application (funcall plan environment) (funcall arguments environment) frame))
+   (inside (values (frame-up frame) value))))
+
+;;; Calls in Lisp code, and those of plans that are only known when they are called, do not show.
+
+(addition called-procedures)
+(defun called-procedures (procedure)
+  "Return a list of the plan procedures that PROCEDURE, one of them, calls by name."
+  (let ((seen (make-hash-table :test 'eq))
+        (called '()))
+    (labels ((visit (part)
+               (unless (or (not (typep part 'node)) (gethash part seen))
+                 (setf (gethash part seen) t)
+                 (when (call-p part) (pushnew (call-procedure part) called))
+                 (mapc #'visit (node-parts part)))))
+      (visit (procedure-body procedure))
+      (reverse called))))

@@ -1,8 +1,157 @@
-;;;; compiler.lisp -- from a plan's text to code that builds its nodes.
+;;;; compiler.lisp -- from a plan's text to code that builds its nodes: leaves, and what may wait.
 
 (in-package :ars-magna.rpl.language)
 
-(export '(define-plan-form hoisted-code plan-code refuse-code suspends-p))
+(export '(condition-lambda awaited-lambda value-lambda define-plan-form hoisted-code plan-code
+          refuse-code suspends-p))
+
+;;; Where the plan's own text says so, conditions read fluents by value and operators are lifted.
+;;; What is written for a truth value must not be a vector of fluents.
+
+(defun own-operation-p (form environment names)
+  (and (consp form)
+       (own-text-p form)
+       (operator-in-p form names)
+       (not (local-function-p (first form) environment))))
+
+(defun operand-form (form environment)
+  "Return the form for the value of FORM, an argument of a lifted operator in a condition."
+  (cond ((own-operation-p form environment '("AND" "OR" "NOT" "NULL"))
+         (condition-form form environment))
+        ((own-operation-p form environment *lifted-operators*)
+         (list* (first form)
+                (loop for argument in (rest form) collect (operand-form argument environment))))
+        ((constantp form environment) form)
+        (t `(operand-value ,form))))
+
+(defun condition-form (form environment)
+  "Return a form that is true if FORM is, fluents counting by their values."
+  (flet ((conditions (operator)
+           (keep-place `(,operator ,@(loop for form in (rest form)
+                                           collect (condition-form form environment)))
+                       form)))
+    (check-condition form)
+    (cond ((own-operation-p form environment '("AND")) (conditions 'and))
+          ((own-operation-p form environment '("OR")) (conditions 'or))
+          ((own-operation-p form environment '("NOT" "NULL")) (conditions 'not))
+          ((own-operation-p form environment *lifted-operators*)
+           (keep-place (operand-form form environment) form))
+          ((constantp form environment) form)
+          (t (keep-place `(truth-value ,form) form)))))
+
+(defun plan-meaning (form environment)
+  "Return what FORM, a call in the plan's own text, means; FORM itself if just what it says."
+  (let ((name (or (plan-operator-name form) "")))
+    (when (member name '("AND" "OR" "NOT" "NULL") :test #'string=)
+      (mapc #'check-condition (rest form)))
+    (flet ((condition (form) (condition-form form environment))
+           (is (&rest names) (member name names :test #'string=)))
+      (cond ((is "IF") `(if ,(condition (second form)) ,@(cddr form)))
+            ((is "WHEN") `(when ,(condition (second form)) ,@(cddr form)))
+            ((is "UNLESS") `(unless ,(condition (second form)) ,@(cddr form)))
+            ((is "COND") `(cond ,@(loop for (test . body) in (rest form)
+                                        collect `(,(condition test) ,@body))))
+            ((is "CASE" "ECASE") `(,(first form) (operand-value ,(second form)) ,@(cddr form)))
+            ((is "CCASE") (ccase-meaning form))
+            ((is "LET" "LET*") (let-meaning form))
+            ((is "AND") `(lifting-and ,@(rest form)))
+            ((is "OR") `(lifting-or ,@(rest form)))
+            ((is "LOOP") (if (plan-loop-p form)
+                             (loop-meaning (rest form) environment)
+                             (extended-loop-meaning form environment)))
+            ((operator-in-p form *lifted-operators*) `(lifting ,@form))
+            (t form)))))
+
+(defun ccase-meaning (form)
+  "Return what FORM, a CCASE, means: what another key is stored into is not the fluent."
+  (with-gensyms (key)
+    `(let ((,key (operand-value ,(second form))))
+       (,(first form) ,key ,@(cddr form)))))
+
+(defun let-meaning (form)
+  "Return FORM, a LET, without types; FORM itself if there are none."
+  (if (and (listp (second form)) (find '- (second form)))
+      `(,(first form) ,(untyped-bindings (second form)) ,@(cddr form))
+      form))
+
+(defun loop-meaning (forms environment)
+  (let ((end (cond ((keyword-test forms "UNTIL") 'when)
+                   ((keyword-test forms "WHILE") 'unless))))
+    (if end
+        `(loop (,end ,(condition-form (second forms) environment) (return)) ,@(cddr forms))
+        `(loop ,@forms))))
+
+(defparameter *tests-in-loops*
+  '("WHILE" "UNTIL" "WHEN" "IF" "UNLESS" "ALWAYS" "NEVER" "THEREIS")
+  "The words after which a test stands in LOOP.")
+
+(defun extended-loop-meaning (form environment)
+  "Return FORM, a LOOP of Lisp's own kind, whose tests read fluents by value."
+  (let ((last nil) (test-p nil))
+    (flet ((word-p (word words) (and (symbolp word) (member word words :test #'string=))))
+      (cons (first form)
+            (loop for part in (rest form)
+                  collect (if (shiftf test-p (and (word-p part *tests-in-loops*)
+                                                  (not (word-p last '("FOR" "AS" "WITH" "INTO")))))
+                              (condition-form part environment)
+                              part)
+                  do (setf last part))))))
+
+(defun leaf-meaning (form environment)
+  (cond ((global-symbol-macro-p form environment)
+         (note-own-text (macroexpand-1 form environment)))
+        ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
+        ((plan-in-leaf-p form) (values form t))
+        ((construct-behind form) (reject-in-lisp (construct-behind form)))
+        (t (look-at-counting form environment)
+           (look-at-assignments form environment)
+           (look-at-arguments form environment)
+           (doubt-namesake form)
+           (let ((meaning (if (local-function-p (first form) environment)
+                              form
+                              (plan-meaning form environment))))
+             (if (and (eq meaning form)
+                      (macro-function (first form) environment)
+                      (not (lisps-own-p (first form))))
+                 (note-own-text (expand-in-walk form environment))
+                 meaning)))))
+
+(defun as-lisp (form scope)
+  (cond ((and (atom form) (not (symbol-macro-p form (scope-environment scope)))) form)
+        (t (doubt-leaf form)
+           (let ((*fluents-here* (scope-fluents scope)))
+             (walk-form form (scope-environment scope) #'leaf-meaning)))))
+
+(defun test-lambda (form scope)
+  (leaf-lambda (as-lisp (condition-form form (scope-environment scope)) scope) scope))
+
+(defun condition-lambda (form scope)
+  "Return the lambda expression, of the environment, for the object that FORM, a condition, is: a
+fluent to wait for."
+  (check-condition form)
+  (leaf-lambda `(one-fluent ,(as-lisp form scope)) scope))
+
+(defun awaited-lambda (condition form scope)
+  "Return the lambda expression as CONDITION-LAMBDA does, for what FORM waits for."
+  (check-awaited condition form scope)
+  (condition-lambda condition scope))
+
+(defun value-lambda (form scope)
+  "Return the lambda expression, of the environment, for the one value of FORM."
+  (leaf-lambda (as-lisp form scope) scope))
+
+(defun bundle-up (&optional value &rest more)
+  (if more (make-bundle (cons value more)) value))
+
+(defun leaf-code (form scope)
+  (let ((meaning (as-lisp form scope)))
+    `(make-leaf :form ',(form-as-written form)
+                :function ,(leaf-lambda (if (and (scope-several scope) (consp form))
+                                            `(multiple-value-call #'bundle-up ,meaning)
+                                            meaning)
+                                        scope))))
+
+;;;; Nodes
 
 ;;; Every function here named X-CODE returns a form; evaluated once, when the plan is loaded, that
 ;;; form builds the nodes.

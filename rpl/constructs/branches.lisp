@@ -1,0 +1,249 @@
+;;;; branches.lisp -- several parts, side by side or one after the other until one succeeds.
+
+(in-package :ars-magna.rpl.constructs)
+
+;;; The task that runs one of these starts a child for each branch, in order, and waits. When the
+;;; outcome is known the children that are left evaporate, newest first, and when all are gone the
+;;; task goes on.
+;;;
+;;; A branch that others than the construct have evaporated counts as ended, neither well nor badly.
+
+(defun branches-code (branches scope)
+  `(vector ,@(loop with single = (single-scope scope)
+                   for branch in branches
+                   collect (plan-code branch single))))
+
+(defun start-branches (branches task environment)
+  "Start each of BRANCHES as a part of TASK, which then waits. Return what a step returns."
+  (loop for branch across branches
+        for index from 0
+        do (start-branch branch task environment index (task-level task)))
+  (await-parts task))
+
+(defun await-parts (task)
+  "Let TASK wait for its parts. Return what a step returns."
+  (park task nil)
+  +parked+)
+
+(define-construct par (&body branches)
+  "Run BRANCHES in a plan side by side. Succeed when all have, with the value of the last one, one
+as of every task; fail as soon as one fails, and evaporate the others (manual D.7)."
+  (:manual)
+  (:parts (branches simple-vector (branches-code branches scope)))
+  (:steps
+   (begin
+    (next inside)
+    (if (plusp (length branches))
+        (start-branches branches task environment)
+        (values (frame-up frame) nil)))
+   (inside (values (frame-up frame) value)))
+  (:child-ended
+   (unless (fail-or-escape task how result)
+     (when (= (1+ (task-index child)) (length branches))
+       (setf memory result))
+     (complete-when-alone task memory))))
+
+(define-construct pursue (&body branches)
+  "Run BRANCHES in a plan side by side. Succeed as soon as one does, with its value; fail as soon as
+one fails. Evaporate the others (manual D.4; reading 185)."
+  (:manual)
+  (:like par)
+  (:child-ended
+   (cond ((fail-or-escape task how result))
+         ((eq how :succeeded) (complete task result))
+         (t (complete-when-alone task nil)))))
+
+(define-construct try-all (&body branches)
+  "Run BRANCHES in a plan side by side. Succeed as soon as one does, with its value, and evaporate
+the others; if all fail, fail with a composite failure."
+  (:like par)
+  (:steps
+   (begin
+    (next inside)
+    (if (plusp (length branches))
+        (start-branches branches task environment)
+        (unwind task (frame-up frame) (all-failed '() task frame))))
+   (inside (values (frame-up frame) value)))
+  (:child-ended
+   (ecase how
+     (:succeeded (complete task result))
+     (:escaped (decide task result))
+     (:failed (push result memory))
+     (:evaporated))
+   (unless (or (task-newest-child task) (task-signal task) (member how '(:succeeded :escaped)))
+     (decide task (all-failed memory task frame)))))
+
+;;;; One after the other
+
+(defstruct (attempt-record (:constructor make-attempt-record (order)) (:copier nil))
+  "What is still to be tried, in ORDER: conses of a node and its environment; and the FAILURES so
+far, last first."
+  (order '() :type list)
+  (failures '() :type list))
+
+(defun order-as-written (attempts environment dice)
+  (declare (ignore dice))
+  (loop for attempt across attempts collect (cons attempt environment)))
+
+(defun order-by-chance (attempts environment dice)
+  "Do as ORDER-AS-WRITTEN, in an order that DICE choose; as written if there are none."
+  (loop with left = (order-as-written attempts environment dice)
+        while left
+        collect (let ((chosen (if dice (roll-element left dice) (first left))))
+                  (setf left (remove chosen left :test #'eq))
+                  chosen)))
+
+(defun all-failed (failures task frame)
+  "Return the failure of TASK at FRAME that stands for FAILURES, last first."
+  (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
+
+(defun give-up (record task frame)
+  (unwind task (frame-up frame) (all-failed (attempt-record-failures record) task frame)))
+
+(defun attempts-code (attempts scope)
+  `(vector ,@(loop for attempt in attempts collect (plan-code attempt scope))))
+
+(define-construct try-in-order (&body attempts)
+  "Run ATTEMPTS in a plan one after the other until one succeeds; return its value. If all fail,
+fail with a composite failure."
+  (:parts (attempts simple-vector (attempts-code attempts scope))
+          (order function '(function order-as-written)))
+  (:steps
+   (begin
+    (setf memory (make-attempt-record
+                  (funcall order attempts environment (runner-dice (task-runner task)))))
+    (at-once between-attempts))
+   (trying (values (frame-up frame) value))
+   (between-attempts
+    (destructuring-bind (&optional attempt . inner) (pop (attempt-record-order memory))
+      (cond (attempt
+             (next trying)
+             (enter (the node attempt) inner frame))
+            (t (give-up memory task frame))))))
+  (:unwind
+   (when (and (in-state-p trying) (typep signal 'plan-failure))
+     (push signal (attempt-record-failures memory))
+     (next between-attempts)
+     (values t frame nil))))
+
+(define-construct try-one (&body attempts)
+  "Do as TRY-IN-ORDER, in an order that the plan runner chooses: at random if it was given dice,
+otherwise as written."
+  (:like try-in-order)
+  (:parts (attempts simple-vector (attempts-code attempts scope))
+          (order function '(function order-by-chance))))
+
+;;; For each element.
+
+(define-construct try-each-in-order ((variable sequence) &body body)
+  "Run BODY in a plan with VARIABLE bound to each element of SEQUENCE in turn until it succeeds;
+return its value. If it never does, fail with a composite failure."
+  (:like try-in-order)
+  (:arguments sequence)
+  (:parts (attempts simple-vector `(vector ,(each-body-code variable body scope)))
+          (order function
+                 `(let ((items ,(value-lambda sequence scope)))
+                    (lambda (attempts environment dice)
+                      (declare (ignore dice))
+                      (loop for item in (item-list 'try-each-in-order (funcall items environment))
+                            collect (cons (svref attempts 0) (vector environment item)))))))
+  (:code (block-code nil form scope #'build)))
+
+;;;; For each element of a sequence
+
+(defun turn-environment (environment item tags)
+  "Return an environment, in ENVIRONMENT, of ITEM and of tasks that are yet to start, one for each
+of TAGS."
+  (coerce (list* environment item (loop for tag in tags collect (make-task tag +nothing+)))
+          'simple-vector))
+
+(defun turn-code (variable body scope)
+  "Return code for BODY in the environment of a turn: VARIABLE and the tags in BODY are its own."
+  (let ((tags (tags-in body)))
+    (binding-body-code body (tagged-scope (variable-scope (single-scope scope)
+                                                          (cons variable tags))
+                                          tags 2))))
+
+(define-construct par-loop ((variable sequence) &body body)
+  "Run BODY in a plan for all elements of SEQUENCE side by side, each with its own VARIABLE, and its
+own tags; succeed and fail as PAR does."
+  (:arguments sequence)
+  (:parts (items function (value-lambda sequence scope))
+          (tags list `',(tags-in body))
+          (body node (turn-code variable body scope)))
+  (:code (block-code nil form scope #'build))
+  (:steps
+   (begin
+    (next inside)
+    (let ((items (item-list 'par-loop (funcall items environment))))
+      ;; The number of the last one, and its value.
+      (setf memory (cons (1- (length items)) nil))
+      (loop for item in items
+            for index from 0
+            do (start-branch body task (turn-environment environment item tags) index
+                              (task-level task)))
+      (if items
+          (await-parts task)
+          (values (frame-up frame) nil))))
+   (inside (values (frame-up frame) value)))
+  (:child-ended
+   (unless (fail-or-escape task how result)
+     (when (= (task-index child) (the fixnum (car memory)))
+       (setf (cdr memory) result))
+     (complete-when-alone task (cdr memory)))))
+
+;;;; Some of several
+
+(defstruct (tally (:constructor make-tally (missing left)) (:copier nil))
+  "How many successes are MISSING, how many branches are LEFT that may bring them, and the VALUES
+and FAILURES so far, last first."
+  (missing 0 :type fixnum)
+  (left 0 :type fixnum)
+  (values '() :type list)
+  (failures '() :type list))
+
+(defun checked-number (count branches)
+  (let ((count (fluent-value count)))
+    (check-argument par-at-least count (whole-p count 0 branches)
+                    "an integer from 0 to the number of branches")
+    count))
+
+(defun count-end (tally how result)
+  (decf (tally-left tally))
+  (case how
+    (:succeeded (decf (tally-missing tally))
+     (push result (tally-values tally)))
+    (:failed (push result (tally-failures tally)))))
+
+(defun decide-by-tally (task frame tally branches)
+  "End what TASK waits in at FRAME if TALLY, of so many BRANCHES, says that it succeeds, or can do
+so no more."
+  (cond ((zerop (tally-missing tally))
+         (complete task (reverse (tally-values tally))))
+        ((> (tally-missing tally) (tally-left tally))
+         (decide task (failure-of (make-condition 'composite-failure
+                                                  :failures (reverse (tally-failures tally))
+                                                  :attempts branches)
+                                  task frame)))))
+
+(define-construct par-at-least (count &body branches)
+  "Run BRANCHES in a plan side by side. Succeed as soon as COUNT of them have, with the list of
+their values, the first first; fail as soon as too many have not, with a composite failure.
+Evaporate the others. COUNT is an integer from 0, which needs none, to the number of branches (ours;
+CRAM's statecharts of 2026 have a PAR with minimum_success)."
+  (:arguments count)
+  (:parts (needed function (value-lambda count scope))
+          (branches simple-vector (branches-code branches scope)))
+  (:steps
+   (begin
+    (let ((needed (checked-number (funcall needed environment) (length branches))))
+      (next over)
+      (setf memory (make-tally needed (length branches)))
+      (if (plusp needed)
+          (start-branches branches task environment)
+          (values (frame-up frame) '()))))
+   (over (values (frame-up frame) value)))
+  (:child-ended
+   (cond ((eq how :escaped) (decide task result))
+         (t (count-end memory how result)
+            (decide-by-tally task frame memory (length branches))))))
