@@ -144,12 +144,8 @@
   :serial t
   :components
   ((:module "src/statistics" :serial t
-    :components ((:file "package") (:file "arguments") (:file "fractions") (:file "gamma")
-                 (:file "normal") (:file "beta") (:file "samples") (:file "proportions")
-                 (:file "means") (:file "bootstrap") (:file "pairs") (:file "rare-signs")
-                 (:file "permutation")
-                 (:file "several") (:file "survival") (:file "sequential")
-                 (:file "sobol") (:file "designs")))
+    :components ((:file "package") (:file "samples") (:file "distributions")
+                 (:file "intervals") (:file "tests") (:file "survival") (:file "designs")))
    (:module "src/ways" :serial t
     :components ((:file "package") (:file "terrain") (:file "queue") (:file "crossing")
                  (:file "field") (:file "chart") (:file "lines") (:file "descent")

@@ -1,0 +1,269 @@
+;;;; intervals.lisp -- bounds for a probability, a mean, a median or any statistic.
+
+(in-package :ars-magna.statistics)
+
+(declaim (inline wilson-low))
+(defun wilson-low (successes failures z)
+  "Return the lower bound: it is square over sum, as the product of both bounds is known, so that
+no digit is lost near 0."
+  (declare (type double-float successes failures z))
+  (let ((n (+ successes failures)) (square (* z z)))
+    (/ (/ (* successes successes) n)
+       (+ successes (/ square 2)
+          (* z (sqrt (the (double-float 0d0)
+                          (+ (/ (* successes failures) n) (/ square 4)))))))))
+
+(defun wilson-bounds (successes trials z)
+  (declare (type (unsigned-byte 60) successes trials) (type double-float z))
+  (if (zerop trials)
+      (values 0d0 1d0)
+      (let ((failures (double (- trials successes))) (successes (double successes)))
+        (values (wilson-low successes failures z)
+                (- 1 (wilson-low failures successes z))))))
+
+(addition wilson-interval)
+(defun wilson-interval (successes trials &key (confidence .95d0))
+  "Return the bounds, low and high, of the score interval for the probability of success (Wilson
+1927; Newcombe 1998, \"Two-sided confidence intervals for the single proportion\", method 3). On
+average over probabilities it holds the true one as often as CONFIDENCE says; near 0 and 1 it may
+not, where EXACT-INTERVAL does. Of no trials the bounds are 0 and 1; of no success, low is 0; of no
+failure, high is 1. Signals WRONG-ARGUMENT unless TRIALS is an integer from 0 to 1e9, SUCCESSES
+from 0 to TRIALS, and CONFIDENCE between 0 and 1."
+  (check-trials wilson-interval successes trials)
+  (wilson-bounds successes trials (normal-reach (check-share wilson-interval confidence))))
+
+(defun exact-low (successes trials tail)
+  "Return the probability of success that makes SUCCESSES or more of TRIALS as likely as TAIL, and
+that of failure."
+  (if (zerop successes)
+      (values 0d0 1d0)
+      (beta-quantile tail (double successes) (double (- trials successes -1)))))
+
+(addition exact-interval)
+(defun exact-interval (successes trials &key (confidence .95d0))
+  "Return the bounds, low and high, of the exact interval for the probability of success (Clopper
+and Pearson 1934; Newcombe 1998, method 5). It holds the true one at least as often as CONFIDENCE
+says, whatever that is, and so is wider than WILSON-INTERVAL, which see for the edges and errors."
+  (check-trials exact-interval successes trials)
+  (let ((tail (/ (- 1 (check-share exact-interval confidence)) 2)))
+    (values (nth-value 0 (exact-low successes trials tail))
+            (nth-value 1 (exact-low (- trials successes) trials tail)))))
+
+(defun corrected-correlation (both first second neither)
+  "Return how much the outcomes of two ways go together, less what small numbers feign (Newcombe
+1998, method 10)."
+  (let* ((trials (+ both first second neither))
+         (excess (- (* both neither) (* first second)))
+         (margins (* (+ both first) (+ second neither) (+ both second) (+ first neither))))
+    (if (zerop margins)
+        0d0
+        (/ (double (if (plusp excess) (max 0 (- excess (/ trials 2))) excess))
+           (sqrt (double margins))))))
+
+(defun side (a b correlation)
+  "Return the length of the third side of a triangle of which A and B meet at an angle with the
+cosine CORRELATION."
+  (declare (type double-float a b correlation))
+  (sqrt (max 0d0 (+ (* a a) (* b b) (* -2 correlation a b)))))
+
+(defun paired-bounds (p q bounds-of-p bounds-of-q correlation)
+  "Return the bounds for P less Q, of the bounds for each and their CORRELATION."
+  (destructuring-bind (low-p high-p low-q high-q) (append bounds-of-p bounds-of-q)
+    (values (- (- p q) (side (- p low-p) (- high-q q) correlation))
+            (+ (- p q) (side (- high-p p) (- q low-q) correlation)))))
+
+(addition paired-proportion-interval)
+(defun paired-proportion-interval (both first second neither &key (confidence .95d0))
+  "Return the bounds, low and high, of the interval for how much more probable success is one way
+than another, if in the same trials BOTH ways succeeded so often, only the FIRST, only the SECOND,
+and NEITHER (Newcombe 1998, \"Improved confidence intervals for the difference between binomial
+proportions based on paired data\", method 10). Below 0 the second way is better. Of no trials the
+bounds are -1 and 1. Signals WRONG-ARGUMENT unless the counts are integers from 0 to 1e9, which
+together are no more, and CONFIDENCE is between 0 and 1."
+  (check-count paired-proportion-interval both)
+  (check-count paired-proportion-interval first (- +largest+ both))
+  (check-count paired-proportion-interval second (- +largest+ both first))
+  (check-count paired-proportion-interval neither (- +largest+ both first second))
+  (let ((z (normal-reach (check-share paired-proportion-interval confidence)))
+        (trials (+ both first second neither)))
+    (if (zerop trials)
+        (values -1d0 1d0)
+        (paired-bounds (double (/ (+ both first) trials)) (double (/ (+ both second) trials))
+                       (multiple-value-list (wilson-bounds (+ both first) trials z))
+                       (multiple-value-list (wilson-bounds (+ both second) trials z))
+                       (corrected-correlation both first second neither)))))
+
+;;;; Means and medians
+
+(defun student-bounds (sample confidence)
+  (let ((size (length (the doubles sample))))
+    (if (< size 2)
+        (values nil nil)
+        (let ((mean (mean-of sample))
+              (reach (* (student-reach confidence (double (1- size)))
+                        (deviation-of sample size))))
+          (values (- mean reach) (+ mean reach))))))
+
+(addition student-interval)
+(defun student-interval (numbers &key (confidence .95d0))
+  "Return the bounds, low and high, of the interval for the mean of what NUMBERS, a list or vector,
+are a sample of (Student 1908). It holds the true mean as often as CONFIDENCE says if that is
+normal. Of skewed numbers it holds it less often: of exponential ones, with .95, in 89 of 100
+samples of 5, 93 of 30, and 94 of 50. BOOTSTRAP-INTERVAL is no better there. Of numbers that are all
+equal, both bounds are that number; of fewer than two, both are NIL. Signals WRONG-ARGUMENT unless
+NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
+  (let ((confidence (check-share student-interval confidence)))
+    (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
+
+(defun check-pairs (operator name seconds firsts)
+  "Signal WRONG-ARGUMENT unless there are as many SECONDS, its argument NAME, as FIRSTS."
+  (unless (= (length firsts) (length seconds))
+    (reject-argument operator name seconds
+                     (format nil "one for each of the first, which are ~D" (length firsts)))))
+
+(addition mean-difference-interval)
+(defun mean-difference-interval (firsts seconds &key (confidence .95d0))
+  "Return the bounds, low and high, of the interval for the mean of FIRSTS less that of SECONDS,
+lists or vectors of numbers that belong together one by one, such as what two plans took with the
+same seeds: STUDENT-INTERVAL of the differences (Student 1908). Both are NIL of fewer than two
+pairs. Signals WRONG-ARGUMENT as that does, and if the two are not equally many."
+  (let ((confidence (check-share mean-difference-interval confidence))
+        (firsts (sample 'mean-difference-interval 'firsts firsts))
+        (others (sample 'mean-difference-interval 'seconds seconds)))
+    (check-pairs 'mean-difference-interval 'seconds seconds firsts)
+    (student-bounds (map 'doubles #'- firsts others) confidence)))
+
+(defun outer-rank (size tail)
+  "Return the largest rank that the median of what SIZE numbers are a sample of is below with a
+probability of TAIL at most, or 0."
+  (let ((low 0) (high size))
+    (loop while (< (1+ low) high)
+          do (let ((rank (floor (+ low high) 2)))
+               (if (<= (half-or-fewer (1- rank) size) tail)
+                   (setf low rank)
+                   (setf high rank))))
+    low))
+
+(addition median-interval)
+(defun median-interval (numbers &key (confidence .95d0))
+  "Return the bounds, low and high, of the interval for the median of what NUMBERS, a list or
+vector, are a sample of, whatever its distribution, and how often such an interval holds it,
+CONFIDENCE or more: the two of NUMBERS that are so far in from the ends as that allows (David and
+Nagaraja 2003, Order Statistics, 7.1). All three are NIL if NUMBERS are too few, for .95 fewer than
+six. Signals WRONG-ARGUMENT unless they are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
+  (let* ((confidence (check-share median-interval confidence))
+         (sample (sorted (sample 'median-interval 'numbers numbers)))
+         (size (length sample))
+         (rank (outer-rank size (/ (- 1 confidence) 2))))
+    (if (zerop rank)
+        (values nil nil nil)
+        (values (aref sample (1- rank)) (aref sample (- size rank))
+                (- 1 (* 2 (half-or-fewer (1- rank) size)))))))
+
+;;;; Any statistic, by the bootstrap
+
+(defparameter *most-groups* 500
+  "In how many groups at most a sample is left out bit by bit: enough to tell how skewed it is.")
+
+(defun statistic-function (statistic)
+  (case statistic
+    (:mean #'mean-of)
+    (:median #'median-of)
+    (t (and (functionp statistic) statistic))))
+
+(defun checked-statistic (function)
+  "Return a function that calls FUNCTION and signals WRONG-ARGUMENT unless that returns a number."
+  (lambda (sample)
+    (let ((value (funcall function sample)))
+      (unless (quantity-p value)
+        (reject-argument 'bootstrap-interval 'statistic function
+                         "a function that returns a number from -1e15 to 1e15"))
+      (double value))))
+
+(defun draw-again (sample drawn dice)
+  "Fill DRAWN with numbers of SAMPLE, each as likely as another."
+  (declare (type doubles sample drawn) (type dice dice) #.*hot*)
+  (let ((size (length sample)))
+    (dotimes (i (length drawn) drawn)
+      (setf (aref drawn i)
+            (aref sample (the fixnum (truncate (the (double-float 0d0 1d18)
+                                                    (* (roll dice) size)))))))))
+
+(defun resampled (sample function resamples dice)
+  "Return what FUNCTION says of RESAMPLES samples drawn from SAMPLE, sorted."
+  (let ((drawn (make-array (length sample) :element-type 'double-float))
+        (values (make-array resamples :element-type 'double-float)))
+    (dotimes (i resamples (sorted values))
+      (setf (aref values i) (funcall function (draw-again sample drawn dice))))))
+
+(defun sample-without (sample group groups)
+  "Return SAMPLE without each GROUPS-th of its numbers, from index GROUP."
+  (declare (type doubles sample) (type fixnum group groups))
+  (coerce (loop for x across sample for i of-type fixnum from 0
+                unless (= group (mod i groups)) collect x)
+          'doubles))
+
+(defun skewness-of-influence (sample function)
+  "Return the acceleration: how the deviation of what FUNCTION says changes with what is so (Efron
+and Tibshirani 1993, formula 14.15, of groups if SAMPLE is large)."
+  (let* ((groups (min (length sample) *most-groups*))
+         (left (coerce (loop for group below groups
+                             collect (funcall function (sample-without sample group groups)))
+                       'doubles))
+         (mean (mean-of left)) (squares 0d0) (cubes 0d0)
+         (influences (map 'doubles (lambda (value) (- mean value)) left)))
+    (loop for influence across (magnified influences (magnification influences))
+          do (incf squares (expt influence 2))
+             (incf cubes (* (expt influence 2) influence)))
+    (if (zerop squares) 0d0 (/ cubes (* 6 (* squares (sqrt squares)))))))
+
+(defun bias (values found)
+  "Return by how many deviations FOUND is off the middle of VALUES, some of which may equal it
+(Efron and Tibshirani 1993, formula 14.14)."
+  (declare (type doubles values) (type double-float found))
+  (let* ((size (length values))
+         (below (+ (count found values :test #'>) (/ (count found values :test #'=) 2))))
+    (normal-quantile (double (/ (clamp below 1/2 (- size 1/2)) size)))))
+
+(defun corrected-share (z bias acceleration)
+  "Return which share of the values drawn is to be below a bound that lies Z deviations off (Efron
+and Tibshirani 1993, formula 14.10)."
+  (declare (type double-float z bias acceleration))
+  (let* ((off (+ bias z)) (rest (- 1 (* acceleration off))))
+    (cond ((plusp rest) (normal-probability (+ bias (/ off rest))))
+          ((plusp off) 1d0)
+          (t 0d0))))
+
+(defun bootstrap-bounds (sample function z resamples dice)
+  (let* ((found (funcall function (copy-seq sample)))
+         (values (resampled sample function resamples dice))
+         (bias (bias values found))
+         (acceleration (skewness-of-influence sample function)))
+    (flet ((bound (z)
+             (sorted-quantile values (corrected-share z bias acceleration))))
+      (values (bound (- z)) (bound z)))))
+
+(addition bootstrap-interval)
+(defun bootstrap-interval (numbers &key (statistic :mean) (resamples 2000) (seed 0)
+                                     (confidence .95d0))
+  "Return the bounds, low and high, of the interval for a STATISTIC of what NUMBERS, a list or
+vector, are a sample of: the bias-corrected and accelerated bootstrap (Efron 1987; Efron and
+Tibshirani 1993, chapter 14). STATISTIC is :MEAN, :MEDIAN or a function of a vector of
+double-floats, which may sort but must not keep it, to a number. It is asked of RESAMPLES samples,
+drawn from NUMBERS by the dice for SEED, an integer: the same bounds each time. Of few numbers it
+is too narrow: the .95 interval for the mean of 5 normal ones holds it in 85 of 100 samples, of 10
+in 90, of 30 in 94; there STUDENT-INTERVAL is better. No bound lies beyond what was found in the
+samples drawn: with fewer of them than 20 / (1 - CONFIDENCE), bounds vary with SEED or are too
+near. Of numbers that are all equal, both bounds are what is found in them; of fewer than two,
+both are NIL. Signals WRONG-ARGUMENT unless NUMBERS and what STATISTIC returns are from -1e15 to
+1e15, RESAMPLES from 100 to 1e7, and CONFIDENCE between 0 and 1."
+  (let ((z (normal-reach (check-share bootstrap-interval confidence)))
+        (sample (sample 'bootstrap-interval 'numbers numbers))
+        (function (statistic-function statistic)))
+    (check-argument bootstrap-interval statistic function
+                    ":mean, :median or a function of a vector of numbers")
+    (check-resampling bootstrap-interval resamples seed)
+    (if (< (length sample) 2)
+        (values nil nil)
+        (bootstrap-bounds sample (checked-statistic function) z resamples
+                          (make-dice seed "bootstrap")))))

@@ -1,0 +1,243 @@
+;;;; tests.lisp -- whether what was seen is more than chance.
+
+(in-package :ars-magna.statistics)
+
+(addition mcnemar-test)
+(defun mcnemar-test (first second)
+  "Return how likely it is that two equally good ways differ as much as these: of the same trials,
+FIRST succeeded one way only, SECOND the other way only; those with the same outcome both ways say
+nothing. The test is exact, and its size never above what it says (McNemar 1947; Fagerland,
+Lydersen and Laake 2013, \"The McNemar test for binary matched-pairs data\"). The second value is
+the mid-p of the same paper, less careful and as a rule nearer to the truth. Both are 1 of no
+trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
+  (check-count mcnemar-test first)
+  (check-count mcnemar-test second)
+  (let* ((trials (+ first second)) (fewer (min first second))
+         (tail (half-or-fewer fewer trials))
+         (point (- tail (half-or-fewer (1- fewer) trials))))
+    (cond ((zerop trials) (values 1d0 1d0))
+          ((= first second) (values 1d0 (- 1 (/ point 2))))
+          (t (values (min 1d0 (* 2 tail)) (- (* 2 tail) point))))))
+
+;;;; Rare sums of signs
+
+;;; Draws of fair signs never say less than 1 / (draws + 1), which is too much where a test is one
+;;; of hundreds. So signs are drawn that are tilted towards the sum that was seen: a number A is
+;;; positive with the odds e^(2 A tilt), such that this sum is the mean. A draw then counts by its
+;;; weight, how much less likely it is with fair signs: e^(log cosh (A tilt) summed - tilt * sum).
+;;; In the tail that is never more than Chernoff's bound, so the share is known to a few per cent,
+;;; however small. What was seen counts as one of the draws (Harrison 2012, "Conservative
+;;; hypothesis tests and confidence intervals using importance sampling").
+
+(defun minus-share (x)
+  "Return how likely a number with the odds e^(2X) of being positive is negative; X is not below 0."
+  (declare (type double-float x))
+  (let ((odds (exponential (* -2 (min x 300d0)))))
+    (/ odds (+ 1 odds))))
+
+(defun tilted-mean (sizes tilt)
+  "Return the mean of the sum of SIZES with signs that are drawn with TILT."
+  (declare (type doubles sizes) (type double-float tilt))
+  (loop for size across sizes
+        sum (* size (- 1 (* 2 (minus-share (* size tilt))))) of-type double-float))
+
+(defun tilt-for (sizes sum)
+  "Return the tilt with which the sum of SIZES, the largest of which is 1, is SUM on average."
+  (declare (type doubles sizes) (type double-float sum))
+  (let ((low 0d0) (high (/ 20 (max 1d-4 (reduce #'min sizes)))))
+    (loop repeat 40
+          for middle of-type double-float = (/ (+ low high) 2)
+          do (if (< (tilted-mean sizes middle) sum) (setf low middle) (setf high middle)))
+    low))
+
+(defun log-of-cosh (x)
+  (declare (type double-float x))
+  (- x (logarithm (* 2 (- 1 (minus-share x))))))
+
+(defun tilted-sum (sizes shares dice)
+  "Return the sum of SIZES, each negative with its probability among SHARES."
+  (declare (type doubles sizes shares) (type dice dice) #.*hot*)
+  (loop with sum of-type double-float = 0d0
+        for size across sizes
+        for share across shares
+        do (incf sum (if (< (roll dice) share) (- size) size))
+        finally (return sum)))
+
+(defun tail-share (sizes sum grain resamples dice)
+  "Return how likely SIZES, at most 1, with signs thrown by a coin, sum up to SUM or more either
+way, by RESAMPLES tilted draws."
+  (let* ((tilt (tilt-for sizes sum))
+         (shares (map 'doubles (lambda (size) (minus-share (* size tilt))) sizes))
+         (logs (loop for size across sizes sum (log-of-cosh (* size tilt)))))
+    (flet ((weight (sum) (exponential (max -700d0 (- logs (* tilt sum))))))
+      (/ (loop with weights = (weight sum)
+               repeat resamples
+               for drawn = (tilted-sum sizes shares dice)
+               when (>= drawn (- sum grain)) do (incf weights (weight drawn))
+               finally (return (* 2 weights)))
+         (1+ resamples)))))
+
+(defun rare-share (sizes sum grain resamples dice)
+  "Return how likely numbers of SIZES, with signs thrown by a coin, sum up to SUM or more either
+way, if that is seldom."
+  (let ((largest (reduce #'max sizes)))
+    (min 1d0 (tail-share (map 'doubles (lambda (size) (/ size largest)) sizes)
+                         (/ sum largest) (/ grain largest) resamples dice))))
+
+;;;; The permutation test
+
+;;; If both ways are alike, each difference might as well have had the other sign. The test counts
+;;; for how many choices of all signs the sum is as far from 0 as it was. The sums are kept sorted,
+;;; with their probabilities; each difference doubles them, but for those that fall together, which
+;;; whole numbers mostly do. If they get too many, signs are drawn instead.
+
+(defparameter *most-sums* (expt 2 18)
+  "How many sums times differences that are left there may be.")
+
+(deftype sums ()
+  "Sums, sorted, and their probabilities."
+  '(cons doubles doubles))
+
+(defun merge-sums (sums difference grain)
+  "Return what becomes of SUMS when DIFFERENCE, not below 0, is added or taken away; those are one
+that are closer than GRAIN."
+  (declare (type sums sums) (type double-float difference grain) #.*hot*)
+  (destructuring-bind (old . odds) sums
+    (declare (type doubles old odds))
+    (let* ((size (length old)) (count 0) (i 0) (j 0)
+           (new (make-array (* 2 size) :element-type 'double-float))
+           (new-odds (make-array (* 2 size) :element-type 'double-float)))
+      (declare (type fixnum size count i j))
+      (flet ((note (sum odds)
+               (declare (type double-float sum odds))
+               (if (and (plusp count) (<= (- sum (aref new (1- count))) grain))
+                   (incf (aref new-odds (1- count)) (* odds 1/2))
+                   (setf (aref new count) sum
+                         (aref new-odds count) (* odds 1/2)
+                         count (1+ count)))))
+        (declare (inline note))
+        (loop while (< j size)
+              do (let ((up (+ (aref old j) difference)))
+                   (cond ((and (< i size) (<= (- (aref old i) difference) up))
+                          (note (- (aref old i) difference) (aref odds i))
+                          (incf i))
+                         (t (note up (aref odds j))
+                            (incf j))))))
+      (cons (subseq new 0 count) (subseq new-odds 0 count)))))
+
+(defun exact-share (sizes sum grain)
+  "Return the probability that numbers of SIZES, with signs thrown by a coin, sum up to SUM or more
+either way; NIL if that is too much work. What is within GRAIN is equal."
+  (loop with sums = (cons (coerce '(0d0) 'doubles) (coerce '(1d0) 'doubles))
+        for size across sizes
+        for left downfrom (length sizes)
+        when (> (* left (length (the doubles (car sums)))) *most-sums*)
+          do (return nil)
+        do (setf sums (merge-sums sums size grain))
+        finally (return (loop for found across (the doubles (car sums))
+                              for odds across (the doubles (cdr sums))
+                              when (>= (abs found) (- sum grain)) sum odds))))
+
+(defun drawn-share (sizes sum grain resamples dice)
+  "Return the share of RESAMPLES draws whose sum is SUM or more either way; what was seen counts as
+one of them, so that it is never 0 (Phipson and Smyth 2010)."
+  (let ((shares (map 'doubles (constantly .5d0) sizes)))
+    (/ (double (1+ (loop repeat resamples
+                         count (>= (abs (tilted-sum sizes shares dice)) (- sum grain)))))
+       (1+ resamples))))
+
+(defconstant +seldom+ .05d0
+  "What is no more likely than this is drawn anew with tilted signs, if that is wanted.")
+
+(defun share-by-draws (sizes sum grain resamples seed rare-too)
+  "Return what DRAWN-SHARE says; or RARE-SHARE if that is little and RARE-TOO is true."
+  (let ((share (drawn-share sizes sum grain resamples (make-dice seed "permutation"))))
+    (if (and rare-too (<= share +seldom+))
+        (rare-share sizes sum grain resamples (make-dice seed "rare signs"))
+        share)))
+
+(addition permutation-test)
+(defun permutation-test (differences &key (resamples 10000) (seed 0) rare-too)
+  "Return how likely it is that DIFFERENCES, a list or vector of numbers, have a mean as far from 0
+as this if each might as well have had the other sign: the paired permutation test (Fisher 1935,
+The Design of Experiments, 21). The second value is true if it is exact, by going through all signs
+(Pagano and Tritchler 1983), which is so for up to 19 numbers, and for more if many are equal or
+whole; else it is by RESAMPLES draws with the dice for SEED, an integer, the same each time. Draws
+never say less than 1/(RESAMPLES + 1). With RARE-TOO, what they find in 1 of 20 at most is drawn
+again so that rare sums come often, and counts by its weight (importance sampling, Harrison 2012):
+give this if the test is one of many. Sums that differ by rounding only are equal. It is 1 of none,
+and if all are 0; of N numbers it is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are
+from -1e15 to 1e15, and RESAMPLES from 100 to 1e7."
+  (check-resampling permutation-test resamples seed)
+  (let* ((sample (sample 'permutation-test 'differences differences))
+         (sum (abs (sum sample)))
+         (sizes (sorted (map 'doubles #'abs (remove-if #'zerop sample))))
+         (grain (* 1d-13 (sum sizes)))
+         (exact (exact-share sizes sum grain)))
+    (if exact
+        (values (min 1d0 exact) t)
+        (values (share-by-draws sizes sum grain resamples seed rare-too) nil))))
+
+;;;; Several tests
+
+(defun fill-holm (shares ranked)
+  "Set the elements of the vector SHARES to what they are worth among the others; RANKED are its
+indexes, from the least share on."
+  (loop with worth = 0d0
+        for index in ranked
+        for left downfrom (length shares)
+        do (setf worth (max worth (min 1d0 (* left (aref shares index))))
+                 (aref shares index) worth)))
+
+(addition holm-adjusted)
+(defun holm-adjusted (p-values)
+  "Return a list of P-VALUES, a list or vector, each as it counts among so many tests: if all whose
+result is at most .05 are called real, one or more of them are not so with a probability of at most
+.05 (Holm 1979; Wright 1992 for the adjustment). They are in the order given; of equal ones the
+result is equal. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
+  (check-argument holm-adjusted p-values (elements-p p-values #'probability-p)
+                  "a list or vector of numbers from 0 to 1")
+  (let ((shares (map 'doubles #'meant p-values)))
+    (fill-holm shares (stable-sort (loop for i below (length shares) collect i) #'<
+                                   :key (lambda (i) (aref shares i))))
+    (coerce shares 'list)))
+
+;;;; Looking at results while they come in
+
+(addition sequential-level)
+(defun sequential-level (look &key (level .05d0))
+  "Return the share of LEVEL that may be spent at LOOK, 1, 2, 3 ...: LEVEL / (LOOK (LOOK + 1)). As
+these add up to LEVEL, whoever looks at growing results again and again, and takes an interval with
+a confidence of 1 less that share each time, errs in any of them with a probability of at most
+LEVEL (Bonferroni's inequality, spent as in Lan and DeMets 1983). Signals WRONG-ARGUMENT unless
+LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
+  (check-argument sequential-level look (whole-p look 1 100000) "an integer from 1 to 100000")
+  (/ (check-share sequential-level level) (* look (1+ look))))
+
+(defun log-evidence (successes trials rate)
+  (declare (type double-float rate))
+  (- 0d0 (logarithm (double (1+ trials)))
+     (log-binomial-density (double successes) (double (- trials successes)) rate (- 1 rate))))
+
+(addition rate-evidence)
+(defun rate-evidence (successes trials rate)
+  "Return how much SUCCESSES of TRIALS speak against success having the probability RATE: the
+logarithm of how much more likely they are on average over all probabilities, each as likely as
+another. If the probability is RATE, it ever exceeds log(1/LEVEL), at whatever number of trials,
+with a probability of at most LEVEL (Ville 1939; Robbins 1970, the mixture of binomials; Howard,
+Ramdas, McAuliffe and Sekhon 2021). 0 of no trials; below 0 it speaks for RATE. Signals
+WRONG-ARGUMENT unless TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE
+between 0 and 1."
+  (check-trials rate-evidence successes trials)
+  (log-evidence successes trials (check-share rate-evidence rate)))
+
+(addition rate-verdict)
+(defun rate-verdict (successes trials rate &key (level .05d0))
+  "Return :ABOVE or :BELOW if SUCCESSES of TRIALS show that success is more, or less, probable than
+RATE, and NIL if they do not say yet. It may be asked after each trial, and the trials stopped when
+it answers: whoever does so is told of a difference where there is none with a probability of at
+most LEVEL. See RATE-EVIDENCE, also for errors; LEVEL is between 0 and 1."
+  (check-trials rate-verdict successes trials)
+  (let ((rate (check-share rate-verdict rate)))
+    (when (>= (log-evidence successes trials rate) (- (logarithm (check-share rate-verdict level))))
+      (if (> successes (* rate trials)) :above :below))))
