@@ -160,11 +160,9 @@
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "task-tree") (:file "saving")))
    (:module "src/plots" :serial t
-    :components ((:file "package") (:file "figures") (:file "axis") (:file "looks")
-                 (:file "words") (:file "page") (:file "series") (:file "legend")
-                 (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
-                 (:file "survival-chart") (:file "rows") (:file "difference-chart")
-                 (:file "measure-chart")))
+    :components ((:file "package") (:file "figures") (:file "looks") (:file "axis")
+                 (:file "plane") (:file "line-chart") (:file "survival-chart")
+                 (:file "row-charts")))
    (:module "src/trails" :serial t
     :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")
                  (:file "spots") (:file "run-picture")))

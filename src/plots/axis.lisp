@@ -1,4 +1,4 @@
-;;;; axis.lisp -- from numbers to pixels, with marks at round numbers.
+;;;; axis.lisp -- from numbers to pixels, with marks at round numbers; axes of words.
 
 (in-package :ars-magna.plots)
 
@@ -59,9 +59,6 @@ these, but no more than a sixth of it."
 
 ;;; Do the marks fit?
 
-(defconstant +text-size+ 12 "How high the font of charts is, in pixels.")
-(defconstant +text-step+ 15 "How far lines of text are apart, in pixels.")
-
 (defun mark-width (mark) (lines-width (rest mark)))
 
 (defun marks-width (axis)
@@ -91,16 +88,6 @@ LEAST-STEP apart at least."
         for step = (max least-step (round-step (- high low) most))
         collect (step-marks step start end percent)))
 
-(defun linear-axis (values from to &key percent (least 0) (inset 16))
-  "Return an axis for VALUES from the pixel FROM to TO, with as many marks as fit, at least LEAST
-pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
-  (let ((least-step (least-step values percent)))
-    (multiple-value-bind (low high) (limits values least-step)
-      (multiple-value-bind (start end) (widened low high from to inset)
-        (fit-marks (make-axis :low start :high end :from from :to to)
-                   (step-candidates low high low high percent least-step)
-                   least)))))
-
 (defun decade-marks (low high factors every)
   "Return marks at FACTORS times each power of ten that EVERY divides, from LOW to HIGH."
   (loop for power from (floor low) to (ceiling high)
@@ -119,18 +106,20 @@ pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
                                        (5 1) (10 1) (50 1) (200 1))
             collect (decade-marks low high factors every))))
 
-(defun logarithmic-axis (values from to &key percent (least 0) (inset 16))
-  "Return an axis for the logarithms of VALUES as LINEAR-AXIS does for these."
-  (multiple-value-bind (low high)
-      (limits (mapcar (lambda (value) (spot-of value t)) (or values '(1 10))))
-    (multiple-value-bind (start end) (widened low high from to inset)
-      (fit-marks (make-axis :low start :high end :from from :to to :log-p t)
-                 (logarithmic-candidates start end percent)
-                 least))))
-
-(defun axis-across (values from to log-p &rest options)
-  "Return an axis for VALUES as LINEAR-AXIS does with OPTIONS, logarithmic if LOG-P."
-  (apply (if log-p #'logarithmic-axis #'linear-axis) values from to options))
+(defun axis-across (values from to log-p &key percent (least 0) (inset 16))
+  "Return an axis for VALUES, logarithmic if LOG-P, from the pixel FROM to TO, with as many marks as
+fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
+  (let ((least-step (if log-p 0 (least-step values percent)))
+        (spots (if log-p
+                   (mapcar (lambda (value) (spot-of value t)) (or values '(1 10)))
+                   values)))
+    (multiple-value-bind (low high) (limits spots least-step)
+      (multiple-value-bind (start end) (widened low high from to inset)
+        (fit-marks (make-axis :low start :high end :from from :to to :log-p (and log-p t))
+                   (if log-p
+                       (logarithmic-candidates start end percent)
+                       (step-candidates low high low high percent least-step))
+                   least)))))
 
 ;;; The axis upward. Its ends are marks.
 
@@ -144,3 +133,47 @@ pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
            (low (multiple-below step low))
            (high (multiple-above step high)))
       (make-axis :low low :high high :marks (step-marks step low high percent)))))
+
+;;;; An axis of words
+
+;;; The words stand below their places, in up to three lines, if none need be broken for that; else
+;;; they run upward, and if there are too many for the page, it becomes wider.
+
+(defconstant +longest-upward+ 170 "How long a line of a name that runs upward is, in pixels.")
+
+(defun across-lines (words width)
+  "Return the lines of each of WORDS within WIDTH pixels, or NIL if they don't fit in three."
+  (let ((all (mapcar (lambda (word) (wrapped word width)) words)))
+    (and (every (lambda (word lines)
+                  (and (<= (length lines) 3)
+                       (every (lambda (piece) (<= (text-width piece +text-size+) width))
+                              (split word #'space-p))))
+                words all)
+         all)))
+
+(defun word-axis (words from to)
+  "Return an axis with a mark for each of WORDS: 0, 1, 2 .... It may reach beyond the pixel TO."
+  (let* ((count (max 1 (length words)))
+         (across (across-lines words (- (/ (- to from) count) 8)))
+         (all (or across (mapcar (lambda (word) (wrapped word +longest-upward+)) words)))
+         (least (if across 0 (+ 1 (reduce #'max all :key #'lines-height :initial-value 0)))))
+    (make-axis :low -1/2 :high (- count 1/2) :from from :to (max to (+ from (* count least)))
+               :marks (loop for lines in all for number from 0 collect (cons number lines))
+               :upward-p (null across))))
+
+(defun marks-height (axis)
+  "Return how much room the marks of AXIS take below it, in pixels."
+  (+ 8 (if (axis-upward-p axis)
+           (marks-width axis)
+           (reduce #'max (axis-marks axis) :key (lambda (mark) (lines-height (rest mark)))
+                                           :initial-value 0))))
+
+(defun draw-marks-across (canvas axis y)
+  "Draw the marks of AXIS, which runs across at Y, and what they say."
+  (loop for (value . lines) in (axis-marks axis)
+        for x = (place value axis)
+        do (with-ink (+line-ink+)
+             (draw-line canvas draw-gcontext* x y x (+ y 4)))
+           (if (axis-upward-p axis)
+               (write-lines-upward canvas x (+ y 8) lines)
+               (write-lines canvas x (+ y 17) lines :anchor :middle))))

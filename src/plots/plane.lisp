@@ -1,15 +1,67 @@
-;;;; plane.lisp -- a page with title, two axes and a legend, laid out so that nothing overlaps.
+;;;; plane.lisp -- a page with title, two axes and a legend, where nothing overlaps.
 
 (in-package :ars-magna.plots)
+
+(defconstant +sample-width+ 30 "How wide the sample of a series is, in pixels.")
+(defconstant +entry-gap+ 6 "How far entries of the legend are apart, in pixels.")
+
+(defstruct (legend (:copier nil))
+  "What stands beside a chart: the lines TITLE, and ENTRIES, lists (index line...)."
+  (title '() :type list)
+  (entries '() :type list)
+  (connect t)
+  (width 0 :type real)
+  (height 0 :type real))
+
+(defun title-height (title)
+  "Return how much room TITLE, lines, takes above the entries."
+  (if title (+ +entry-gap+ (lines-height title)) 0))
+
+(defun plan-legend (names title most connect)
+  "Return the legend for series called NAMES below TITLE, a string or NIL, at most MOST pixels wide;
+one of no width if all are empty. CONNECT: lines belong to the samples."
+  (if (every (lambda (name) (string= "" name)) names)
+      (make-legend)
+      (let* ((room (- most +sample-width+ 24))
+             (title (wrapped title (- most 24) :bold-p t))
+             (entries (loop for name in names
+                            for index from 0
+                            collect (cons index (wrapped name room)))))
+        (make-legend :title title :entries entries :connect connect
+                     :width (max (+ 24 (lines-width title +text-size+ t))
+                                 (+ +sample-width+ 24
+                                    (reduce #'max entries :key (lambda (entry)
+                                                                 (lines-width (rest entry))))))
+                     :height (+ (title-height title)
+                                (loop for (nil . lines) in entries
+                                      sum (+ +entry-gap+ (lines-height (or lines '(""))))))))))
+
+(defun draw-sample (canvas index x y connect)
+  "Draw how the series INDEX looks from X, around Y."
+  (when connect
+    (with-look (index 1.8)
+      (draw-line canvas draw-gcontext* x y (+ x +sample-width+) y)))
+  (draw-marker canvas index (+ x (/ +sample-width+ 2)) y))
+
+(defun draw-legend (canvas legend x y)
+  (write-lines canvas (+ x 16) (+ y 10) (legend-title legend) :bold-p t)
+  (incf y (title-height (legend-title legend)))
+  (loop for (index . lines) in (legend-entries legend)
+        do (draw-sample canvas index (+ x 16) (+ y 6) (legend-connect legend))
+           (write-lines canvas (+ x 16 +sample-width+ 8) (+ y 10) lines)
+           (incf y (+ +entry-gap+ (lines-height (or lines '("")))))))
 
 (defconstant +least-height+ 170 "How high the place for the data is at least, in pixels.")
 (defconstant +least-width+ 200 "How wide the place for the data is at least, in pixels.")
 
-(defstruct (plane (:copier nil))
-  "A page. What is across and upward are axes, LEFT to BOTTOM the box that they enclose, all in
-pixels. BELOW is where what a chart adds below begins."
-  heading across upward legend x-lines y-lines
-  (left 0) (right 0) (top 0) (bottom 0) (below 0) (width 0) (height 0))
+(defstruct (page (:copier nil))
+  "What is drawn: ACROSS is an axis, LEFT to BOTTOM the box where the data are, in pixels."
+  heading across x-lines
+  (left 0) (right 0) (top 0) (bottom 0) (width 0) (height 0))
+
+(defstruct (plane (:include page) (:copier nil))
+  "A page with an axis UPWARD. BELOW is where what a chart adds below begins."
+  upward legend y-lines (below 0))
 
 (defun plan-plane (make-across upward names
                    &key title subtitle x-label y-label legend-title (width 720) (height 440)
@@ -49,31 +101,41 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
              (draw-line canvas draw-gcontext* left y (plane-right plane) y))
            (write-lines canvas (- left 8) (+ y 4) lines :anchor :end)))
 
-(defun draw-no-data (canvas left top right bottom)
-  (write-lines canvas (/ (+ left right) 2) (/ (+ top bottom) 2) '("no data") :anchor :middle
-               :color +faint-ink+))
+(defun draw-no-data (canvas page)
+  (write-lines canvas (/ (+ (page-left page) (page-right page)) 2)
+               (/ (+ (page-top page) (page-bottom page)) 2) '("no data")
+               :anchor :middle :color +faint-ink+))
+
+(defun draw-across (canvas page)
+  "Draw the axis of PAGE across, with what is said of it below."
+  (let ((across (page-across page)) (bottom (page-bottom page)))
+    (draw-marks-across canvas across bottom)
+    (write-lines canvas (/ (+ (page-left page) (page-right page)) 2)
+                 (+ bottom (marks-height across) 15) (page-x-lines page) :anchor :middle)))
 
 (defun draw-plane (canvas plane)
   (let ((left (plane-left plane)) (top (plane-top plane)) (right (plane-right plane))
-        (bottom (plane-bottom plane)) (across (plane-across plane)))
-    (draw-heading canvas (plane-heading plane))
+        (bottom (plane-bottom plane)))
     (write-lines canvas +margin+ (- top 2 (lines-height (plane-y-lines plane)))
                  (plane-y-lines plane))
     (draw-upward canvas plane)
     (with-ink (+line-ink+ 1.2)
       (draw-lines canvas draw-gcontext* (list left top left bottom right bottom)))
-    (draw-marks-across canvas across bottom)
-    (write-lines canvas (/ (+ left right) 2) (+ bottom (marks-height across) 15)
-                 (plane-x-lines plane) :anchor :middle)
+    (draw-across canvas plane)
     (draw-legend canvas (plane-legend plane) right top)))
+
+(defun page-svg (page draw)
+  "Return PAGE, with what the function DRAW draws on a canvas, as an SVG document, a string."
+  (with-output-to-string (stream)
+    (with-svg (canvas stream :font +text-font+)
+      (with-canvas (canvas)
+        (draw-heading canvas (page-heading page))
+        (funcall draw canvas)
+        (values (page-width page) (page-height page))))))
 
 (defun plane-svg (plane data-p draw-data)
   "Return PLANE as an SVG document, with what DRAW-DATA draws on the canvas it is given, or a word
 that there is nothing unless DATA-P."
-  (page-svg (lambda (canvas)
-              (draw-plane canvas plane)
-              (if data-p
-                  (funcall draw-data canvas)
-                  (draw-no-data canvas (plane-left plane) (plane-top plane)
-                                (plane-right plane) (plane-bottom plane))))
-            (plane-width plane) (plane-height plane)))
+  (page-svg plane (lambda (canvas)
+                    (draw-plane canvas plane)
+                    (if data-p (funcall draw-data canvas) (draw-no-data canvas plane)))))

@@ -1,0 +1,215 @@
+;;;; row-charts.lisp -- rows along one axis of numbers: differences, and measured values.
+
+(in-package :ars-magna.plots)
+
+(export '(difference-chart measure-chart))
+
+(defstruct (row (:constructor make-row (label words height)) (:copier nil))
+  "Lines of text to the left and to the right. TOP and HEIGHT are pixels."
+  (label '() :type list :read-only t)
+  (words '() :type list :read-only t)
+  (height 0 :read-only t)
+  (top 0))
+
+(defun row-middle (row) (+ (row-top row) (/ (row-height row) 2)))
+
+(defun plan-row (label words width least)
+  "Return a row at least LEAST pixels high on a page of WIDTH. WORDS is a list of strings."
+  (let ((label (wrapped label (* 32/100 width)))
+        (words (loop for text in words append (wrapped text (* 34/100 width)))))
+    (make-row label words
+              (+ 8 (max least (lines-height label) (lines-height words))))))
+
+(defstruct (table (:include page) (:copier nil))
+  "A page of rows."
+  rows)
+
+(defun stack-rows (rows top)
+  "Put ROWS below each other from TOP. Return where they end."
+  (dolist (row rows top)
+    (setf (row-top row) top)
+    (incf top (row-height row))))
+
+(defun plan-table (entries values &key title subtitle x-label (width 720) (least 14) log-x percent)
+  "Return a table of ENTRIES, lists (label text...), with an axis for VALUES. Each row is at least
+LEAST pixels high. The page becomes wider than WIDTH if it must."
+  (check-size width 440)
+  (flet ((widest (reader rows)
+           (reduce #'max rows :initial-value 0
+                              :key (lambda (row) (lines-width (funcall reader row))))))
+    (let* ((heading (plan-heading title subtitle width))
+           (rows (loop for (label . words) in entries
+                       collect (plan-row label words width least)))
+           (left (+ +margin+ (widest #'row-label rows) 12))
+           (words-width (widest #'row-words rows))
+           (right (max (+ left +least-width+)
+                       (- width +margin+ (if (plusp words-width) (+ 14 words-width) 16))))
+           (across (axis-across values left right log-x :percent percent))
+           (top (+ (heading-bottom heading) 12))
+           (bottom (+ 4 (stack-rows rows (+ top 4))))
+           (bottom (if rows bottom (+ top 60)))
+           (x-lines (wrapped x-label (- right left))))
+      (make-table :heading heading :across across :rows rows :x-lines x-lines
+                  :left left :right right :top top :bottom bottom
+                  :width (ceiling (+ right (max 16 (+ 14 words-width)) +margin+))
+                  :height (ceiling (+ bottom (marks-height across) 6 (lines-height x-lines)
+                                      +margin+))))))
+
+(defun write-beside (canvas x row lines anchor)
+  "Write LINES at X beside ROW, around its middle."
+  (write-lines canvas x (+ 12 (- (row-middle row) (/ (lines-height lines) 2))) lines
+               :anchor anchor))
+
+(defun draw-table (canvas table draw-row)
+  "Draw TABLE; call DRAW-ROW with CANVAS, each row and its number to draw the numbers."
+  (let ((left (table-left table)) (right (table-right table)) (top (table-top table))
+        (bottom (table-bottom table)) (across (table-across table)))
+    (with-ink (+grid-ink+)
+      (loop for (value) in (axis-marks across)
+            for x = (place value across)
+            do (draw-line canvas draw-gcontext* x top x bottom)))
+    (with-ink (+line-ink+ 1.2)
+      (draw-line canvas draw-gcontext* left bottom right bottom))
+    (draw-across canvas table)
+    (loop for row in (table-rows table)
+          for number from 0
+          do (write-beside canvas (- left 12) row (row-label row) :end)
+             (write-beside canvas (+ right 14) row (row-words row) :start)
+             (funcall draw-row canvas row number))
+    (unless (table-rows table) (draw-no-data canvas table))))
+
+(defun table-svg (table draw-row)
+  "Return TABLE as an SVG document. DRAW-ROW is called with a canvas, each row and its number."
+  (page-svg table (lambda (canvas) (draw-table canvas table draw-row))))
+
+;;;; Differences with intervals, against zero
+
+(defun checked-difference (row)
+  "Return ROW as a list (label estimate low high words): what is compared, an estimate with an
+interval, any of which may be NIL, and what else is said of it."
+  (check-argument difference-chart row (and (consp row) (ignore-errors (<= 2 (length row) 5)))
+                  "a list (label estimate low high words)")
+  (destructuring-bind (label estimate &optional low high words) row
+    (list (name-text label) (exact estimate) (exact low) (exact high) words)))
+
+(defun signed-text (value percent)
+  (concatenate 'string (if (and value (plusp value)) "+" "")
+               (figure-text value :percent percent :digits 3)))
+
+(defun interval-text (value low high text)
+  "Return what is said of VALUE and its interval, each written by the function TEXT."
+  (cond ((null value) "no data")
+        ((and low high)
+         (format nil "~A (~A to ~A)" (funcall text value) (funcall text low) (funcall text high)))
+        (t (funcall text value))))
+
+(defun difference-entry (difference percent)
+  (destructuring-bind (label estimate low high words) difference
+    (list label
+          (interval-text estimate low high (lambda (value) (signed-text value percent)))
+          words)))
+
+(defun draw-estimate (canvas index y value low high across)
+  "Draw VALUE with its interval along the axis ACROSS at Y, with the look of INDEX."
+  (when (and low high)
+    (with-ink ((look-color index) 1.8)
+      (draw-interval-across canvas y (place low across) (place high across))))
+  (when value
+    (draw-marker canvas index (place value across) y 5)))
+
+(defun draw-zero (canvas table)
+  (let ((x (place 0 (table-across table))))
+    (with-ink (+line-ink+ 1.2)
+      (draw-line canvas draw-gcontext* x (table-top table) x (table-bottom table)))))
+
+(defun difference-chart (rows &key percent title subtitle x-label (width 720))
+  "Return a chart of differences, one below the other against a line at 0, as an SVG document. ROWS
+are lists (label estimate low high words): what is compared, the difference, its interval, and what
+else is said of it, such as \"p = 0.03\". All but LABEL may be NIL. PERCENT: they are shown as
+hundredths. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
+  (check-argument difference-chart rows (listp rows) "a list of rows")
+  (let* ((differences (mapcar #'checked-difference rows))
+         (table (plan-table (mapcar (lambda (difference) (difference-entry difference percent))
+                                    differences)
+                            (cons 0 (loop for difference in differences
+                                          append (remove nil (subseq difference 1 4))))
+                            :title title :subtitle subtitle :x-label x-label :width width
+                            :percent percent)))
+    (table-svg table
+               (lambda (canvas row number)
+                 (when (zerop number) (draw-zero canvas table))
+                 (destructuring-bind (estimate low high) (subseq (elt differences number) 1 4)
+                   (draw-estimate canvas 0 (row-middle row) estimate low high
+                                  (table-across table)))))))
+
+;;;; Many numbers: how they lie, group by group
+
+;;; The numbers of a group stand in columns of four pixels, as high as there are many in each. So
+;;; ten numbers and ten thousand are drawn alike.
+
+(defconstant +column-width+ 4 "How wide a column is, in pixels.")
+(defconstant +column-height+ 28 "How high the highest column of a group is, in pixels.")
+
+(defun checked-group (row)
+  "Return ROW as a list (label numbers middle low high): NUMBERS, and what is in their middle, with
+an interval."
+  (check-argument measure-chart row
+                  (and (consp row) (ignore-errors (<= 2 (length row) 5))
+                       (typep (second row) 'sequence))
+                  "a list (label numbers middle low high)")
+  (destructuring-bind (label numbers &optional middle low high) row
+    (list (name-text label) (remove nil (map 'list #'exact numbers))
+          (exact middle) (exact low) (exact high))))
+
+(defun group-values (group)
+  (append (remove nil (cddr group)) (second group)))
+
+(defun group-entry (group middle-label)
+  (destructuring-bind (label numbers middle low high) group
+    (list label
+          (and middle
+               (format nil "~A ~A" middle-label (interval-text middle low high #'figure-text)))
+          (format nil "n = ~D" (length numbers)))))
+
+(defun columns (numbers axis)
+  "Return an alist from columns, counted from where AXIS begins, to how many NUMBERS are in each."
+  (let ((counts (make-hash-table)))
+    (dolist (number numbers)
+      (incf (gethash (floor (- (place number axis) (axis-from axis)) +column-width+) counts 0)))
+    (sort (loop for column being the hash-keys of counts using (hash-value count)
+                collect (cons column count))
+          #'< :key #'car)))
+
+(defun draw-columns (canvas numbers y axis)
+  (let* ((columns (columns numbers axis))
+         (most (reduce #'max columns :key #'cdr :initial-value 1)))
+    (with-ink (#x8FB3CC)
+      (loop for (column . count) in columns
+            for height = (max 2 (* +column-height+ (/ count most)))
+            do (draw-rectangle canvas draw-gcontext*
+                               (+ (axis-from axis) (* column +column-width+)) (- y height)
+                               (- +column-width+ 1/2) height t)))
+    (with-ink (#x9A9A9A)
+      (draw-line canvas draw-gcontext* (axis-from axis) y (axis-to axis) y))))
+
+(defun draw-group (canvas group row axis)
+  (destructuring-bind (numbers middle low high) (rest group)
+    (let ((base (+ (row-middle row) 12)))
+      (draw-columns canvas numbers base axis)
+      (draw-estimate canvas 3 (+ base 8) middle low high axis))))
+
+(defun measure-chart (rows &key log-x (middle-label "median") title subtitle x-label (width 720))
+  "Return a chart of many numbers as an SVG document. ROWS are lists (label numbers middle low
+high): NUMBERS, a sequence, NIL among which do not count, are drawn as columns, as high as there are
+many; below these what is in their middle, with its interval, any of which may be NIL. MIDDLE-LABEL
+says what the middle is, such as the median. LOG-X: numbers on a logarithmic scale. The other
+arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
+  (check-argument measure-chart rows (listp rows) "a list of rows")
+  (let* ((groups (mapcar #'checked-group rows))
+         (table (plan-table (mapcar (lambda (group) (group-entry group middle-label)) groups)
+                            (loop for group in groups append (group-values group))
+                            :title title :subtitle subtitle :x-label x-label :width width
+                            :least (+ +column-height+ 20) :log-x log-x)))
+    (table-svg table
+               (lambda (canvas row number)
+                 (draw-group canvas (elt groups number) row (table-across table))))))
