@@ -98,12 +98,10 @@
                  (:file "blocking") (:file "variables")
                  (:file "stillness")))
    (:module "rpl/language" :serial t
-    :components ((:file "package") (:file "source")
-                 (:file "scope") (:file "suspension") (:file "checking") (:file "mistakes")
-                 (:file "known-fluents") (:file "compiler")
-                 (:file "construct") (:file "binding")
-                 (:file "branching") (:file "repeating") (:file "tags")
-                 (:file "calling") (:file "definitions")))
+    :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
+                 (:file "checking") (:file "mistakes") (:file "known-fluents") (:file "compiler")
+                 (:file "construct") (:file "branching") (:file "binding") (:file "repeating")
+                 (:file "tags") (:file "calling") (:file "definitions")))
    (:module "rpl/constructs" :serial t
     :components ((:file "package") (:file "waiting")
                  (:file "failing")

@@ -222,7 +222,7 @@
   (loop for (name kind file) in '((asked-for :function "rpl-text")
                                   (three-times :macro "rpl-text")
                                   (rpl:wait-for :macro "waiting")
-                                  (rpl:par :macro "par")
+                                  (rpl:par :macro "branches")
                                   (driver:rpl-camera-turn :function "commands"))
         for sources = (introspect '#:find-definition-sources-by-name name kind)
         for path = (and sources (introspect '#:definition-source-pathname (first sources)))
