@@ -21,9 +21,9 @@
     :components ((:file "package") (:file "sources") (:file "places-in-text")
                  (:file "definitions") (:file "user-macros") (:file "registry")
                  (:file "own-definitions") (:file "messages") (:file "troubles")
-                 (:file "inquiries") (:file "user-code") (:file "parameters")
-                 (:file "physics") (:file "parameters-of-runs") (:file "kinds")
-                 (:file "facts") (:file "operators") (:file "slips")))
+                 (:file "user-code") (:file "parameters") (:file "physics")
+                 (:file "parameters-of-runs") (:file "kinds") (:file "facts")
+                 (:file "operators") (:file "slips")))
    (:module "src/copying" :serial t
     :components ((:file "package") (:file "copiers") (:file "copying") (:file "state")))
    (:module "base" :pathname "src" :components ((:file "base")))

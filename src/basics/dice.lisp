@@ -15,7 +15,6 @@
 
 (declaim (inline mix-word))
 (defun mix-word (word)
-  "Return WORD with its bits well mixed."
   (declare (type word word))
   (let* ((word (ldb (byte 64 0) (* (logxor word (ash word -30)) #xBF58476D1CE4E5B9)))
          (word (ldb (byte 64 0) (* (logxor word (ash word -27)) #x94D049BB133111EB))))

@@ -94,7 +94,6 @@
 
 (declaim (ftype (function (t t t) nil) reject-base))
 (defun reject-base (operator name number)
-  "Signal WRONG-ARGUMENT: OPERATOR has been given NUMBER, a double-float, for NAME."
   (reject-argument operator name number "a number above 0"))
 
 (defmacro finite-above-zero-p (number)

@@ -104,7 +104,6 @@ from the term before and K, which is 1, 2, 3 ..."
     (/ (+ (bound row) (bound (1+ row))) 2)))
 
 (defun logarithm-row (row)
-  "Return the numbers in ROW of +LOGARITHMS+, a list."
   ;; Around 1, which rows 79 and 80 share, R is to be exact.
   (let* ((c (if (<= 79 row 80) 1 (/ (round 512 (row-center row)) 512)))
          (logarithm (- (fixed-logarithm c)))
@@ -112,7 +111,6 @@ from the term before and K, which is 1, 2, 3 ..."
     (list (coerce c 'double-float) (nearest-double head) (nearest-double (- logarithm head)))))
 
 (defun arctangent-row (k)
-  "Return the numbers in a row of +ARCTANGENTS+, a list."
   (let* ((x (/ k 256)) (divisor (1+ (* x x)))
          (value (if (<= k 128)
                     (fixed-arctangent x)

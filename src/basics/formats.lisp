@@ -74,13 +74,10 @@
 
 ;;; Writing.
 
-(defun quotable-p (text)
-  (declare (type simple-string text))
-  (find-if (lambda (char) (member char '(#\, #\" #\Newline #\Return))) text))
-
 (defun quoted (text)
   "Return TEXT as it stands in a line, in quotes if it needs some."
-  (if (quotable-p text)
+  (declare (type simple-string text))
+  (if (find-if (lambda (char) (member char '(#\, #\" #\Newline #\Return))) text)
       (with-output-to-string (out)
         (write-char #\" out)
         (loop for char across text

@@ -65,10 +65,6 @@ with it; without any, that of DEFAULT."
   (destructuring-bind (name default type &rest rest) slot
     `(,name ,default :type ,type ,@(unless (member :writable rest) '(:read-only t)))))
 
-(defun structure-option (option)
-  "Return OPTION as DEFSTRUCT takes it: without documentation."
-  (remove-if #'stringp option))
-
 (defun record-texts (name options documentation slots)
   (append (loop for slot in slots
                 for text = (slot-text slot)
@@ -93,7 +89,7 @@ Return the name. Signals MALFORMED-DEFINITION."
   (destructuring-bind (name &rest options) (ensure-list name-and-options)
     (dolist (slot slots) (check-record-slot name slot))
     `(progn
-       (defstruct (,name ,@(mapcar #'structure-option options)
+       (defstruct (,name ,@(mapcar (lambda (option) (remove-if #'stringp option)) options)
                          ,@(unless (assoc :copier options) '((:copier nil))))
          ,documentation
          ,@(mapcar #'slot-definition slots))

@@ -27,7 +27,6 @@ the midst of being printed, and is no circle for that: so it is not printed as a
 ;;; Conditions.
 
 (defun storage-text (condition)
-  "Return what CONDITION, that there is no room for something, means to a user."
   (if (stack-full-p condition)
       (format nil "The stack has overflowed: functions call each other too deeply, or lists stand ~
                    too deeply in lists. Mend what has no end.")
@@ -84,7 +83,6 @@ streams that no user knows."
     nil))
 
 (defun input-ended-p (condition)
-  "True if CONDITION is that no more lines are typed."
   (and (typep condition 'end-of-file) (of-lines-typed-p (stream-error-stream condition))))
 
 (defun own-text (condition)

@@ -125,7 +125,6 @@ and lists as a fresh Lisp has them."
 (define-global +more+ (make-remark "...") "What stands for more of the same.")
 
 (defun abridged-atom (atom)
-  "Return ATOM, or what stands for it if it is long."
   (typecase atom
     (string (cut atom +most-characters+))
     (symbol (if (< +most-characters+ (length (symbol-name atom)))

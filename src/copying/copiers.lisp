@@ -69,7 +69,6 @@ there is to be instead of a copy, and true; or NIL and false" :writable)
         finally (return (make-copier))))
 
 (defun put-copier-back (copier)
-  "Let COPIER, which has finished its work, forget that, and be used again."
   (when (<= (hash-table-count (copier-table copier)) +largest-idle+)
     (clrhash (copier-table copier))
     (fill (copier-work copier) 0)

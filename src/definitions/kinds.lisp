@@ -149,7 +149,6 @@ of a kind, else all under one title, without texts."
 ;;;; Defining kinds
 
 (defun document-readers (kind conc package)
-  "Document the readers of KIND, whose names in PACKAGE begin with CONC."
   (dolist (slot (kind-slots kind))
     (let* ((name (kind-slot-name slot))
            (reader (find-symbol (concatenate 'string conc (symbol-name name)) package)))
@@ -183,7 +182,6 @@ of a kind, else all under one title, without texts."
                            "a string that says what the kind is, before the slots")))
 
 (defun check-kind-slot (name slot known)
-  "Signal MALFORMED-DEFINITION unless SLOT of the kind NAME makes sense beside KNOWN, other names."
   (unless (and (proper-list-p slot) (<= 4 (length slot))
                (symbolp (first slot)) (first slot)
                (stringp (fourth slot))

@@ -11,25 +11,22 @@
       (setf (slot-value object name) (slot-value model name)))))
 
 (defun keep-entry (entry)
-  "Return ENTRY with what RESTORE-ENTRY needs besides: a copy of its object, and a list of the value
+  "Return ENTRY with what it is restored by: a copy of its object, and a list of the value
 of its variable if there is one."
   (let ((variable (entry-variable entry)))
     (list entry
           (copy-structure (entry-object entry))
           (and variable (boundp variable) (list (global-value variable))))))
 
-(defun restore-entry (kept)
-  (destructuring-bind (entry copy value) kept
-    (become (entry-object entry) copy)
-    (when value
-      (setf (global-value (entry-variable entry)) (first value)))))
-
 (defun restore-registry (registry kept)
   (let ((now (registry-entries registry))
         (then (mapcar #'first kept)))
     (with-lock (*registries-lock*) (set-entries registry then))
     (mapc #'forget-entry (set-difference now then))
-    (mapc #'restore-entry kept)
+    (loop for (entry copy value) in kept
+          do (become (entry-object entry) copy)
+             (when value
+               (setf (global-value (entry-variable entry)) (first value))))
     (mapc #'reinstate (registry-objects registry))))
 
 (defvar *own-definitions-thread* nil "The thread that is inside WITH-OWN-DEFINITIONS, or NIL.")

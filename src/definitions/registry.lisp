@@ -47,7 +47,6 @@ strings and symbols" :writable))
 (defvar *registries-lock* (make-lock "registries"))
 
 (defun ensure-registry (kind text &key by-symbol fixed sealed synonyms aliases)
-  "Return the registry of KIND, made if there is none, with these properties."
   (let ((registry (or (find kind *registries* :key #'registry-kind)
                       (let ((new (%make-registry kind text)))
                         (setf *registries* (append *registries* (list new)))
@@ -90,7 +89,6 @@ called just so is looked for in upper case."
                 finally (return last))))))
 
 (defun open-registries ()
-  "Return the registries of what users define."
   (remove-if #'registry-fixed-p *registries*))
 
 (defun entries-meant (name)
@@ -249,7 +247,6 @@ SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of w
   (join-thread (start-thread (lambda () (makunbound variable)) "forgetting")))
 
 (defun forget-entry (entry)
-  "Undo what the definition of ENTRY, no longer in its registry, has done."
   (take-back (entry-object entry))
   (when (entry-variable entry) (forget-value (entry-variable entry))))
 

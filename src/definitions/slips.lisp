@@ -78,10 +78,6 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 
 ;;; Variables.
 
-(defun variable-of-users-p (symbol)
-  "True if SYMBOL means something where a variable stands."
-  (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol))))
-
 (defun defined-slip-text (name)
   "Return in a sentence what the definitions are that NAME, which has no value, stands for, or NIL."
   (loop for registry in (open-registries)
@@ -116,7 +112,8 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
   (when (and (symbolp name) (symbol-package name))
     (let ((code (code-slip name)))
       (or (and code (format nil "Did you mean ~A?" code))
-          (elsewhere-text name #'variable-of-users-p)
+          (elsewhere-text name (lambda (symbol)
+                                 (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol)))))
           (defined-slip-text name)
           (let ((like (variable-slip name)))
             (and like (format nil "Did you mean ~A?" like)))))))

@@ -44,21 +44,17 @@ replaced, never altered: any thread may ask."
 
 ;;; Finding a form in a text.
 
-(defun package-for-words ()
-  "Return an empty package in which those packages go by nicknames that do so in the current one."
-  (let ((package (make-package (gensym "WORDS") :use '())))
-    (copy-nicknames *package* package)
-    package))
-
 (defmacro with-words ((text) &body body)
   "Run BODY, in which READ-WORDS of a position reads the form of the string TEXT that begins there
 and returns it and where it ends, or NIL."
   (with-gensyms (words)
-    `(let ((,words (package-for-words)))
+    ;; Other packages go by the nicknames that they have in the current one.
+    `(let ((,words (make-package (gensym "WORDS") :use '())))
        (unwind-protect
             (flet ((read-words (position)
                      (let ((*package* ,words) (*read-eval* nil))
                        (ignore-errors (read-from-string ,text nil nil :start position)))))
+              (copy-nicknames *package* ,words)
               ,@body)
          (delete-package ,words)))))
 

@@ -128,9 +128,6 @@ items. A program that goes on asking when its run is over is no trouble."
         (apply #'error-set stuff)
         (apply #'trouble-set condition text stuff))))
 
-(defun report-aborted (origin)
-  (apply #'error-set (append (ensure-list origin) (list " was aborted"))))
-
 (defun report-break (condition origin)
   "Queue a message that CONDITION, which is no error, came up in ORIGIN."
   (apply #'message-set "Break in "
@@ -223,7 +220,8 @@ queue an error message saying that it came from ORIGIN (an item or list of items
        (flet ((go-on ()
                 ;; What was called may have gone on into another run, with a queue of its own.
                 (let ((*message-queue* queue))
-                  (cond ((null trouble) (report-aborted origin))
+                  (cond ((null trouble)
+                         (apply #'error-set (append (ensure-list origin) '(" was aborted"))))
                         ((typep trouble 'storage-condition))
                         (t (report-user-error trouble origin))))
                 (return-from call))

@@ -28,7 +28,6 @@ WRONG-ARGUMENT."
 
 ;; Beyond that too little is left of the part of a turn.
 (defmacro check-angle (operator place)
-  "Signal WRONG-ARGUMENT unless PLACE is an angle."
   `(check-argument ,operator ,place (within-reason-p ,place)
                    "an angle in radians, from -1e9 to 1e9"))
 

@@ -12,7 +12,6 @@
 ;;; DISPATCH (see points.lisp) let anything be computed that would be.
 
 (defmacro check-finite (operator place)
-  "Signal WRONG-ARGUMENT unless PLACE is a number that a double-float can stand for."
   `(check-argument ,operator ,place (finite-p ,place) +number-text+))
 
 (define-condition beyond-floats (wrong-argument)
@@ -30,10 +29,11 @@
 ;;; Points.
 
 (public pt)
-(defstruct (pt (:constructor %make-pt (x y)) (:copier nil) (:conc-name %pt-))
+(define-record (pt (:constructor %make-pt (x y)) (:conc-name %pt-)
+                   (:predicate pt-p "True of a PT."))
   "A point or vector in the plane, in metres: x grows to the right, y downward (manual 3.2.1)."
-  (x 0d0 :type double-float)
-  (y 0d0 :type double-float))
+  (x 0d0 double-float :writable)
+  (y 0d0 double-float :writable))
 (declaim-final pt)
 
 (declaim (inline make-pt set-pt!))
@@ -73,11 +73,11 @@ signals nothing."
 ;;; Intervals.
 
 (public interval)
-(defstruct (interval (:constructor %make-interval (min max)) (:copier nil)
-                     (:conc-name %interval-))
+(define-record (interval (:constructor %make-interval (min max)) (:conc-name %interval-)
+                         (:predicate interval-p "True of an INTERVAL."))
   "The real numbers from min to max, both included: an uncertain number (manual 3.2.1)."
-  (min 0d0 :type double-float)
-  (max 0d0 :type double-float))
+  (min 0d0 double-float :writable)
+  (max 0d0 double-float :writable))
 (declaim-final interval)
 
 (declaim (inline %set-interval!))
@@ -115,11 +115,11 @@ error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
 ;;; Point intervals.
 
 (public pt-interval)
-(defstruct (pt-interval (:constructor %make-pt-interval (x y)) (:copier nil)
-                        (:conc-name %pt-interval-))
+(define-record (pt-interval (:constructor %make-pt-interval (x y)) (:conc-name %pt-interval-)
+                            (:predicate pt-interval-p "True of a PT-INTERVAL."))
   "A box with sides parallel to the axes: an uncertain point (manual 3.2.1)."
-  (x (%make-interval 0d0 0d0) :type interval :read-only t)
-  (y (%make-interval 0d0 0d0) :type interval :read-only t))
+  (x (%make-interval 0d0 0d0) interval)
+  (y (%make-interval 0d0 0d0) interval))
 (declaim-final pt-interval)
 
 (addition make-pt-interval)
@@ -201,10 +201,6 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading
 
 ;;; Copies, equality, print forms.
 
-(setf (documentation 'pt-p 'function) "True of a PT."
-      (documentation 'interval-p 'function) "True of an INTERVAL."
-      (documentation 'pt-interval-p 'function) "True of a PT-INTERVAL.")
-
 (public copy-obj)
 (defun copy-obj (object)
   "Return a fresh copy of OBJECT, a PT, INTERVAL or PT-INTERVAL (its sides copied too); a number
@@ -241,7 +237,7 @@ not be changed then."
                            (* 3 (ash (hash (%pt-interval-y object)) -3))))
       (t (sxhash object)))))
 
-(define-table-test equal hash)
+(sb-ext:define-hash-table-test equal hash)
 
 (defun shown-number (number)
   "Return NUMBER as it is shown: to a millionth, as far as floats of its size have that."

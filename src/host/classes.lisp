@@ -51,10 +51,6 @@ called NAME, if there is one."
 
 ;;; Layouts were called wrappers in SBCL 2.2.
 
-(defun immediate-type-p (type)
-  "True if what is of TYPE is never altered, and refers to nothing."
-  (subtypep type '(or number symbol string character package)))
-
 (declaim (inline layout-of layout-number instance-slot (setf instance-slot)))
 (defun layout-of (object)
   "Return what is the same object for all structures that have their slots in the same places."
@@ -77,7 +73,8 @@ called NAME, if there is one."
                               (internal (:sb-kernel #:wrapper-info #:layout-info)
                                         (layout-of object)))
         when (and (eq t (internal (:sb-kernel #:dsd-raw-type) slot))
-                  (not (immediate-type-p (internal (:sb-kernel #:dsd-type) slot))))
+                  (not (subtypep (internal (:sb-kernel #:dsd-type) slot)
+                                 '(or number symbol string character package))))
           collect (cons (internal (:sb-kernel #:dsd-index) slot)
                         (internal (:sb-kernel #:dsd-name) slot))))
 

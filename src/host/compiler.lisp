@@ -11,7 +11,6 @@
 ;;; then said of what the author wrote. That is all in tables and variables of the compiler.
 
 (defmacro compiler-variable (name)
-  "Return the symbol of the compiler's variable NAME."
   `',(internal-name :sb-c name))
 
 (defun value-if-bound (variable)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.host)
 
 (export '(*hot* compiler-note declaim-final surely form-calling global-value define-global
-          define-table-test weak-table-p like-table make-weak weak-value define-event attend
+          weak-table-p like-table make-weak weak-value define-event attend
           tell-listeners))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
@@ -46,11 +46,6 @@ Can be set. Signals UNBOUND-VARIABLE if it has none."
   `(sb-ext:define-load-time-global ,name ,value ,documentation))
 
 ;;;; Hash tables
-
-(defmacro define-table-test (test hash)
-  "Let MAKE-HASH-TABLE take the function called TEST as its test; HASH is the name of a function
-that returns equal integers, not negative, for what TEST holds equal."
-  `(sb-ext:define-hash-table-test ,test ,hash))
 
 (defun like-table (table)
   "Return an empty hash table like TABLE."

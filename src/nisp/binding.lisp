@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.nisp)
 
-(export '(matchvar matchvar-p matchvar-name make-matchvar))
+(export '(matchvar matchvar-p make-matchvar))
 
 ;;; From here on LET means ours in this package.
 
@@ -81,13 +81,10 @@ follow the parameters (manual 3.1)."
 ;;; ?x is read as a matchvar, an object that means itself. There is one for each name, so that
 ;;; patterns with the same matchvars are EQUAL, also after a trip through a compiled file.
 
-(defstruct (matchvar (:constructor %make-matchvar (name)) (:copier nil))
+(define-record (matchvar (:constructor %make-matchvar (name))
+                         (:predicate matchvar-p "True of a matchvar: ?x, or the anonymous ?()."))
   "A place in a pattern that matches anything: ?x, and ?() with no name (manual 5.5.1)."
-  (name nil :type symbol :read-only t))
-(setf (documentation 'matchvar-name 'function)
-      "Return the symbol that a matchvar is called, NIL for the anonymous one."
-      (documentation 'matchvar-p 'function)
-      "True of a matchvar: ?x, or the anonymous ?().")
+  (name nil symbol "the symbol that a matchvar is called, NIL for the anonymous one" :export))
 
 (defun make-matchvar (name)
   "Return the matchvar called NAME, a symbol; NIL names the anonymous one."

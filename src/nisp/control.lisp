@@ -8,7 +8,6 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun doubt-test (operator test)
-    "Warn if TEST, of OPERATOR in Lisp code, is not what is meant."
     (cl:let ((doubt (test-doubt test)))
       (when doubt (doubt-definition "~(~A~): ~A" operator doubt)))))
 

@@ -33,7 +33,6 @@
 ;;; Making objects.
 
 (defun register-maker (name parameters maker)
-  "Let (make NAME ...) call MAKER, which takes PARAMETERS."
   (let ((type (ensure-nisp-type name)))
     (setf (nisp-type-parameters type) parameters
           (nisp-type-maker type) maker)
