@@ -119,9 +119,8 @@ does, an empty text if it cannot."
 
 (defun write-report (condition stream)
   "Write to STREAM what CONDITION reports, with words for the objects that cannot be printed."
-  (printing-words ()
-    (let ((sb-ext:*suppress-print-errors* 'error) (*print-escape* nil) (*print-circle* nil)
-          (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
+  (printing-briefly ()
+    (let ((sb-ext:*suppress-print-errors* 'error) (*print-escape* nil) (*print-circle* nil))
       (print-object condition stream))))
 
 (defun report-anyhow (condition)

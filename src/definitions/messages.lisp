@@ -166,12 +166,11 @@ ones were forgotten, a warning that says how many comes first."
   (with-queue (queue)
     (setf (message-queue-read-p queue) t)
     (let* ((messages (message-queue-newest-first queue))
-           (kept (subseq messages 0 (min (length messages) *message-limit*)))
+           (kept (reverse (subseq messages 0 (min (length messages) *message-limit*))))
            (forgotten (+ (message-queue-forgotten queue) (- (length messages) (length kept)))))
       (setf (message-queue-newest-first queue) '()
             (message-queue-count queue) 0
             (message-queue-forgotten queue) 0)
-      (setf kept (reverse kept))
       (if (plusp forgotten)
           (cons (make-message :warning (list forgotten " earlier messages were forgotten")) kept)
           kept))))

@@ -57,7 +57,7 @@ is NIL or FILE cannot be read. If FORM is NIL, PLACE alone counts."
            (multiple-value-bind (start end) (bounds-of-place text place)
              (line-number text (or (and form
                                         (car (find form (forms-in text start end)
-                                                   :key #'cdr :test #'found-p)))
+                                                   :key #'cdr :test #'same-words-p)))
                                    start)))))))
 
 (defun line-of-form-being-read (stream)

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(*error-codes* note-error-code variable-slip note-dispatch-character value-behind
-          function-meant ours-called test-doubt map-calls map-comparisons compared-words
-          tested-in values-used-in code-doubt))
+(export '(note-error-code variable-slip note-dispatch-character value-behind function-meant
+          ours-called test-doubt map-calls map-comparisons compared-words tested-in
+          values-used-in code-doubt))
 
 (defun ours-called (name)
   "Return the function of ours that is called like NAME, a string or another symbol, and the name of
@@ -267,15 +267,13 @@ that compares them."
 
 (defun code-doubt (word)
   "Return in a sentence why no command ends with the error code WORD, or NIL if one may."
-  (if (keywordp word)
-      (unknown-code-doubt word)
-      (let ((code (find word *error-codes* :test #'string-equal)))
-        (and code
-             (format nil "~(~S~) is no error code: they are keywords. Write ~(~S~)." word code)))))
-
-(defun unknown-code-doubt (word)
-  (unless (member word *error-codes*)
-    (if (member word +words-of-success+)
-        (format nil "no command ends with ~(~S~): its error code is NIL if it succeeds." word)
-        (let ((like (code-like word)))
-          (and like (format nil "no command ends with ~(~S~). Did you mean ~(~S~)?" word like))))))
+  (let ((code (find word *error-codes* :test #'string-equal)))
+    (cond ((not (keywordp word))
+           (and code
+                (format nil "~(~S~) is no error code: they are keywords. Write ~(~S~)." word code)))
+          (code nil)
+          ((member word +words-of-success+)
+           (format nil "no command ends with ~(~S~): its error code is NIL if it succeeds." word))
+          (t (let ((like (code-like word)))
+               (and like
+                    (format nil "no command ends with ~(~S~). Did you mean ~(~S~)?" word like)))))))

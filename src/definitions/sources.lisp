@@ -156,9 +156,6 @@ first, and its number."
   "Return what FORMS-IN does, which is asked for again and again."
   (recalling (text start end) (forms-in text start end)))
 
-(defun found-p (form found)
-  (and found (same-words-p found form)))
-
 (defvar *last-place* '(())
   "A cons of what FORMS-BETWEEN returned and its tail that begins with what was found there last. It
 is replaced, never altered: any thread may ask.")
@@ -168,7 +165,7 @@ is replaced, never altered: any thread may ask.")
 after the other mostly stands so, too: it is looked for from the one before on, then from START."
   (let ((forms (forms-between text start end)))
     (flet ((look (from)
-             (let ((tail (member form from :key #'cdr :test #'found-p)))
+             (let ((tail (member form from :key #'cdr :test #'same-words-p)))
                (when tail (setf *last-place* (cons forms tail)))
                (car (first tail)))))
       (or (and (eq forms (car *last-place*)) (look (cdr *last-place*)))

@@ -151,15 +151,11 @@ the time at which that was written by then; NIL if it was typed."
 that was written by then; NIL if it was typed."
   (file-of-source (ignore-errors (sb-introspect:find-definition-source function))))
 
-(defparameter *kinds-besides-functions*
-  '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class :structure
-    :condition)
-  "As what a symbol may be defined that is no function, by the names that SBCL has for that.")
-
 (defun files-besides-functions (symbol)
   "Return lists (file written), as FUNCTION-FILE returns them, of definitions of SYMBOL as anything
 but a function."
-  (loop for kind in *kinds-besides-functions*
+  (loop for kind in '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class
+                      :structure :condition)
         append (loop for source in (ignore-errors
                                     (sb-introspect:find-definition-sources-by-name symbol kind))
                      for file = (multiple-value-list (file-of-source source))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.host)
 
-(export '(show-lambda-list nested-p edited-file error-context context-original-form compiler-error-p
-          wrap-unit-summaries keep-place in-source-p call-at-place at-end-of-unit call-as-unit
+(export '(show-lambda-list nested-p edited-file error-context context-original-form
+          compiler-error-p keep-place in-source-p call-at-place at-end-of-unit call-as-unit
           place-in-text compiler-place))
 
 ;;; SBCL remembers where each list stands that it has read to compile or load it. A list that was

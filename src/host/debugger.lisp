@@ -15,8 +15,7 @@ NIL.")
 
 (defun write-addition (condition stream)
   (unless *print-escape*
-    (let ((text (ignore-errors (funcall *report-addition* condition))))
-      (when text (format stream "~&~A" text)))))
+    (format stream "~@[~&~A~]" (ignore-errors (funcall *report-addition* condition)))))
 
 (macrolet ((define-additions (&rest types)
              `(progn ,@(loop for type in types

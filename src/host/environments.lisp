@@ -2,12 +2,11 @@
 
 (in-package :ars-magna.host)
 
-(export '(function-arguments form-behind-comma bound-in-walk-p variables-of-walk
-          variable-kind local-variable-p known-variable-p special-variable-p local-function-p
-          known-function-p macro-expander lisps-own-p extended-environment evaluate-form
-          walk-form expand-in-walk users-symbol-p variable-name-p variable-forms
-          variable-name-trouble undefined-name still-undefined-p lock-violation locked-symbol
-          copy-nicknames))
+(export '(function-arguments form-behind-comma bound-in-walk-p variable-kind local-variable-p
+          known-variable-p special-variable-p local-function-p known-function-p macro-expander
+          lisps-own-p extended-environment evaluate-form walk-form expand-in-walk users-symbol-p
+          variable-name-p variable-forms variable-name-trouble undefined-name still-undefined-p
+          lock-violation locked-symbol copy-nicknames))
 
 (defun function-arguments (name)
   "Return what the function NAME takes, types and lambda list keywords as in the type FUNCTION, and

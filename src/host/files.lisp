@@ -280,8 +280,6 @@ Return its exit status or NIL."
   (run-tied program arguments
             :input :interactive :output :interactive :error-output :interactive))
 
-(defconstant +not-found+ 127 "The exit status of a shell that finds no program of a name.")
-
 (defun run-filter (program arguments input output)
   "Do as RUN-TIED does with PROGRAM and ARGUMENTS: it reads the string INPUT and writes into the
 stream OUTPUT to a file. Return its exit status, or NIL if there is no such program, and as a string
@@ -290,4 +288,5 @@ what it said of errors."
     (multiple-value-bind (status errors)
         (run-tied program arguments :input in :output output :error-output :stream
                                     :external-format :utf-8)
-      (values (if (eql status +not-found+) nil status) errors))))
+      ;; A shell that finds no program of a name ends so.
+      (values (if (eql status 127) nil status) errors))))

@@ -3,10 +3,10 @@
 (in-package :ars-magna.host)
 
 (export '(deferring-interrupts allowing-interrupts waiting held-off-p protecting-strictly
-          call-allowing-interrupts call-holding-interrupts call-open-to-interrupts
-          waiting-at-most deadline-passed in-any-case call-opening call-each time-limit
-          let-callers-handle call-with-limit user-interrupt signal-user-interrupt
-          call-on-interrupt call-on-continuing die-of-interrupts die-of-termination))
+          call-holding-interrupts call-open-to-interrupts waiting-at-most deadline-passed
+          in-any-case call-opening call-each time-limit let-callers-handle call-with-limit
+          user-interrupt signal-user-interrupt call-on-interrupt call-on-continuing
+          die-of-interrupts die-of-termination))
 
 ;;; What interrupts a thread is a time limit, Ctrl-C, another thread, or that it is to end. It may
 ;;; leave what it interrupts. Where that would lock others out for ever, it waits for a moment.

@@ -3,8 +3,7 @@
 (in-package :ars-magna.host)
 
 (export '(*hot* compiler-note declaim-final surely form-calling global-value define-global
-          weak-table-p like-table make-weak weak-value define-event attend
-          tell-listeners))
+          weak-table-p like-table make-weak weak-value define-event attend tell-listeners))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))

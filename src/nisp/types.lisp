@@ -104,18 +104,13 @@ unknown TYPE and a wrong number of ARGUMENTS are errors."
         when (and type (eq (nisp-type-class type) (class-name class)))
           append (nisp-type-slots type)))
 
-(defun users-class-p (class)
-  "True if CLASS is neither ours nor Lisp's: then its slots are open to programs."
-  (let ((package (symbol-package (class-name class))))
-    (and (typep class '(or structure-class standard-class))
-         package
-         (not (package-locked-p package))
-         (not (starts-with-subseq "ARS-MAGNA." (package-name package))))))
-
 (defun own-slots (object)
-  "Return the names, symbols, of the slots of OBJECT if its class is a user's."
+  "Return the names, symbols, of the slots of OBJECT if its class is a user's, neither ours nor
+Lisp's: these are open to programs."
   (let ((class (class-of object)))
-    (when (users-class-p class)
+    (when (and (typep class '(or structure-class standard-class))
+               (users-symbol-p (class-name class))
+               (not (our-own-p (class-name class))))
       (class-slot-names class))))
 
 (defun slot-names (object)
