@@ -26,38 +26,24 @@
   (let ((first (find #\' text :test #'char/=)))
     (and first (find first "=+-@") t)))
 
-(defun digits-end (text start)
-  (declare (type simple-string text))
-  (or (position-if-not #'digit-char-p text :start start) (length text)))
-
-(defun sign-end (text start)
-  "Return where a sign, or nothing, ends that TEXT has at START."
-  (declare (type simple-string text))
-  (if (and (< start (length text)) (find (char text start) "+-")) (1+ start) start))
-
-(defun fraction-end (text start)
-  "Return where a point and digits end, or a slash and digits, or nothing, that TEXT has at START."
-  (declare (type simple-string text))
-  (if (and (< start (length text)) (find (char text start) "./"))
-      (digits-end text (1+ start))
-      start))
-
-(defun exponent-end (text start)
-  "Return where an exponent ends, or nothing, that TEXT has at START."
-  (declare (type simple-string text))
-  (if (and (< start (length text)) (find (char text start) "esfdESFD"))
-      (digits-end text (sign-end text (1+ start)))
-      start))
-
 (defun csv-number-p (text)
   "True if TEXT is a number as Lisp writes it: no name would be made of it."
   (declare (type simple-string text))
-  (and (plusp (length text))
-       (digit-char-p (char text (1- (length text))))
-       ;; An exponent alone is a name.
-       (find (char text (sign-end text 0)) "0123456789.")
-       (= (length text)
-          (exponent-end text (fraction-end text (digits-end text (sign-end text 0)))))))
+  (let ((place 0) (length (length text)))
+    (declare (type fixnum place))
+    (flet ((skip-one (chars)
+             (when (and (< place length) (find (char text place) (the simple-string chars)))
+               (incf place)))
+           (skip-digits ()
+             (setf place (or (position-if-not #'digit-char-p text :start place) length))))
+      (and (plusp length)
+           (digit-char-p (char text (1- length)))
+           ;; An exponent alone is a name.
+           (progn (skip-one "+-") (find (char text place) "0123456789."))
+           (progn (skip-digits)
+                  (when (skip-one "./") (skip-digits))
+                  (when (skip-one "esfdESFD") (skip-one "+-") (skip-digits))
+                  (= place length))))))
 
 (defun escaped (text)
   "Return TEXT as a spreadsheet is to see it."

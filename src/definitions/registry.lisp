@@ -165,19 +165,17 @@ or last. Of several that are called the same the newest comes last, for those wh
   "True if the variable NAME has a value at top level that something else would lose."
   (ignore-errors (global-value name)))
 
-(defun warn-without-variable (control name kind)
-  "Warn, as CONTROL says of NAME, that a definition of KIND called so has no variable."
-  (warn-of-definition "~@?: the ~A is to be called by its name, '~(~A~)." control name kind name))
-
 (defun free-variable (name kind)
   "Return NAME if it can be a variable, and is not in use, for a definition of KIND, called so; else
 NIL, with a warning unless NAME is a symbol of Common Lisp's, say, or ours."
-  (cond ((not (variable-name-p name))
-         (when (users-symbol-p name)
-           (warn-without-variable "~(~A~) is a constant or the like, and stays so" name kind)))
-        ((variable-in-use-p name)
-         (warn-without-variable "The variable ~(~A~) already has a value" name kind))
-        (t name)))
+  (flet ((refuse (control)
+           (warn-of-definition "~@?: the ~A is to be called by its name, '~(~A~)."
+                               control name kind name)))
+    (cond ((not (variable-name-p name))
+           (when (users-symbol-p name)
+             (refuse "~(~A~) is a constant or the like, and stays so")))
+          ((variable-in-use-p name) (refuse "The variable ~(~A~) already has a value"))
+          (t name))))
 
 (defun say-if-replaced (old new registry)
   (let ((file (source-file (entry-source old)))

@@ -176,7 +176,7 @@ unless they were read or told before."
   (thread nil :read-only t)
   (hook nil :read-only t))
 
-(defvar *inquiries* '() "All inquiries under way, the newest first.")
+(defvar *inquiries* '() "All inquiries under way, the newest first. Replaced, never altered.")
 (defvar *inquiries-lock* (make-lock "inquiries"))
 
 (define-event *inquiry-hooks*
@@ -186,23 +186,20 @@ thread that has broken, before it is asked there how that goes on.")
 (defvar *debugger-refused-p* nil
   "True where the debugger's hook asks nobody, but signals an error.")
 
-(defun inquiries ()
-  (with-lock (*inquiries-lock*) (copy-list *inquiries*)))
-
 (defun words-for-asker (hook)
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
 (defun debugger-asking (thread)
   "Return, in words, whose debugger asks how THREAD is to go on; NIL if none of others' does."
-  (let ((inquiry (find thread (inquiries) :key #'inquiry-thread)))
+  (let ((inquiry (find thread *inquiries* :key #'inquiry-thread)))
     (and inquiry (words-for-asker (inquiry-hook inquiry)))))
 
 (defun end-inquiries (gone-p)
   "Let those threads in which GONE-P, called there, is true know that who was asked has gone."
-  (dolist (inquiry (inquiries))
+  (dolist (inquiry *inquiries*)
     (interrupt-thread (inquiry-thread inquiry)
                       (lambda ()
-                        (when (and (member inquiry (inquiries)) (funcall gone-p))
+                        (when (and (member inquiry *inquiries*) (funcall gone-p))
                           (throw inquiry nil))))))
 
 (defun call-noting-inquiry (inquiry function)

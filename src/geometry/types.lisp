@@ -131,14 +131,10 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading
          (%make-pt-interval (span-between (%pt-x a) (%pt-x b))
                             (span-between (%pt-y a) (%pt-y b))))
         (t
-         (check-side a)
-         (check-side b)
+         (dolist (side (list a b))
+           (check-argument make-pt-interval side (or (interval-p side) (finite-p side))
+                           "two intervals or two points; a number is from -1.7e308 to 1.7e308"))
          (%make-pt-interval (lift a) (lift b)))))
-
-(defun check-side (side)
-  (unless (interval-p side)
-    (check-argument make-pt-interval side (finite-p side)
-                    "two intervals or two points; a number is from -1.7e308 to 1.7e308")))
 
 (defun span-between (a b)
   "Return the interval with the ends A and B, in either order."
