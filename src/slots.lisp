@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.nisp)
 
-(define-nisp-type odometer (robot name) #'ars-magna.robot:make-odometer
-  "A named odometer of a robot (manual 3.2.2).")
+;;; Named odometers of a robot (manual 3.2.2).
+(define-nisp-type odometer (robot name) #'ars-magna.robot:make-odometer)
 
 ;;; Cells and places, for the expressions of DEF-PLACE-TYPE (manual 5.1.1).
 (define-nisp-slot ars-magna.world:cell filled? ars-magna.world:cell-filled?)

@@ -23,8 +23,7 @@
   (setf (part-angle part) (* 2 value)))
 
 (nisp:define-nisp-type part (angle &optional owner)
-  (make-part angle owner)
-  "A part of nothing much.")
+  (make-part angle owner))
 (nisp:define-nisp-slot part angle part-angle (setf part-angle))
 (nisp:define-nisp-slot part owner part-owner (setf part-owner))
 (nisp:define-nisp-slot part half half-angle set-half-angle)

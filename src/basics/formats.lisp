@@ -36,6 +36,7 @@
                (incf place)))
            (skip-digits ()
              (setf place (or (position-if-not #'digit-char-p text :start place) length))))
+      (declare (inline skip-one))
       (and (plusp length)
            (digit-char-p (char text (1- length)))
            ;; An exponent alone is a name.

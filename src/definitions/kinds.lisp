@@ -5,15 +5,8 @@
 (export '(make-kind-slot slots-to-show *object-kinds* kind-p kind-of kind-called all-kinds
           find-kind-name object-slots reset slot-content define-kind))
 
-;;; A kind is a structure whose slots say what they are, by role:
-;;;
-;;;   :fixed    the model: how the object was made;
-;;;   :state    what decides the future, or what programs are told of it;
-;;;   :memory   what is shown to people and decides nothing;
-;;;   :scratch  what means nothing between ticks;
-;;;   :link     what ties the object to those who use it, such as continuations.
-;;;
-;;; From that follow the readers' documentation, RESET, DIGEST-STATE, forks and the inspection of an
+;;; A kind is a structure whose slots say what they are, by role: DEFINE-KIND lists the roles. From
+;;; that follow the readers' documentation, RESET, DIGEST-STATE, forks and the inspection of an
 ;;; object. Other objects in a slot are referred to, unless the slot is marked as a :PART: then they
 ;;; belong to the object, and are reset, digested and shown with it. What is in a slot marked as
 ;;; :SHARED is replaced and never altered: forks have the same. Slots marked as :NEAR stand first in
@@ -235,11 +228,11 @@ with, says."
 slot is (name default type \"what it is\"), and behind that :PART if what is in it belongs to the
 object, :SHARED if it is never altered, :NEAR if it is to stand beside others; :EXPORT and :ADDITION
 are as in DEFINE-RECORD. The roles are
-  :fixed    how the object was made;
+  :fixed    the model: how the object was made;
   :state    what decides the future, or what programs are told of it;
   :memory   what is shown to people and decides nothing;
   :scratch  what means nothing between ticks;
-  :link     what ties the object to those who use it.
+  :link     what ties the object to those who use it, such as continuations.
 Lisp cannot give a kind other slots while it runs: start it anew for that. Return the name. Signals
 MALFORMED-DEFINITION."
   (multiple-value-bind (name include constructor) (kind-options name-and-options)

@@ -81,8 +81,7 @@ called just so is looked for in upper case."
   (when (typep name '(or symbol string))
     (let ((entries (registry-entries registry))
           (name (or (qualified-symbol name) name)))
-      (or (loop for entry in entries
-                when (eq name (entry-name entry)) return entry)
+      (or (find name entries :key #'entry-name :test #'eq)
           (loop with last = nil
                 for entry in entries
                 when (called-p entry name registry) do (setf last entry)

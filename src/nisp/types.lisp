@@ -38,10 +38,9 @@
           (nisp-type-maker type) maker)
     name))
 
-(defmacro define-nisp-type (name lambda-list constructor &optional documentation)
+(defmacro define-nisp-type (name lambda-list constructor)
   "Let (make NAME arguments...) evaluate the form CONSTRUCTOR with LAMBDA-LIST bound to the
-arguments, or call it with them if it is written #'function. DOCUMENTATION is for the reader."
-  (declare (ignore documentation))
+arguments, or call it with them if it is written #'function."
   `(register-maker ',name ',lambda-list
                    ,(if (typep constructor '(cons (eql function)))
                         constructor
@@ -197,18 +196,15 @@ has no slot of is an error that lists those it has."
 
 ;;;; Points and intervals (manual 3.2.1)
 
-(define-nisp-type pt (x y) #'make-pt
-  "A point or vector in the plane.")
+(define-nisp-type pt (x y) #'make-pt)
 (define-nisp-slot pt x pt-x (setf pt-x))
 (define-nisp-slot pt y pt-y (setf pt-y))
 
-(define-nisp-type interval (min max) #'make-interval
-  "A number known to be between two others.")
+(define-nisp-type interval (min max) #'make-interval)
 (define-nisp-slot interval min interval-min (setf interval-min))
 (define-nisp-slot interval max interval-max (setf interval-max))
 
-(define-nisp-type pt-interval (a b) #'make-pt-interval
-  "A box, by its two intervals or by two opposite corners.")
+(define-nisp-type pt-interval (a b) #'make-pt-interval)
 (define-nisp-slot pt-interval x pt-interval-x (setf pt-interval-x))
 (define-nisp-slot pt-interval y pt-interval-y (setf pt-interval-y))
 (define-nisp-slot pt-interval dx pt-interval-dx)
