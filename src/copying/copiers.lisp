@@ -5,8 +5,6 @@
 (export '(copier with-copier copier-variable copier-option note-copy settled define-shared
           define-shared-slots))
 
-(addition cannot-fork)
-
 (define-record (copier (:constructor make-copier ()))
   "What copies a run."
   (table (make-hash-table :test 'eq :size 500) hash-table "what was copied, and to what" :writable)
@@ -91,6 +89,7 @@ OPTIONS and SCREEN. Return the values of BODY."
 
 ;;;; How structures are copied
 
+(addition cannot-fork)
 (define-condition cannot-fork (ars-magna-error)
   ((value :initarg :value :reader cannot-fork-value)
    (place :initarg :place :initform nil :reader cannot-fork-place)
