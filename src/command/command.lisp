@@ -63,11 +63,8 @@ with it" :export)
   "True if COMMAND has TRAIT, one of *COMMAND-TRAITS*."
   (and (member trait (command-traits command)) t))
 
-(defun command-aliases (command)
-  "Return what COMMAND is called at the prompt, in a list."
-  (list (command-prompt-name command)))
-
-(define-registry command "command" :object-p command-p :fixed t :aliases #'command-aliases)
+(define-registry command "command" :object-p command-p :fixed t
+  :aliases (lambda (command) (list (command-prompt-name command))))
 
 ;; What other definitions in the same file may need, when that is compiled and there is no command
 ;; yet.
@@ -82,11 +79,6 @@ parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
   "Return the command that the function called SYMBOL issues."
   (get symbol 'command))
 
-(defun issuer (command)
-  "Return a function that issues COMMAND on a resource, with arguments, and without a continuation."
-  (lambda (resource &rest arguments)
-    (apply (command-name command) resource (append arguments '(nil)))))
-
 (defun register-command (command)
   "Let there be COMMAND, for those who ask by name, and for journals."
   (let ((name (command-name command)))
@@ -96,7 +88,8 @@ parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
     (define-operator name
         (cons (spec-type (command-resource command))
               (mapcar #'spec-type (command-parameters command)))
-      (issuer command))
+      (lambda (resource &rest arguments)
+        (apply name resource (append arguments '(nil)))))
     name))
 
 ;;; Steps.

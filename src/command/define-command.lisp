@@ -22,18 +22,14 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   (let ((entry (assoc key options)))
     (if entry (rest entry) default)))
 
-(defun describe-arguments (parameters)
-  (format nil "~@[Arguments: ~{~A~^; ~}.~%~]"
-          (loop for (name nil text) in parameters
-                collect (format nil "~A, ~A" name text))))
-
 (defun describe-command (sentence resource parameters results errors section)
   "Return the documentation of the function that issues a command."
-  (format nil "~A Returns nothing; takes effect in the next tick.~%~A~
+  (format nil "~A Returns nothing; takes effect in the next tick.~%~@[Arguments: ~{~A~^; ~}.~%~]~
                The continuation gets an error code or NIL, the ~(~A~)~{, ~A~}.~%~
                Error codes: ~{~S, ~}:INTERRUPT.~@[ (Manual ~A.)~]"
           sentence
-          (describe-arguments parameters)
+          (loop for (name nil text) in parameters
+                collect (format nil "~A, ~A" name text))
           (first resource)
           (mapcar #'second results)
           (mapcar #'first errors)
@@ -57,22 +53,19 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
   `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
-(defun doubt-unquoted (name forms)
-  "Warn of those of FORMS, the arguments in a call of the command NAME, that are no calls."
+(defun doubt-uncallable (name forms)
+  "Warn of those of FORMS, the arguments in a call of the command NAME, that are no calls, such as
+data that is not quoted, or (90 deg)."
   (dolist (form forms)
-    (when (typep form '(cons (or keyword (cons (not (eql lambda))))))
-      (let ((*print-pretty* nil))
-        (doubt-definition "~(~A~): ~S is no call of a function. If it is data, quote it: '~:*~S"
-                          name (abridged form))))))
-
-(defun doubt-units (name forms)
-  "Warn of those of FORMS, the arguments in a call of the command NAME, that have units, such as
-(90 deg)."
-  (dolist (form forms)
-    (when (typep form '(cons number))
-      (doubt-definition "~(~A~): ~S is no call of a function. Units are for the prompt, in lines ~
-                         without parentheses; in Lisp 90 degrees are (* 90 (/ pi 180))."
-                        name (abridged form)))))
+    (typecase form
+      ((cons (or keyword (cons (not (eql lambda)))))
+       (let ((*print-pretty* nil))
+         (doubt-definition "~(~A~): ~S is no call of a function. If it is data, quote it: '~:*~S"
+                           name (abridged form))))
+      ((cons number)
+       (doubt-definition "~(~A~): ~S is no call of a function. Units are for the prompt, in lines ~
+                          without parentheses; in Lisp 90 degrees are (* 90 (/ pi 180))."
+                         name (abridged form))))))
 
 (defun doubt-count (name parameters forms)
   "Warn if FORMS, the arguments in a call of the command NAME, are not as many as PARAMETERS, a
@@ -81,15 +74,12 @@ lambda list that ends in an optional one."
     (doubt-definition "~(~A~) takes ~(~:A~), not ~D argument~:P."
                       name parameters (length forms))))
 
-(defparameter *returning-nothing*
-  '(out terpri fresh-line format error-set warning-set message-set error-display)
-  "Functions that return NIL or nothing, and are called for what they write.")
-
 (defun returns-nothing-p (form)
-  "True if FORM is known to return nothing that can be called, and to do something."
+  "True if FORM is known to return nothing that can be called, and to do something, as to write."
   (typecase form
     ((cons (member setf setq)) (constantp (first (last form))))
-    ((cons symbol) (or (member (first form) *returning-nothing*)
+    ((cons symbol) (or (member (first form) '(out terpri fresh-line format error-set warning-set
+                                              message-set error-display))
                        (get (first form) 'command-shape)))))
 
 (defun called-early-p (form count)
@@ -228,8 +218,7 @@ later (reading 149)."
          (issue (command-of ',name) ,(first resource) (list ,@variables) continuation))
        (define-compiler-macro ,name (&whole form &rest arguments)
          (doubt-count ',name '(,(first resource) ,@variables &optional continuation) arguments)
-         (doubt-unquoted ',name arguments)
-         (doubt-units ',name arguments)
+         (doubt-uncallable ',name arguments)
          (doubt-result ',name (nth ,(1+ (length parameters)) arguments) ,(+ 2 (length results)))
          form)
        ',name)))

@@ -137,10 +137,7 @@ a sentence; NIL if it is not one of the simulator's own."
 
 ;;; What pictures and lists of moments make a mark of.
 
-(defparameter *no-trouble* '(nil :interrupt :designator-not-found)
-  "Codes of what is no failure to look for: plans often look for what is not there, and let a newer
-command take over from an older one.")
-
 (defun trouble-p (code)
-  "True if CODE, an error code or NIL, is of a failure that people look for."
-  (not (member code *no-trouble*)))
+  "True if CODE, an error code or NIL, is of a failure that people look for: plans often look for
+what is not there, and let a newer command take over from an older one."
+  (not (member code '(nil :interrupt :designator-not-found))))

@@ -135,10 +135,6 @@ tick in which it was. A robot's thoughts count. NIL if nothing ever was."
                      (mapcar #'argument-as-typed
                              (cons (failure-resource failure) (failure-arguments failure)))))))
 
-(defun robot-with (resource)
-  "Return the robot that RESOURCE, a robot or part of one, is or belongs to."
-  (if (robot-p resource) resource (part-robot resource)))
-
 (addition last-failure)
 (defun last-failure (resource)
   "Return, as a property list, what failed or was interrupted last of the commands given to
@@ -147,7 +143,7 @@ was asked for, a string; :FOR, who asked; :ASKED, the tick after which that was;
 which it ended; :ERROR, the code; :TEXT, the message; :BY, what interrupted it, if that is known,
 and :BY-FOR, who asked for that. NIL if none has failed. See WHY."
   (check-resource 'last-failure resource)
-  (let ((failure (robot-failure (robot-with resource))))
+  (let ((failure (robot-failure (resource-robot resource))))
     (when failure
       (destructuring-bind (&optional by by-asker) (failure-interrupter failure)
         (list :command (failure-command failure) :call (call-text failure)
@@ -162,7 +158,7 @@ came of it, what that means and what to try."
   (destructuring-bind (&key call for asked tick error text by by-for &allow-other-keys)
       (last-failure resource)
     (if (null error)
-        (list (format nil "No command of ~A has failed." (robot-with resource)))
+        (list (format nil "No command of ~A has failed." (resource-robot resource)))
         (remove nil
                 (list (format nil "~A, asked for by ~A after tick ~D, ended at tick ~D with ~S: ~A."
                               call for asked tick error text)

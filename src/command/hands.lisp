@@ -7,10 +7,9 @@
 ;;; What the commands of hands, cameras and bins have in common. Preconditions are tested in the
 ;;; order in which the manual lists the error codes.
 
-(defun destination-p (object)
-  (or (storage-bin-p object) (designator-p object)))
-
-(define-argument-type 'destination #'destination-p "a designator or a storage bin")
+(define-argument-type 'destination
+  (lambda (value) (or (storage-bin-p value) (designator-p value)))
+  "a designator or a storage bin")
 
 (defun handling-dice (part)
   (world-dice (robot-world (part-robot part)) :handling))
@@ -38,18 +37,14 @@
   (let ((denotation (designator-denotation designator)))
     (and (thing-p denotation) denotation)))
 
-(defun touched-designators (designator)
-  "Return the designators on the thing that DESIGNATOR denotes; that one alone if it is false."
-  (let ((thing (designator-thing designator)))
-    (if thing
-        (designators-on (designator-robot designator) thing)
-        (list designator))))
-
 (defun perhaps-lose-designators (designator probability dice &key silently)
-  "Lose each designator on what DESIGNATOR denotes with PROBABILITY."
-  (dolist (other (touched-designators designator))
-    (when (chance probability dice)
-      (drop-designator other :silently silently))))
+  "Lose each designator on what DESIGNATOR denotes with PROBABILITY; if it is false, that one."
+  (let ((thing (designator-thing designator)))
+    (dolist (other (if thing
+                       (designators-on (designator-robot designator) thing)
+                       (list designator)))
+      (when (chance probability dice)
+        (drop-designator other :silently silently)))))
 
 ;;; Destinations.
 
@@ -63,15 +58,12 @@
       (part-reaches-bin-p part container)
       (part-reaches-p part container)))
 
-(defun container-capacity (container)
-  (if (storage-bin-p container)
-      (storage-bin-capacity container)
-      (thing-capacity container)))
-
 (defun has-room-p (container size)
   "True if CONTAINER can hold anything, and SIZE more than is in it; rounding is
 forgiven (readings 153 and 237)."
-  (and (plusp (container-capacity container))
+  (and (plusp (if (storage-bin-p container)
+                  (storage-bin-capacity container)
+                  (thing-capacity container)))
        (<= size (+ (remaining-capacity container) 1d-9))))
 
 ;;; A grip is only lost by what the world does to the thing held: kickers, manipulations, another
@@ -79,14 +71,12 @@ forgiven (readings 153 and 237)."
 
 ;;; Grasping.
 
-(defun same-location-p (hand camera)
-  (and (eq (hand-robot hand) (camera-robot camera))
-       (eq (hand-location hand) (camera-location camera))))
-
 (defun grasp-obstacle (hand camera designator)
   "Return the error code that keeps HAND from trying to grasp, or NIL (reading 164)."
   (cond ((hand-holding hand) :hand-grasping)
-        ((not (same-location-p hand camera)) :different-location)
+        ((not (and (eq (hand-robot hand) (camera-robot camera))
+                   (eq (hand-location hand) (camera-location camera))))
+         :different-location)
         ((not (own-designator-p hand designator)) :bad-designator)
         ((eq (designator-type designator) :non-local) :non-local-grasp)
         ((not (tracking-p camera designator)) :not-tracked)))

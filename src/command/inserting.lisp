@@ -23,13 +23,11 @@
         while (thing-p outer)
         thereis (eq outer (hand-holding hand))))
 
-(defun held-size (hand)
-  (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0))
-
 (defun hand-obstacle (hand container)
   "Return the error code that keeps HAND out of CONTAINER, a thing or bin, or NIL (reading 155)."
   (cond ((location-closed-p container) :bin-closed)
-        ((not (has-room-p container (held-size hand))) :insufficient-capacity)
+        ((not (has-room-p container (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0)))
+         :insufficient-capacity)
         ((held-inside-p hand container) :holding-thing)
         ((not (reaches-container-p hand container)) :different-location)))
 
@@ -136,12 +134,7 @@ cannot reach it cannot bump."
         (t (move-part camera container)
            nil)))
 
-(defun settle-designator (camera designator code)
-  "Drop DESIGNATOR if the insertion of CAMERA, which ended with CODE, loses it (reading 158)."
-  (when (or (eq code :camera-bump)
-            (and (null code) (chance camera-insert-lose-desig-prob* (handling-dice camera))))
-    (drop-designator designator)))
-
+;; As reading 158 says.
 (define-command camera-insert (operation (camera camera)
                                (destination destination
                                 "a local designator that the camera tracks, or a storage bin"))
@@ -158,7 +151,11 @@ cannot reach it cannot bump."
      (:report (destination) (inserted-text operation destination)))
     "Insert CAMERA into a container, to look at what is in there. It loses its track."
   (let ((code (try-camera-insertion camera destination (destination-container destination))))
-    (when (designator-p destination) (settle-designator camera destination code))
+    (when (and (designator-p destination)
+               (or (eq code :camera-bump)
+                   (and (null code)
+                        (chance camera-insert-lose-desig-prob* (handling-dice camera)))))
+      (drop-designator destination))
     (finish operation code destination)))
 
 ;;; Opening and closing storage bins.
@@ -175,12 +172,7 @@ cannot reach it cannot bump."
          (succeed-saying operation (format nil "~A opened" storage-bin)))
         (t (fail-with operation :bin-open))))
 
-(defun bin-jams-p (bin)
-  "True if something in BIN happens to be in the way of its door (reading 166)."
-  (and (storage-bin-contents bin)
-       (chance bin-close-jam-prob* (handling-dice bin))))
-
-;; As reading 163 says.
+;; As readings 163 and 166 say.
 (define-command storage-bin-close (operation (storage-bin storage-bin))
     ((jammed-part "the camera or hand that keeps the bin from closing, or NIL"))
     ((:family :handling) (:section "3.6") (:delay bin-delay*)
@@ -194,6 +186,8 @@ cannot reach it cannot bump."
   (cond ((storage-bin-closed-p storage-bin) (fail-with operation :bin-closed))
         ((part-inside storage-bin)
          (fail-with operation :robot-in-bin (part-inside storage-bin)))
-        ((bin-jams-p storage-bin) (fail-with operation :bin-jammed))
+        ((and (storage-bin-contents storage-bin)
+              (chance bin-close-jam-prob* (handling-dice storage-bin)))
+         (fail-with operation :bin-jammed))
         (t (setf (storage-bin-closed-p storage-bin) t)
            (succeed-saying operation (format nil "~A closed" storage-bin)))))

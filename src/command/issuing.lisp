@@ -13,17 +13,13 @@
     (designator (designator-robot argument))
     (part (part-robot argument))))
 
-(defun world-of-argument (argument)
-  "Return the world that ARGUMENT, of a command, is in, or NIL if it is in none."
-  (let ((robot (if (robot-p argument) argument (owner-of-argument argument))))
-    (cond (robot (robot-world robot))
-          ((thing-p argument) (thing-world argument)))))
-
 (defun check-of-this-run (command resource arguments)
   "Signal MISUSE if one of ARGUMENTS, of COMMAND on RESOURCE, is in another world than that."
   (let ((world (robot-world (resource-robot resource))))
     (dolist (argument arguments)
-      (let ((other (world-of-argument argument)))
+      (let* ((robot (if (robot-p argument) argument (owner-of-argument argument)))
+             (other (cond (robot (robot-world robot))
+                          ((thing-p argument) (thing-world argument)))))
         (unless (or (null other) (eq other world))
           (reject-use "~(~A~): ~A is of another run than ~A. ~:[Robots' names and FIND-THING lead ~
                        to those of a run~;A robot's designators come from searches of its cameras~
@@ -31,13 +27,6 @@
                       (command-name command) argument resource (designator-p argument)))))))
 
 ;;; What is said once for each name.
-
-(defun doubt-ticks (operator world ticks)
-  "Say once for OPERATOR in WORLD if TICKS, for which something is to go on, is less than none."
-  (when (minusp ticks)
-    (warn-once (list :ticks operator) world
-               (format nil "~(~A~): ~A ticks are none, so nothing is done. To drive back, turn by ~
-                            pi first." operator ticks))))
 
 (defun told-at-end (command)
   "Return the names of what continuations of COMMAND are called with, a list."
@@ -203,7 +192,11 @@ way by the same asker, who is not told of its end: it begins anew."
         for argument in arguments
         do (case (spec-type spec)
              (angle (doubt-angle (command-name command) world argument))
-             (ticks (doubt-ticks (command-name command) world argument)))))
+             (ticks (when (minusp argument)
+                      (warn-once (list :ticks (command-name command)) world
+                                 (format nil "~(~A~): ~A ticks are none, so nothing is done. To ~
+                                              drive back, turn by pi first."
+                                         (command-name command) argument)))))))
 
 (defvar *asked-with* '()
   "Lists (command world (parameter . value)...): what a program has asked for, headless, since ticks

@@ -79,12 +79,6 @@ NIL (reading 69)."
           ((place-type-invisible-p type) :invisible-place-type)
           ((camera-location camera) :camera-enclosed))))
 
-(defun asked-name (place-type)
-  "Return the symbol for PLACE-TYPE, a name or a place type: the very one that was asked for."
-  (if (symbolp place-type)
-      place-type
-      (place-type-name (find-place-type place-type))))
-
 (defun search-for-places (operation camera place-type all)
   (let ((obstacle (place-search-obstacle camera place-type)))
     (if obstacle
@@ -92,7 +86,9 @@ NIL (reading 69)."
         (funcall (if all #'designate-all #'designate-first)
                  operation
                  (look-for-places camera (find-place-type place-type) :all all
-                                  :name (asked-name place-type))))))
+                                  :name (if (symbolp place-type)
+                                            place-type
+                                            (place-type-name (find-place-type place-type))))))))
 
 (define-command camera-get-place-designator (operation (camera camera)
                                              (place-type place-type "the name of a place type"))

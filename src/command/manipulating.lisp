@@ -22,17 +22,14 @@ NIL (reading 175)."
   (let ((known (and type (find-argument-type type nil))))
     (or (null type) (null known) (argument-of-type-p value type))))
 
-(defun resource-p* (object)
-  (or (robot-p object) (part-p object)))
-
 (defun method-takes-p (method arguments)
   "True if ARGUMENTS are of the number and types that METHOD wants."
   (let* ((parameters (method-parameters method))
          (count (length (parameter-list-objects parameters)))
-         (typed (cons (parameter-list-by parameters) (parameter-list-others parameters))))
+         (typed (parameter-list-typed parameters)))
     (and (= (length arguments) (+ count (length typed)))
          (every #'designator-p (subseq arguments 0 count))
-         (resource-p* (nth count arguments))
+         (typep (nth count arguments) '(or robot part))
          (loop for value in (nthcdr count arguments)
                for (nil type) in typed
                always (fits-type-p value type)))))
@@ -128,30 +125,25 @@ none if the manipulation has been undefined since."
 
 ;;; Issuing.
 
+(defun designators-given (operation)
+  (remove-if-not #'designator-p (operation-arguments operation)))
+
 (defun outcome-text (operation value)
   "Return in words what OPERATION has done to what, and the VALUE that it has returned, unless that
 is NIL (manual E)."
-  (format nil "~A~@[: ~A~]" (objects-text operation)
+  (format nil "~{~A~^, ~} by ~A~@[: ~A~]"
+          (mapcar #'destination-name (designators-given operation)) (operation-resource operation)
           (and value (one-line (safe-text value :escape nil :length 100)))))
-
-(defun objects-text (operation)
-  (format nil "~{~A~^, ~} by ~A"
-          (loop for argument in (operation-arguments operation)
-                when (designator-p argument) collect (destination-name argument))
-          (operation-resource operation)))
 
 (defun far-designator (operation)
   "Return the designator given to OPERATION, a manipulation, that is not local, or NIL."
-  (find-if (lambda (argument)
-             (and (designator-p argument) (not (eq :local (designator-type argument)))))
-           (operation-arguments operation)))
+  (find :local (designators-given operation) :key #'designator-type :test-not #'eq))
 
 (defun things-meant (operation)
   "Return what the designators given to OPERATION, a manipulation, designate; NIL if that of one is
 nothing."
-  (let ((things (loop for argument in (operation-arguments operation)
-                      when (designator-p argument)
-                        collect (designated-thing argument (operation-resource operation)))))
+  (let ((things (loop for designator in (designators-given operation)
+                      collect (designated-thing designator (operation-resource operation)))))
     (and (notany #'null things) things)))
 
 (defun failed-text (operation)
@@ -198,12 +190,6 @@ things, which no method is for."
          (declare (ignore resource))
          (funcall continuation code value))))
 
-(defun issue-manipulation (manipulation resource arguments continuation)
-  "Post MANIPULATION on RESOURCE with ARGUMENTS, which fit one of its methods."
-  (let ((command (command-for manipulation)))
-    (doubt-continuation command (robot-world (resource-robot resource)) continuation '(err value))
-    (issue command resource arguments (value-continuation continuation))))
-
 (public run-manipulation)
 (defun run-manipulation (name &rest arguments)
   "Carry out the manipulation NAME, a symbol, with ARGUMENTS, of which the last is the continuation
@@ -215,10 +201,11 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
   (let* ((manipulation (find-manipulation name))
          (continuation (first (last arguments)))
          (arguments (butlast arguments))
-         (method (first (methods-for manipulation arguments))))
+         (resource (method-resource (first (methods-for manipulation arguments)) arguments))
+         (command (command-for manipulation)))
     (check-of-type name 'continuation continuation 'continuation)
-    (issue-manipulation manipulation (method-resource method arguments) arguments continuation)
-    (values)))
+    (doubt-continuation command (robot-world (resource-robot resource)) continuation '(err value))
+    (issue command resource arguments (value-continuation continuation))))
 
 (public manipulate)
 (define-user-macro manipulate (name &rest arguments)
@@ -238,8 +225,6 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
                          '~:*~A" name)))
   form)
 
-(defun manipulate-again (name &rest arguments)
-  "Carry out the manipulation NAME with ARGUMENTS and without a continuation."
-  (apply #'run-manipulation name (append arguments '(nil))))
-
-(define-operator 'manipulate '(name) #'manipulate-again :rest 'datum)
+(define-operator 'manipulate '(name)
+  (lambda (name &rest arguments) (apply #'run-manipulation name (append arguments '(nil))))
+  :rest 'datum)

@@ -15,13 +15,12 @@
 ;;; variables, types and attributes is taken for an earlier version unless no thing could be for
 ;;; both.
 
-(define-record (parameter-list (:constructor make-parameter-list (objects patterns by others)))
+(define-record (parameter-list (:constructor make-parameter-list (objects patterns typed)))
   "The parameters of a method: variables and patterns of its objects, and then its resource and
 others, each a list (variable type), with NIL for no type."
   (objects '() list)
   (patterns '() list)
-  (by '() list)
-  (others '() list))
+  (typed '() list))
 
 (define-record (manipulation-method (:conc-name method-))
   "One way to carry out a manipulation."
@@ -90,21 +89,18 @@ others, each a list (variable type), with NIL for no type."
            (variables (append objects (mapcar #'first typed))))
       (unless (equal variables (remove-duplicates variables))
         (reject-clause definition form "a different variable for each parameter"))
-      (make-parameter-list objects patterns (first typed) (rest typed)))))
+      (make-parameter-list objects patterns typed))))
 
 (defun parameter-variables (parameters)
   "Return the variables of PARAMETERS, in order."
   (append (parameter-list-objects parameters)
-          (list (first (parameter-list-by parameters)))
-          (mapcar #'first (parameter-list-others parameters))))
+          (mapcar #'first (parameter-list-typed parameters))))
 
 (defun method-shape (method)
   "Return what METHOD takes, as three values: the variables of its objects, a list (variable type)
 for its resource, and such lists for all that follows. The type is NIL where none is given."
-  (let ((parameters (method-parameters method)))
-    (values (parameter-list-objects parameters)
-            (parameter-list-by parameters)
-            (parameter-list-others parameters))))
+  (destructuring-bind (by . others) (parameter-list-typed (method-parameters method))
+    (values (parameter-list-objects (method-parameters method)) by others)))
 
 ;;; Defining.
 
@@ -139,8 +135,7 @@ it still has it, it will come yet, unless loading fails before."
   (let ((parameters (method-parameters old)) (others (method-parameters method)))
     (and (null (method-source old)) (null (method-source method))
          (equal (parameter-variables parameters) (parameter-variables others))
-         (equal (parameter-list-by parameters) (parameter-list-by others))
-         (equal (parameter-list-others parameters) (parameter-list-others others))
+         (equal (parameter-list-typed parameters) (parameter-list-typed others))
          (every #'similar-patterns-p
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
@@ -190,17 +185,12 @@ parameter list, BODY a function of as many arguments. Return NAME."
         (doubt-definition "~A: no type is called ~(~A~), so anything fits. Did you mean ~(~A~)?"
                           definition type like)))))
 
-(defun doubt-types (definition parameters)
-  "Warn of the types in PARAMETERS of DEFINITION that are most likely slips."
-  (dolist (typed (cons (parameter-list-by parameters) (parameter-list-others parameters)))
-    (doubt-type definition (second typed))))
-
 (defun manipulation-forms (definition name parameters options body)
   (check-name definition name "manipulation")
   (check-method-options definition options)
   (let* ((parsed (parse-parameters definition parameters))
          (variables (parameter-variables parsed)))
-    (doubt-types definition parsed)
+    (loop for (nil type) in (parameter-list-typed parsed) do (doubt-type definition type))
     (when (body-advice body) (doubt-definition "~A: ~A" definition (body-advice body)))
     `((define-manipulation ',name ',parameters
         (lambda ,variables (declare (ignorable ,@variables)) ,@body)

@@ -86,9 +86,6 @@ command that it cut short, or NIL"))
 
 ;;; Ending.
 
-(defun interrupted-text (operation)
-  (format nil "~A was interrupted" (command-prefix (operation-command operation))))
-
 (defun error-text (operation code)
   (let* ((command (operation-command operation))
          (error-code (find code (command-errors command) :key #'error-code-keyword))
@@ -135,7 +132,8 @@ told, too."
          (command (operation-command operation))
          (report (command-report command)))
     (cond ((eq code :interrupt)
-           (tell-of-failure operation :warning code (interrupted-text operation)))
+           (tell-of-failure operation :warning code
+                            (format nil "~A was interrupted" (command-prefix command))))
           (code (tell-of-failure operation :error code (error-text operation code)))
           (report (let ((text (printing-words () (apply report operation results))))
                     (when text (tell-of operation text)))))))
@@ -147,17 +145,14 @@ told, too."
         collect (first rest)))
 
 ;; As reading 86 says.
-(defun call-continuation (operation code results)
-  (apply #'call-user-code (operation-continuation operation)
-         (command-origin (operation-command operation))
-         code (resource-told operation) results))
-
 (defun tell-end (operation code results)
   "Call the continuation of OPERATION, which has ended with CODE and RESULTS, if it has one."
   (when (operation-continuation operation)
     (when (operation-forked-p operation)
       (begin-moment (operation-timeline operation)))
-    (call-continuation operation code results)))
+    (apply #'call-user-code (operation-continuation operation)
+           (command-origin (operation-command operation))
+           code (resource-told operation) results)))
 
 (defun notify (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."

@@ -8,10 +8,6 @@
 ;;; two numbers mean a range. NIL means false or unspecified. A matchvar is bound where
 ;;; it comes first and must meet the same value wherever it comes again, in this pattern or a later.
 
-(defun reversed-p (attribute value)
-  "True if VALUE for ATTRIBUTE is a range with the higher end first."
-  (and (asks-range-p attribute value) (not (range-p value))))
-
 (defun impossible-value (attribute value)
   "Return what of VALUE, in a pattern for ATTRIBUTE, no thing can have, and what was meant perhaps."
   (find-if-not (lambda (value) (or (matchvar-p value) (in-domain-p attribute value)))
@@ -31,7 +27,7 @@
     (when (and value (symbolp value) (starts-with-subseq "?" (symbol-name value)))
       (reject-clause definition clause
                      "a value; after (in-readtable :nisp), which goes before it, ?x is a matchvar"))
-    (when (reversed-p attribute value)
+    (when (and (asks-range-p attribute value) (not (range-p value)))
       (reject-clause definition clause "a range with the lower end first"))
     (cond ((null attribute))
           ((discrete-p attribute)
@@ -58,10 +54,6 @@ for. Signals MALFORMED-DEFINITION about DEFINITION. See reading 126."
 (defun within-p (number low high threshold)
   (<= (- low threshold) number (+ high threshold)))
 
-(defun alternatives-p (key value)
-  "True if VALUE, a list, means for the attribute KEY that any of its elements will do."
-  (not (asks-range-p (attribute-of key) value)))
-
 (defun comparable-value (key value wanted)
   "Return what of VALUE, of the attribute KEY, is to be compared with WANTED: of a substance, its
 parameter or its type."
@@ -74,21 +66,16 @@ parameter or its type."
   (cond ((or (null wanted) (null value)) (and (listp wanted) (member value (or wanted '(nil)))))
         ((and (realp wanted) (realp value)) (within-p value wanted wanted threshold))
         ((atom wanted) (value-equal wanted value))
-        ((alternatives-p key wanted)
+        ((not (asks-range-p (attribute-of key) wanted))
          (or (member value wanted :test #'value-equal) (value-equal wanted value)))
         ((realp value) (within-p value (first wanted) (second wanted) threshold))))
 
 ;;; Matchvars.
 
-(defun has-value-p (key value)
-  "True if VALUE is a value of the attribute KEY; NIL is one of those that can be true or false."
-  (or value
-      (can-be-false-p (attribute-of key))))
-
 (defun bind-matchvar (matchvar key value bindings)
   "True if MATCHVAR, for KEY, can be VALUE; BINDINGS with what it is bound to as second value."
   (let ((binding (assoc matchvar bindings)))
-    (cond ((not (has-value-p key value)) (values nil bindings))
+    (cond ((not (or value (can-be-false-p (attribute-of key)))) (values nil bindings))
           ((null (matchvar-name matchvar)) (values t bindings))
           (binding (values (value-equal value (cdr binding)) bindings))
           (t (values t (acons matchvar value bindings))))))

@@ -115,10 +115,6 @@ odometry's reading of the step. See reading 99."
 ;;; All of these act on the place type that the robot senses, which may not be the one that is
 ;;; there. Its directions are then those that the sensed type gives the cell.
 
-(defun place-name (type robot)
-  "Return the name of the place type TYPE, as the author of the map that ROBOT is in writes it."
-  (own-symbol (place-type-name type) (map-package (world-map (robot-world robot)))))
-
 ;; As reading 106 says.
 (define-command robot-place (operation (robot robot))
     ((place-type "the name of the place type sensed, or NIL"))
@@ -126,7 +122,10 @@ odometry's reading of the step. See reading 99."
      (:report (type) (format nil "Place is ~A" type)))
     "Sense the type of the place where ROBOT is."
   (let ((type (sense-place-type robot)))
-    (setf (robot-last-place robot) (and type (place-name type robot)))
+    ;; As the author of the map writes it.
+    (setf (robot-last-place robot)
+          (and type (own-symbol (place-type-name type)
+                                (map-package (world-map (robot-world robot))))))
     (succeed operation (robot-last-place robot))))
 
 (defun turn-to-face (operation robot direction)

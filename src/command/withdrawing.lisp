@@ -58,8 +58,6 @@ where the command is: :COMMAND, :TRACK or NIL" :export)))
 of its end, at the start of the next tick, if it is under way by then. Returns nothing."
   (post (make-withdrawal continuation (list resource)) resource))
 
-(defun withdraw-again (resource place)
-  "Do to RESOURCE what a withdrawal came to in a run that is repeated."
-  (post (make-withdrawal nil (list resource place)) resource))
-
-(define-operator 'withdraw-command '(datum datum) #'withdraw-again)
+;; What a withdrawal came to, in a run that is repeated.
+(define-operator 'withdraw-command '(datum datum)
+  (lambda (resource place) (post (make-withdrawal nil (list resource place)) resource)))
