@@ -59,17 +59,14 @@ own fixed ones."
   (format nil "~(~S~), of type ~(~S~), ~A" (make-keyword (kind-slot-name slot))
           (kind-slot-type slot) (kind-slot-text slot)))
 
-;; A type such as (double-float 0d0) takes 6 as 6d0.
-(defun double-slot-p (slot)
-  (subtypep (kind-slot-type slot) 'double-float))
-
 (defun parse-initarg (kind initarg value)
   "Return INITARG and VALUE, for a part of KIND, as a list; NIL if they make no sense."
   (let ((slot (and (keywordp initarg)
                    (find initarg (settable-slots kind)
                          :key #'kind-slot-name :test #'same-name-p))))
     (when (and slot (or (not (realp value)) (finite-p value)))
-      (let ((value (if (and (realp value) (double-slot-p slot))
+      ;; A type such as (double-float 0d0) takes 6 as 6d0.
+      (let ((value (if (and (realp value) (subtypep (kind-slot-type slot) 'double-float))
                        (double value)
                        value)))
         (when (typep value (kind-slot-type slot))

@@ -183,13 +183,9 @@ those that have none, being where the robot is, turn along with it."
 
 (defun forget-oldest (robot)
   "Drop the oldest designator of ROBOT that no camera tracks."
-  (let ((oldest nil))
-    (dolist (designator (live-designators robot))
-      (when (and (or (null oldest)
-                     (< (designator-serial designator) (designator-serial oldest)))
-                 (not (tracked-p designator)))
-        (setf oldest designator)))
-    (when oldest (drop-designator oldest))))
+  (let ((untracked (remove-if #'tracked-p (live-designators robot))))
+    (when untracked
+      (drop-designator (first (sort untracked #'< :key #'designator-serial))))))
 
 (defun add-designator (robot &key (type :non-local) (angle 0d0) (distance 0d0) data denotation
                                   x y location)

@@ -125,17 +125,6 @@ See reading 215."
   (let ((other (find-robot (robot-name robot) nil)))
     (and other (null (robot-retired other)) other)))
 
-(defun robots-called (name)
-  "Return the robots whose name is the symbol NAME in the worlds that top-level code works in."
-  (loop for map in (all-maps)
-        append (and (map-resident map)
-                    (remove name (world-robots (map-resident map))
-                            :key #'robot-name :test-not #'eq))))
-
-(defun interrupt-robot (robot)
-  "Interrupt all that ROBOT and its parts are doing. Called by the owner of its world."
-  (abandon (timeline-of robot) (robot-resources robot)))
-
 (defun take-out (robot reason)
   "Retire ROBOT, interrupt what it is doing, and take it out of its world."
   (let ((world (robot-world robot)))
@@ -143,17 +132,14 @@ See reading 215."
       (in-any-case
         (retire-robot robot reason)
         (close-robot robot)
-        (interrupt-robot robot)
+        (abandon (timeline-of robot) (robot-resources robot))
         (setf (world-robots world) (remove robot (world-robots world)))))))
-
-(defun ask-owner (world function)
-  "Call FUNCTION where WORLD stands still."
-  (ask (ensure-timeline world) function))
 
 (defun take-out-all (name reason)
   "Take all robots called NAME out of the worlds that top-level code works in."
-  (dolist (robot (robots-called name))
-    (ask-owner (robot-world robot) (lambda () (take-out robot reason)))))
+  (dolist (world (remove nil (mapcar #'map-resident (all-maps))))
+    (dolist (robot (remove name (world-robots world) :key #'robot-name :test-not #'eq))
+      (asking ((ensure-timeline world)) (take-out robot reason)))))
 
 (defun robot-made-by (blueprint world)
   "Return the robot in WORLD that was made by BLUEPRINT and is not retired, or NIL."
@@ -186,8 +172,8 @@ an earlier definition of its name, and return it; the one that is there already,
       (check-start blueprint (world-map world))
       (unless (robot-made-by blueprint world)
         (take-out-all (blueprint-name blueprint) "it has been defined anew"))
-      (ask-owner world (lambda ()
-                         (when (resident-p world) (setf robot (settle-in world blueprint)))))
+      (asking ((ensure-timeline world))
+        (when (resident-p world) (setf robot (settle-in world blueprint))))
       (when robot (return robot)))))
 
 (defmethod take-back ((blueprint blueprint))

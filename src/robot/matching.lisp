@@ -180,16 +180,12 @@ are NIL, if it is one of CHOICES."
 (defun thing-map (thing)
   (world-map (thing-world thing)))
 
-(defun author-package (thing)
-  "Return the name of the package in which the author of THING's map writes, or NIL."
-  (and (thing-world thing) (map-package (thing-map thing))))
-
 (defun as-asked (demand reading thing)
   "Return READING of THING, which fits DEMAND, with the symbol that was asked for; if a number was
 asked for, the one that the world's author writes."
   (flet ((asked (value)
            (or (find value (demand-choices demand) :test #'value-equal)
-               (own-symbol value (author-package thing)))))
+               (own-symbol value (and (thing-world thing) (map-package (thing-map thing)))))))
     (cond ((realp reading) reading)
           ((and (consp reading) (eq :substance (demand-key demand)))
            (cons (asked (first reading)) (rest reading)))
@@ -199,13 +195,6 @@ asked for, the one that the world's author writes."
 (defun thing-value (thing key)
   (second (assoc key (thing-attributes thing) :test #'eq)))
 
-(defun says-nothing-p (attribute value)
-  "True if VALUE, which a thing has for ATTRIBUTE (NIL: an undefined one), means
-none (reading 122)."
-  (and (null value)
-       attribute
-       (not (can-be-false-p attribute))))
-
 (defun match-thing (thing demands distance dice)
   "Return true if readings of THING from DISTANCE metres away meet all DEMANDS, and those readings
 as an object descriptor (reading 127)."
@@ -213,7 +202,8 @@ as an object descriptor (reading 127)."
     (dolist (demand demands (values t (nreverse readings)))
       (let* ((key (demand-key demand)) (attribute (demand-attribute demand))
              (value (thing-value thing key)))
-        (when (says-nothing-p attribute value) (return nil))
+        ;; As reading 122 says.
+        (unless (or value (null attribute) (can-be-false-p attribute)) (return nil))
         (let ((reading (read-attribute attribute value distance dice)))
           (unless (fits-p demand reading) (return nil))
           (push (list key (as-asked demand reading thing)) readings))))))

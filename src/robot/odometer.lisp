@@ -189,12 +189,9 @@ NAME is a symbol or a string."
 
 ;;; The place that a robot feels (manual 3.4.3, 3.5).
 
-(defun robot-cell (robot)
-  (map-cell (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
-
 (defun robot-place-here (robot)
   "Return the PLACE that ROBOT is really in, or NIL."
-  (cell-type (robot-cell robot)))
+  (cell-type (map-cell (world-map (robot-world robot)) (robot-x robot) (robot-y robot))))
 
 (defun random-place-type (robot dice)
   (let ((types (remove nil (map-place-types (world-map (robot-world robot))))))
@@ -221,7 +218,5 @@ ROBOT is. In a cell that is no place there are none, and the heading stands for 
 
 (defun nearest-direction (directions heading)
   "Return the one of DIRECTIONS, a list of angles, that differs least from HEADING (reading 73)."
-  (let ((best (first directions)))
-    (dolist (direction (rest directions) best)
-      (when (< (abs (angle-difference direction heading)) (abs (angle-difference best heading)))
-        (setf best direction)))))
+  (flet ((turn-to (direction) (abs (angle-difference direction heading))))
+    (first (stable-sort (copy-list directions) #'< :key #'turn-to))))

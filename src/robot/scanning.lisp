@@ -184,22 +184,18 @@ for what DEMANDS describe (reading 129)."
       (make-sighting type thing x y
                      (describe-thing thing readings (seen-from camera thing) dice)))))
 
-(defun note-strange-demands (demands world)
-  "Warn of DEMANDS for attributes that nothing in WORLD has. Return DEMANDS."
-  (dolist (demand demands demands)
-    (unless (demand-attribute demand)
-      (note-strange-name (demand-key demand) world))))
-
 (defun look-for-things (camera type specification &key all)
   "Return sightings by CAMERA of things of TYPE that fit SPECIFICATION: of one, or of ALL that it
 finds. What is not there may be among them."
   (let* ((world (robot-world (camera-robot camera)))
          (dice (world-dice world :looking))
-         (demands (note-strange-demands (parse-specification specification) world))
+         (demands (parse-specification specification))
          (finds (matching-things camera type demands dice))
          (phantoms (if (and (camera-location camera) (eq type :non-local))
                        0
                        (phantom-count false-thing-prob* all dice))))
+    (loop for demand in demands
+          unless (demand-attribute demand) do (note-strange-name (demand-key demand) world))
     (loop for find in (some-of (append finds (make-list phantoms)) all dice)
           collect (if find
                       (thing-sighting camera type find dice)

@@ -67,19 +67,16 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136
                    (+ (robot-x robot) (* exit dx))
                    (+ (robot-y robot) (* exit dy))))))
 
-(defun random-direction (camera dice)
-  "Return any direction in the field of view of CAMERA, in radians."
-  (+ (robot-angle (camera-robot camera))
-     (camera-angle camera)
-     (roll-within (* 0.5d0 (camera-field-of-view camera)) dice)))
-
 (defun imagine (camera type data dice)
   "Return a false sighting of TYPE with DATA (reading 137)."
   (let ((robot (camera-robot camera)))
     (multiple-value-bind (x y)
         (if (eq type :local)
             (robot-position robot)
-            (walk-to-phantom robot (random-direction camera dice) dice))
+            (walk-to-phantom robot
+                             (+ (camera-heading camera)
+                                (roll-within (* 0.5d0 (camera-field-of-view camera)) dice))
+                             dice))
       (make-sighting type nil x y data))))
 
 (defun random-thing (world dice)
@@ -88,16 +85,15 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136
     (and (plusp count)
          (thing-of-rank (roll-index count dice) world))))
 
-(defun imagined-reading (demand dice)
-  (if (demand-low demand)
-      (roll-between (demand-low demand) (demand-high demand) dice)
-      (roll-element (demand-choices demand) dice)))
-
 (defun imagine-description (world demands dice)
   "Return a random description that meets DEMANDS. What is noticed besides is true of some thing
 in WORLD, each attribute of another."
   (let ((readings (loop for demand in demands
-                        collect (list (demand-key demand) (imagined-reading demand dice)))))
+                        for (low high) = (list (demand-low demand) (demand-high demand))
+                        collect (list (demand-key demand)
+                                      (if low
+                                          (roll-between low high dice)
+                                          (roll-element (demand-choices demand) dice))))))
     (append (notice-attributes (world-map world) (mapcar #'first readings)
                                (lambda (attribute)
                                  (let ((thing (random-thing world dice)))

@@ -83,10 +83,6 @@ from its robot (reading 141)."
 
 ;;; Refreshing.
 
-(defun quantum-chance (probability dice)
-  "True with the chance that something of PROBABILITY per unit of time happens within a tick."
-  (chance (per-tick-probability probability) dice))
-
 (defun drift (designator dice)
   "Let the false DESIGNATOR wander: if non-local, nearer or farther and to the side (reading 143)."
   (let* ((robot (designator-robot designator))
@@ -157,10 +153,10 @@ changed (reading 226)."
 ;; As reading 220 says.
 (defun lost-by-chance-p (designator dice)
   (and (not no-sensor-error*)
-       (quantum-chance (if (designator-denotation designator)
-                           prob-lose-track*
-                           prob-lose-false-track*)
-                       dice)))
+       (chance (per-tick-probability (if (designator-denotation designator)
+                                         prob-lose-track*
+                                         prob-lose-false-track*))
+               dice)))
 
 (defun trackable-p (designator &optional camera)
   "True if CAMERA, in the open, can track the non-local DESIGNATOR now, wherever it points; without
@@ -176,17 +172,14 @@ between two cells that are next to each other."
   (and (followable-p designator)
        (not (visible-p designator camera))))
 
-;; As reading 141 says.
-(defun too-fast-p (camera designator)
-  (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))
-
 (defun gone-p (camera designator)
   "True if CAMERA cannot follow the non-local DESIGNATOR any longer. Arrival at the end of an
 approach is the approach's to tell (reading 112)."
   (if (arrived-p designator)
       (not (approached-p camera))
       (or (not (trackable-p designator camera))
-          (too-fast-p camera designator))))
+          ;; As reading 141 says.
+          (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))
 
 (defun keep-or-lose (camera designator dice)
   "Point CAMERA at DESIGNATOR, unless chance makes it lose that (reading 235)."
@@ -228,12 +221,7 @@ approach is the approach's to tell (reading 112)."
                           (not (tracked-p designator)))
                  (drop-designator designator))))))
 
-;; As reading 87 says.
-(defun tell-ended-tracks (robot)
-  (loop for (track . code) in (reverse (shiftf (robot-ended-tracks robot) '()))
-        do (tell-track-ended track code)))
-
-;; As reading 112 says.
+;; As readings 87 and 112 say.
 (defun tend-robot (robot tick)
   (when (plusp (length (robot-designators robot)))
     (loop with dice = (world-dice (robot-world robot) :tracking)
@@ -242,7 +230,9 @@ approach is the approach's to tell (reading 112)."
           when designator
             do (tend-track camera designator tick dice))
     (tend-untracked robot))
-  (when (robot-ended-tracks robot) (tell-ended-tracks robot)))
+  (when (robot-ended-tracks robot)
+    (loop for (track . code) in (reverse (shiftf (robot-ended-tracks robot) '()))
+          do (tell-track-ended track code))))
 
 (defun tend-tracks (world)
   "Do what is due in this tick for all tracks and designators in WORLD."
