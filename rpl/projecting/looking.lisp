@@ -1,4 +1,4 @@
-;;;; looking.lisp -- a rollout once more, to be looked at.
+;;;; looking.lisp -- a rollout once more, to be looked at, and a projection as a picture.
 
 (in-package :ars-magna.rpl-projecting)
 
@@ -19,3 +19,42 @@ moment in which it began, and BODY finds itself in that run, as in WITH-FORK, wi
 things and messages. What plans write before that is lost unless PRINT is true. Return the values of
 BODY. Signals WRONG-ARGUMENT."
   `(call-with-rollout (lambda () ,@body) ,rollout :print ,print))
+
+;;;; As a bundle of ways over the map
+
+(defun start-of (projection)
+  "Return a snapshot of the world in which a rollout of PROJECTION began, or one like it."
+  (let* ((rollout (first (projection-rollouts projection)))
+         (scene (rollout-scene rollout)))
+    (if (scene-moment scene)
+        (take-snapshot (simulation-world (scene-moment scene)))
+        (roll-out scene (rollout-trial rollout) (rollout-seed rollout)
+                  :then (lambda (again)
+                          (declare (ignore again))
+                          (take-snapshot *world*))))))
+
+(defun subtitle-of (projection)
+  (multiple-value-bind (low high) (projection-interval projection)
+    (format nil "~D of ~D rollouts succeeded within ~D ticks: ~,2F to ~,2F. The ways of all, with ~
+                 a marker at the end of each."
+            (projection-successes projection) (length (projection-rollouts projection))
+            (projection-horizon projection) low high)))
+
+(addition save-projection-picture)
+(define-with-keywords save-projection-picture
+    (projection file &rest options &key part title layers in-color scale)
+  "Save in FILE, replacing it, a map with the ways that robots went in the rollouts of PROJECTION:
+in colours that say what became of each, with a marker where it ended. PART (left top right bottom),
+in cells, is what is wanted of the map, by default all. TITLE stands above instead of what was
+projected. FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
+Signals WRONG-ARGUMENT, and MISUSE without the program that PNG needs."
+  (declare (ignore part title layers in-color scale))
+  (check-argument save-projection-picture projection
+                  (and (projection-p projection) (projection-rollouts projection) t)
+                  "a projection with rollouts, as PROJECT returns")
+  (picture-kind 'save-projection-picture file)
+  (apply #'save-bundle 'save-projection-picture "rollout" file (start-of projection)
+         (lambda ()
+           (mapcan (lambda (rollout) (copy-list (rollout-ways rollout)))
+                   (projection-rollouts projection)))
+         (projection-text projection) (subtitle-of projection) options))

@@ -1,6 +1,165 @@
-;;;; rolling-out.lisp -- a trial of a plan, in a fork of its run or in a world believed in.
+;;;; rolling-out.lisp -- a trial of a plan, in a fork of its run or in a world that is believed in.
 
 (in-package :ars-magna.rpl-projecting)
+
+(defun end-of (task question interface)
+  "Return how the rollout has ended in which TASK, or else the asking task of QUESTION, is what
+counts; NIL if it has not."
+  (cond (task (how-over interface task))
+        ((question-ended question))
+        (t (how-over interface (task-top (wish-task question))))))
+
+(defun cost-p (object)
+  "True of real numbers, and of positive infinity, the worst; not of what is no number."
+  (typecase object
+    (float (or (finite-p object) (positive-infinity-p object)))
+    (real t)))
+
+(defun cost-of (question)
+  "Return what the function :COST of QUESTION returns, or NIL without one. Signals WRONG-ARGUMENT."
+  (let ((function (option question :cost)))
+    (when function
+      (let ((cost (funcall function)))
+        (unless (cost-p cost)
+          (reject-argument (question-operator question) :cost cost
+                           "a function that returns a number, or positive infinity for the worst"))
+        cost))))
+
+(defun broken-off (condition &optional option)
+  "Return what a rollout is that CONDITION broke off, an error of the function OPTION or of others:
+how it has ended, with which result, at no cost, and OPTION."
+  (values :failed (make-condition 'lisp-failure :condition condition) nil option))
+
+(defun with-cost (question how result)
+  (handler-case (values how result (cost-of question))
+    (error (condition) (broken-off condition :cost))))
+
+(defun go-to-end (question interface begin over)
+  "Call BEGIN, which returns the task whose end counts or NIL, and let ticks of the current
+simulation pass until what QUESTION is about has ended, or OVER, which is called after each, says
+how it ends. Return how it has ended, with which result, at what cost, and the option whose function
+broke it off, if any."
+  (handler-case
+      (let* ((last (+ (simulation-tick) (option question :horizon)))
+             (task (funcall begin))
+             (how (pass-until interface
+                              (lambda ()
+                                ;; The plan that asked may not wait for that any more.
+                                (when (and *asked* (unwanted-wish-p *asked*))
+                                  (throw 'abandoned nil))
+                                (or (funcall over) (end-of task question interface)))
+                              last)))
+        (with-cost question how (if task (task-result task) (question-result question))))
+    (error (condition) (broken-off condition))))
+
+;;; A plan that never waits would take a million steps in each tick, and bring nothing to light.
+
+(defun runaway-test (runner)
+  "Return a function that returns :RUNAWAY if the plans of RUNNER have taken as many steps as a
+reaction may, or more, since it was called last, or made."
+  (let ((steps (counted-steps runner)))
+    (lambda ()
+      (let ((before (shiftf steps (counted-steps runner))))
+        (when (<= *runaway-limit* (- steps before)) :runaway)))))
+
+(defun run-rollout (scene trial seed question interface begin)
+  "Return the rollout number TRIAL, with SEED, of SCENE, having run it in the current simulation:
+see GO-TO-END."
+  (let* ((start (simulation-tick))
+         (runner (interface-runner interface))
+         (steps (counted-steps runner))
+         (runaway (runaway-test runner))
+         (trails '()))
+    (multiple-value-bind (how result cost broken)
+        (go-to-end question interface begin
+                   (lambda ()
+                     (setf trails (note-places (current-simulation) trails))
+                     (funcall runaway)))
+      (make-rollout scene trial seed how result (- (simulation-tick) start) cost
+                    (- (counted-steps runner) steps)
+                    (ways-along trails trial (outcome-word how))
+                    broken))))
+
+;;;; Worlds believed in
+
+;;; Such a world is made by a function of the user's, WORLD, which is called with a function and a
+;;; seed: it is to call that in a WITH-SIMULATION with that seed, when it has put things where they
+;;; are believed to be. Nothing there leads to the true run: that is not the current one, its robots
+;;; are not bound, and no object of it is taken for an argument. What global variables lead to can
+;;; be read, but not changed or commanded; and fluents have a realm for each rollout.
+
+(defun object-of-run (object)
+  "Return an object that belongs to a run and is OBJECT, or in it if that is a list or vector; or
+NIL."
+  (let ((seen (make-hash-table :test 'eq)))
+    (labels ((look (object)
+               (typecase object
+                 ((or number symbol character string) nil)
+                 ((or cons simple-vector)
+                  (unless (gethash object seen)
+                    (setf (gethash object seen) t)
+                    (if (consp object)
+                        (or (look (car object)) (look (cdr object)))
+                        (some #'look object))))
+                 ((or task entity) object)
+                 (procedure (and (null (procedure-name object)) object))
+                 (t (and (kind-of object) object)))))
+      (look object))))
+
+(defun check-believable (question)
+  "Signal WRONG-ARGUMENT if QUESTION is about an object that a world believed in cannot know."
+  (let ((object (or (question-subject question)
+                    (object-of-run (list (question-plan question)
+                                         (question-arguments question))))))
+    (when object
+      (reject-argument (question-operator question)
+                       (if (question-subject question) 'plan :arguments)
+                       object
+                       (format nil "what a plan can know in another world: :world goes with plans ~
+                                    that have names, and arguments such as numbers, names and ~
+                                    lists of them")))))
+
+(defun call-without-run (function)
+  "Call FUNCTION where there is no current simulation, no robot of one is bound, other runs than
+those that FUNCTION makes cannot be changed, and fluents of outside are as in a fork."
+  (let ((robots (and *simulation* (simulation-robots *simulation*))))
+    (progv (mapcar #'robot-name robots) '()
+      (progv *simulation-variables* (mapcar #'symbol-value *simulation-variables*)
+        (let ((*simulation* nil) (*world* nil) (*interface* nil) (*realm* (fork-realm *realm*)))
+          (secluded (funcall function)))))))
+
+(defun run-in-belief (scene trial seed)
+  (unless *simulation*
+    (reject-use "project: the function :world is to call what it is given inside of ~
+                 (with-simulation ...)."))
+  (let ((question (scene-question scene)) (interface (ensure-interface)))
+    (run-rollout scene trial seed question interface
+                 (lambda ()
+                   (begin-in interface (question-plan question) (question-arguments question)
+                             #'identity)))))
+
+(defun no-rollout (scene trial seed condition)
+  (multiple-value-bind (how result cost broken) (broken-off condition :world)
+    (make-rollout scene trial seed how result 0 cost 0 '() broken)))
+
+(defun roll-out-in-belief (scene trial seed then)
+  "Return the values of THEN, a function that is called with the rollout number TRIAL, with SEED, of
+SCENE, where that has ended in the world that the question believes in."
+  (let ((values '()) (called-p nil))
+    (flet ((run ()
+             (setf called-p t
+                   values (multiple-value-list (funcall then (run-in-belief scene trial seed))))))
+      (handler-case
+          (progn
+            (call-without-run (lambda ()
+                                (funcall (option (scene-question scene) :world) #'run seed)))
+            (unless called-p
+              (reject-use "project: the function :world has not called what it was given.")))
+        (error (condition)
+          (setf values (list (funcall then (no-rollout scene trial seed condition))))))
+      (values-list values))))
+
+;;;; Rollouts
 
 ;;; A run is forked once for a question: that fork, the moment, never goes on. Each rollout is a
 ;;; fork of it with a seed of its own; so all begin alike, also if the run goes on meanwhile, and

@@ -1,6 +1,122 @@
-;;;; clashes.lisp -- tasks side by side that interrupt each other's commands are told of, once.
+;;;; clashes.lisp -- tasks that take the robot from each other, or give command after command.
 
 (in-package :ars-magna.rpl-robot)
+
+(addition *plan-command-limit*)
+
+;;; A plan that hears that its command was interrupted may issue it again, and so interrupt who did
+;;; that, who then does the same. No time passes meanwhile. After *MOST-TAKEOVERS* in a tick
+;;; each further one ends the reaction.
+
+(defparameter *most-takeovers* 100
+  "How often plans may take one part of the robot from each other before time has to pass.")
+
+(defconstant +takeover-warning-ticks+ 5
+  "After how many ticks plans that go on so are named again. Meanwhile each takeover may be a
+message, and the queue of these forgets the oldest.")
+
+(defun takeover-count (interface resource)
+  (let ((tick (simulation-tick (interface-simulation interface))))
+    (unless (eql tick (interface-takeover-tick interface))
+      (setf (interface-takeover-tick interface) tick
+            (interface-takeovers interface) '()))
+    (or (assoc resource (interface-takeovers interface))
+        (first (push (cons resource 0) (interface-takeovers interface))))))
+
+(defun taker-text (task)
+  (if task
+      (format nil "~{~A~^ > ~} (task ~D)" (task-path task) (task-serial task))
+      "somebody outside of plans"))
+
+(defun takeover-text (resource older newer)
+  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever,
+the same words whichever of them it is that takes it."
+  (when (and older newer (> (task-serial older) (task-serial newer)))
+    (rotatef older newer))
+  (if (eq older newer)
+      (format nil "~A takes ~A from itself for ever: each time it hears that its command was ~
+                   interrupted it issues another"
+              (taker-text newer) resource)
+      (format nil "~A and ~A take ~A from each other for ever: each time one hears that its ~
+                   command was interrupted it issues another"
+              (taker-text older) (taker-text newer) resource)))
+
+(defun warn-of-takeovers (interface text)
+  "Queue the warning TEXT, unless that was done just before."
+  (let ((tick (simulation-tick (interface-simulation interface)))
+        (said (assoc text (interface-warned interface) :test #'string=)))
+    (unless (and said (< tick (+ (cdr said) +takeover-warning-ticks+)))
+      (setf (interface-warned interface)
+            (acons text tick (remove said (interface-warned interface))))
+      (warn-notably text ". They go on with the ticks. Let one at a time have it: see "
+                   "RPL-ROBOT-VALVE."))))
+
+(defun cut-short (runner older newer)
+  "Let time pass for RUNNER. Note it if the tasks OLDER and NEWER are of one plan, which has not
+waited for that; see COMMANDS-IN-TICK."
+  (when (and older newer (eq (task-top older) (task-top newer)))
+    (setf (runner-note runner 'cut-short) (plan-runner-tick runner)))
+  (exhaust-reaction runner))
+
+(defun count-takeover (interface resource older newer)
+  "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if
+that was too often."
+  (let ((count (takeover-count interface resource)))
+    (unless (and older newer (eq (task-top older) (task-top newer)))
+      ;; Plans that take a part from one another make way in the end: that is no rush of one.
+      (setf (runner-note (interface-runner interface) 'commands) nil))
+    (when (< *most-takeovers* (incf (cdr count)))
+      (warn-of-takeovers interface (takeover-text resource older newer))
+      (cut-short (interface-runner interface) older newer))))
+
+(defun waits-for-tick-p (interface)
+  "True if plans have taken a part from each other so often in this tick that another is to come."
+  (and (eql (simulation-tick (interface-simulation interface)) (interface-takeover-tick interface))
+       (loop for (nil . count) in (interface-takeovers interface)
+               thereis (< *most-takeovers* count))))
+
+;;;; Commands without end
+
+(defparameter *plan-command-limit* 500
+  "How many commands a plan may give its robot before time passes for it. To give one more fails
+with class :TOO-MANY-COMMANDS. Commands that clean up do not count.")
+
+(defun commands-in-tick (runner task)
+  "Return a cons of TASK, a top-level task of RUNNER, and how many commands it has given in this
+tick, and in those before that TAKEOVERS have cut short."
+  (let ((tick (plan-runner-tick runner)) (note (runner-note runner 'commands)))
+    (unless (and note (member (first note) (list tick (runner-note runner 'cut-short))))
+      (setf note (setf (runner-note runner 'commands) (list tick))))
+    (setf (first note) tick)
+    (or (assoc task (rest note))
+        (first (push (cons task 0) (rest note))))))
+
+(defun fluent-form-text (fluent)
+  "Return how plans write FLUENT, one of the robot's or of a part's."
+  (let* ((name (fluent-text fluent)) (space (position #\Space name)))
+    (if space
+        (format nil "(vref ~A)" name)
+        name)))
+
+(defun wait-text (outcome resource)
+  "Return how a plan waits for the end of a command on RESOURCE of which OUTCOME makes settings, or
+NIL if nothing tells of that."
+  (let ((pulse (assoc :pulse (funcall outcome resource :interrupt))))
+    (and pulse (format nil "(wait-for ~A)" (fluent-form-text (second pulse))))))
+
+(defun count-command (task command outcome resource)
+  "Note that TASK gives COMMAND on RESOURCE, whose end OUTCOME makes settings of. Fail if its plan
+has given as many as it may in this tick."
+  (let ((count (commands-in-tick (task-runner task) (task-top task))))
+    (when (< *plan-command-limit* (incf (cdr count)))
+      (fail :class :too-many-commands :limit *plan-command-limit*
+            :remedy (format nil "A loop gives rpl-~(~A~) without waiting, and no time passes. Put ~
+                                 a wait into it, such as ~:[~;~:*~A or ~](wait-time 1); or, if ~
+                                 parts of a plan take the robot from one another, let each own ~
+                                 it: (with-valve ((rpl-robot-valve)) ...)"
+                            (command-name command) (wait-text outcome resource))))))
+
+;;;; Tasks side by side
 
 ;;; The newer command counts (manual 3.1.2), and that is often what a plan is for: a policy, or what
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and

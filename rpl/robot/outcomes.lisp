@@ -6,7 +6,7 @@
 
 ;;; The functions follow from the commands' definitions: what is the robot's is left out, cameras,
 ;;; hands and bins are given by index, and any argument may be a fluent. What becomes of the
-;;; fluents when a command ends is said by DEFINE-OUTCOME, in the table of robot-commands.lisp.
+;;; fluents when a command ends is said by DEFINE-OUTCOME, in the table of commands.lisp.
 
 (defun fluent-of (variable part)
   "Return the fluent in VARIABLE, which for a PART is a vector."

@@ -1,6 +1,8 @@
-;;;; history.lisp -- asking a trace what became of a task: its entries, failures and commands.
+;;;; history.lisp -- what a trace tells of a task: its failures, its commands, and bars over time.
 
 (in-package :ars-magna.rpl.seeing)
+
+(export '(bar bar-label bars span))
 
 ;;; All of these take a task, over or not, or the number of one, and its runner if that is not the
 ;;; one in use; and signal MISUSE where no trace was kept.
@@ -101,3 +103,171 @@ itself: for each a list of its number, its name or NIL, and its expression. See 
     (loop for start in (ancestry number trace)
           collect (list (trace-entry-task start) (trace-entry-subject start)
                         (trace-entry-form start)))))
+
+;;;; Bars over time
+
+(define-record (span (:constructor make-span (kind start text &optional end)))
+  "What a task waited for, or did, from tick START to END."
+  (kind :waiting keyword "what a span is of: :waiting, :parts (waiting for them), :blocked,
+:cleaning, :failure (it takes no time) or :command" :export)
+  (start 0 real "the tick at which a span begins" :export)
+  (text nil t "what was waited for, which failure it was, or the command that was under way, as
+text" :export)
+  (end nil (or null real) "the tick at which a span ends" :writable :export)
+  (error nil t "the error code that ended a command, or NIL" :writable :export)
+  (calls '() list
+         "the calls of procedures that the command was issued in, outermost first" :writable))
+
+(define-record (bar (:constructor make-bar (serial parent name form start depth)))
+  "The life of a task; or a call of a procedure within it, as far as commands were issued there."
+  (serial 0 fixnum "the number of the task" :export)
+  (parent nil (or null bar) "the bar that it is part of, or NIL")
+  (name nil t "the name of the task, or NIL" :export)
+  (form nil t "the expression that the task ran" :export)
+  (start 0 real "the tick at which the task started" :export)
+  (depth 0 fixnum "of how many tasks the task is part" :export)
+  (end nil (or null real) "the tick at which the task ended, or the trace" :writable :export)
+  (outcome nil symbol
+           "how the task ended, as TASK-STATE says it; NIL if it goes on" :writable :export)
+  (failure nil t "the failure of a task that failed, or NIL" :writable :export)
+  (spans '() list "the spans of the task, oldest first" :writable :export)
+  (commands '() list
+            "the spans of the commands that the task issued, oldest first" :writable :export)
+  (parts '() list
+         "the bars of the tasks that the task consisted of, oldest first" :writable :export)
+  (call-p nil boolean "the bar is of a call of a procedure, within a task" :writable :export))
+
+(defun bar-label (bar &optional (text #'form-text))
+  "Return what says which task BAR is of, or which call within a task: a short text, unless the
+function TEXT makes another of an expression."
+  (cond ((bar-call-p bar) (funcall text (bar-form bar)))
+        ((bar-name bar) (format nil "~D ~(~A~)" (bar-serial bar) (bar-name bar)))
+        (t (format nil "~D ~A" (bar-serial bar) (funcall text (bar-form bar))))))
+
+;;; From entries to bars.
+
+(defun close-spans (bar kinds tick)
+  (dolist (span (bar-spans bar))
+    (when (and (null (span-end span)) (member (span-kind span) kinds))
+      (setf (span-end span) tick))))
+
+(defun open-span (bar kind entry)
+  (push (make-span kind (trace-entry-tick entry) (trace-entry-detail entry)) (bar-spans bar)))
+
+;; What decides a construct ends the wait for its parts without a wake-up.
+(defun begin-wait (bar entry)
+  (close-spans bar '(:waiting :parts) (trace-entry-tick entry))
+  (open-span bar (if (trace-entry-subject entry) :waiting :parts) entry))
+
+(defun end-bar (bar outcome tick)
+  (close-spans bar '(:waiting :parts :blocked :cleaning) tick)
+  (setf (bar-outcome bar) outcome
+        (bar-end bar) tick))
+
+(defun note-in-bar (bar entry)
+  "Let BAR know of ENTRY, of its task, but for its start and commands."
+  (let ((tick (trace-entry-tick entry)))
+    (case (trace-entry-event entry)
+      (:wait (begin-wait bar entry))
+      (:wake (close-spans bar '(:waiting :parts) tick))
+      (:failure (push (make-span :failure tick (trace-entry-detail entry) tick) (bar-spans bar)))
+      (:block (open-span bar :blocked entry))
+      (:unblock (close-spans bar '(:blocked) tick))
+      (:clean (close-spans bar '(:waiting :parts) tick)
+       (open-span bar :cleaning entry))
+      (:cleaned (close-spans bar '(:cleaning) tick))
+      (:succeed (end-bar bar :succeeded tick))
+      (:fail (setf (bar-failure bar) (trace-entry-subject entry))
+       (end-bar bar :failed tick))
+      (:evaporate (end-bar bar :evaporated tick)))))
+
+(defun begin-bar (entry parent)
+  (let ((bar (make-bar (trace-entry-task entry) parent (trace-entry-subject entry)
+                       (trace-entry-form entry) (trace-entry-tick entry)
+                       (if parent (1+ (bar-depth parent)) 0))))
+    (when parent (push bar (bar-parts parent)))
+    bar))
+
+(defun calls-in (stack)
+  "Return the calls of plan procedures among the expressions of STACK, innermost first, outermost
+first."
+  (reverse (remove-if-not (lambda (form)
+                            (and (consp form)
+                                 (symbolp (first form))
+                                 (procedure-name-p (first form))))
+                          stack)))
+
+(defun begin-command (bar entry commands)
+  (let* ((issue (trace-entry-subject entry))
+         (span (make-span :command (trace-entry-tick entry)
+                          (whole-form-text (cons (issue-name issue) (issue-arguments issue))))))
+    (setf (span-calls span) (calls-in (first (trace-entry-value entry)))
+          (gethash (trace-entry-subject entry) commands) span)
+    (push span (bar-commands bar))))
+
+(defun end-command (entry commands)
+  (let ((span (gethash (trace-entry-subject entry) commands)))
+    (when span
+      (setf (span-end span) (trace-entry-tick entry)
+            (span-error span) (trace-entry-value entry)))))
+
+;;; Calls within a task.
+
+(defun call-at (span depth) (nth depth (span-calls span)))
+
+(defun runs-of (spans depth)
+  "Return SPANS, of commands, as a list of lists: those that follow each other in one call at
+DEPTH."
+  (loop while spans
+        collect (let ((call (call-at (first spans) depth)))
+                  (loop while (and spans (eq call (call-at (first spans) depth)))
+                        collect (pop spans)))))
+
+(defun call-bar (bar spans depth until)
+  "Return the bar, part of BAR, of the call at DEPTH in which the commands SPANS were issued; it
+ends before UNTIL."
+  (let ((call (make-bar (bar-serial bar) bar nil (call-at (first spans) depth)
+                        (span-start (first spans)) (1+ (bar-depth bar)))))
+    (setf (bar-call-p call) t
+          (bar-end call) (min until (reduce #'max spans :key #'span-end))
+          (bar-commands call) (remove-if (lambda (span) (call-at span (1+ depth))) spans)
+          (bar-parts call) (call-bars call spans (1+ depth)))
+    call))
+
+(defun call-bars (bar spans &optional (depth 0))
+  "Return bars, parts of BAR, for the calls at DEPTH in which the commands SPANS were issued."
+  (loop for (run . more) on (runs-of spans depth)
+        when (call-at (first run) depth)
+          collect (call-bar bar run depth
+                            (if more
+                                (span-start (first (first more)))
+                                (reduce #'max run :key #'span-end)))))
+
+(defun finish-bar (bar now)
+  "Put what is in BAR, and its parts, in order; what has not ended goes on until NOW."
+  (unless (bar-end bar) (end-bar bar nil now))
+  (setf (bar-spans bar) (nreverse (bar-spans bar))
+        (bar-commands bar) (nreverse (bar-commands bar))
+        (bar-parts bar) (nreverse (bar-parts bar)))
+  (dolist (span (bar-commands bar))
+    (unless (span-end span) (setf (span-end span) now)))
+  (dolist (part (bar-parts bar)) (finish-bar part now))
+  (setf (bar-parts bar) (append (call-bars bar (bar-commands bar)) (bar-parts bar))))
+
+(defun bars (trace &optional now)
+  "Return the bars of the plans, top-level tasks, that TRACE tells of, in order of their start;
+those of other tasks are parts of these. What has not ended goes on until the tick NOW, by default
+the last of TRACE."
+  (let ((bars (make-hash-table)) (commands (make-hash-table :test 'eq)) (roots '()) (last 0))
+    (loop for entry across trace
+          for bar = (gethash (trace-entry-task entry) bars)
+          do (setf last (trace-entry-tick entry))
+             (case (trace-entry-event entry)
+               (:start (setf bar (begin-bar entry (gethash (trace-entry-value entry) bars))
+                             (gethash (trace-entry-task entry) bars) bar)
+                (unless (bar-parent bar) (push bar roots)))
+               (:command (when bar (begin-command bar entry commands)))
+               (:answer (end-command entry commands))
+               (t (when bar (note-in-bar bar entry)))))
+    (dolist (bar roots) (finish-bar bar (max last (or now last))))
+    (nreverse roots)))

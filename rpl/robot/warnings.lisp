@@ -1,0 +1,255 @@
+;;;; warnings.lisp -- what is said once of plans that wait in vain, do not look, or do not end.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; A plan that waits for a fluent waits in vain if nothing is left that could change that. Kickers
+;;; run on by themselves; most of them move things, and know no fluents. So their code is looked
+;;; through, and that of users' functions which it calls.
+
+(defparameter *functions-that-tell*
+  '(set-value pulse (setf fluent-value) begin-plan)
+  "The names of functions by which code may change a fluent, or have a plan do so.")
+
+(defun tells-p (object seen)
+  "True if OBJECT, in the code of a function, or what that calls, may change a fluent. SEEN is a
+table of what has been looked through."
+  (cond ((member object *functions-that-tell* :test #'equal))
+        ((gethash object seen) nil)
+        ((functionp object)
+         (setf (gethash object seen) t)
+         (some (lambda (part) (tells-p part seen)) (code-references object)))
+        ((and (symbolp object) (users-symbol-p object) (fboundp object)
+              (not (macro-function object)))
+         (setf (gethash object seen) t)
+         (tells-p (fdefinition object) seen))))
+
+(defvar *tellers* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "What is known of the kickers in the run of an interface: lists of conses (kicker . tells-p).")
+
+(defun telling-kicker-p (kicker interface)
+  (let ((known (assoc kicker (gethash interface *tellers*) :test #'eq)))
+    (if known
+        (cdr known)
+        (let* ((seen (make-hash-table :test 'eq))
+               (answer (and (or (tells-p (kicker-body kicker) seen)
+                                (tells-p (kicker-test kicker) seen))
+                            t)))
+          (push (cons kicker answer) (gethash interface *tellers*))
+          answer))))
+
+(defun kickers-may-tell-p (interface)
+  (some-kicker (lambda (kicker) (telling-kicker-p kicker interface))
+               (simulation-world (interface-simulation interface))))
+
+;;;; Commands that came to nothing
+
+;;; Commands do not fail: fluents such as ROBOT-MOVEMENT-ERROR* tell how they have ended. A plan
+;;; that reads none of these may succeed though nothing was done. Reading, waiting and networks all
+;;; count as looking; being blocked and interrupted are left out, as plans make use of both.
+
+(defparameter *codes-of-no-trouble*
+  '(:interrupt :not-moving :goto-local :already-tracking
+    :lost-track :grasping :not-grasping :grasp-lost :not-inside :bin-open)
+  "Codes with which commands end that plans use, as those of the manual's appendix D do.")
+
+(defun came-to-nothing-p (command err)
+  "True if COMMAND, which ended with ERR, could not do what it is for."
+  (and err
+       (not (member err *codes-of-no-trouble*))
+       (not (member err (command-expected command)))))
+
+;; Plain data, so that forks have it, too.
+(defstruct (unread-end (:type list) (:conc-name unread-)
+                       (:constructor make-unread (plan command part err)) (:copier nil))
+  "That COMMAND, a name, on the part numbered PART (NIL: the robot) has ended with ERR, of a plan
+with the serial number PLAN."
+  plan command part err)
+
+(defun number-of-part (resource)
+  (and (part-p resource) (part-index resource)))
+
+(defun unread-fluents (unread)
+  "Return the fluents that tell of UNREAD, that of its error the last."
+  (loop for variable in (get (unread-command unread) 'result-fluents)
+        for value = (symbol-value variable)
+        collect (if (simple-vector-p value) (svref value (unread-part unread)) value)))
+
+(defun still-unread-p (unread)
+  (notany #'looked-at-p (unread-fluents unread)))
+
+(defun note-unread (interface deed err)
+  "Note that DEED of INTERFACE has ended with ERR, before anybody can have looked at that; it
+supersedes how the same command ended before."
+  (let ((command (deed-name deed)) (task (deed-task deed))
+        (part (number-of-part (deed-resource deed))))
+    (when (or err (interface-unread interface))
+      (setf (interface-unread interface)
+            (remove-if (lambda (unread)
+                         (or (not (still-unread-p unread))
+                             (and (eq command (unread-command unread))
+                                  (eql part (unread-part unread)))))
+                       (interface-unread interface))))
+    (when (and task
+               (came-to-nothing-p (deed-command deed) err)
+               (not (deed-told-p deed))
+               (not (deed-cleanup-p deed)))
+      (let ((unread (make-unread (task-serial (task-top task)) command part err)))
+        (mapc #'forget-looks (unread-fluents unread))
+        ;; Who waits for one of them will be woken.
+        (when (still-unread-p unread) (push unread (interface-unread interface)))))))
+
+(defun take-unread (interface task)
+  (flet ((of-task-p (unread) (eql (task-serial task) (unread-plan unread))))
+    (prog1 (remove-if-not #'of-task-p (interface-unread interface))
+      (setf (interface-unread interface) (remove-if #'of-task-p (interface-unread interface))))))
+
+(defun tell-of-unread (interface task)
+  "Say once if a command of TASK, a plan of INTERFACE that has succeeded, came to nothing, and
+nobody has looked."
+  (let ((unread (find-if #'still-unread-p (take-unread interface task)))
+        (simulation (interface-simulation interface)))
+    (when (and unread (not (message-queue-listener *message-queue*)))
+      (warn-once (list :unread (task-label task)) (simulation-world simulation)
+                 (format nil "The plan ~A succeeded, though its command rpl-~(~A~) ended with ~S, ~
+                              and did not look at ~A. After the wait write (if (fluent-value ~
+                              ~:*~A) (fail ...)), or what is to be done then."
+                         (task-label task) (unread-command unread) (unread-err unread)
+                         (fluent-form-text (first (last (unread-fluents unread)))))
+                 :notable (or (live-p simulation) (lambda () (still-unread-p unread)))))))
+
+;;;; Commands that go on after their plan
+
+;;; That is allowed (reading 185), but most often a wait has been forgotten. Not counted are
+;;; commands that take no time and do more than look, go on in the background, stop the robot, or
+;;; were given to clean up.
+
+(defun unawaited-deeds (interface task)
+  "Return what the top-level TASK, of INTERFACE, has asked for and is under way."
+  (remove-if-not (lambda (deed)
+                   (and (deed-open-p deed)
+                        (or (ends-by-command-p deed)
+                            (trait-p :asks (deed-command deed)))
+                        (not (trait-p :stops (deed-command deed)))
+                        (not (deed-cleanup-p deed))
+                        (deed-task deed)
+                        (eq task (task-top (deed-task deed)))))
+                 (interface-deeds interface)))
+
+(defun unawaited-advice (deed)
+  "Return in a sentence what to do if DEED is not to be under way when its plan has succeeded; or
+NIL."
+  (if (eq :evaporated (task-state (deed-task deed)))
+      (format nil "What gave it was ended before, as by a deadline. ~
+                   If the command is to end as well, stop it: (rpl-robot-stop).")
+      (let ((wait (wait-text (deed-outcome deed) (deed-resource deed))))
+        (and wait (format nil "If the plan is to end with it, let it ~A." wait)))))
+
+(defun tell-of-unawaited (interface task)
+  (let ((deed (first (unawaited-deeds interface task))))
+    (when deed
+      (tell-once interface (list :unawaited (task-label task))
+                 "The plan ~A succeeded while its command rpl-~(~A~) was under way, which goes ~
+                  on.~@[ ~A~]"
+                 (task-label task) (deed-name deed) (unawaited-advice deed)))))
+
+;;;; Plans that nothing will wake
+
+;;; Programs may set fluents between two calls of RUN-TICKS. So it is a warning, once for each plan
+;;; and run, and who reads no messages is shown it if the plan still waits when the run ends.
+
+(defun others-may-help-p (interface)
+  "True if what the run calls besides plans may set fluents: kickers, observers, other plans."
+  (let ((simulation (interface-simulation interface)))
+    (or (world-has-kickers-p (simulation-world simulation))
+        (simulation-observers simulation)
+        (rest (simulation-participants simulation)))))
+
+(defun robots-wait-p (task)
+  "True if TASK waits for nothing but what only the robot changes, or for what never changes."
+  (or (eq +no-fluent+ (task-awaiting task))
+      (let ((fluents (fluents-awaited (list task))))
+        (and fluents (every #'robots-fluent-p fluents)))))
+
+(defun stranded-parts (interface task)
+  "Return the parts of TASK, a plan of INTERFACE, that wait in vain; NIL if it may go on."
+  (let ((parts (waiting-parts task)))
+    (and (notany #'watches-p parts)
+         (or (every #'robots-wait-p parts)
+             (not (others-may-help-p interface)))
+         parts)))
+
+(defun text-of-stranded (task parts)
+  (format nil "~A, which nothing in the run will change.~A"
+          (text-of-plans (list task)) (advice-on-stillness parts)))
+
+(defun warn-of-stranded (interface task parts)
+  "Say once that TASK, of the plans of INTERFACE, will not go on, as PARTS of it wait in vain."
+  (let ((simulation (interface-simulation interface))
+        (awaited (mapcar #'task-awaiting parts)))
+    (warn-once (list :stranded (task-label task))
+               (simulation-world simulation)
+               (list "At tick " (simulation-tick simulation) " " (text-of-stranded task parts)
+                     (if (and (live-p simulation) (notany #'robots-wait-p parts))
+                         " So it waits until you do, as from a REPL."
+                         ""))
+               :notable (or (live-p simulation)
+                            ;; Whether they still wait for that at the end.
+                            (lambda () (equal awaited (mapcar #'task-awaiting parts)))))))
+
+(defun deadlocked-p (interface)
+  "True if plans of INTERFACE wait and nothing can ever wake them. For any thread."
+  (and (null (hog-of interface))
+       ;; What is published tells most cases apart without the lock.
+       (not (ready-p interface))
+       (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
+
+(defun stranded-plans (interface)
+  "Return a list (task parts) for each plan of INTERFACE that was begun and waits in vain; () if one
+of its plans can go on."
+  (when (and (null (interface-awaited interface))
+             (interface-valid-p interface)
+             (tasks-of interface)
+             (deadlocked-p interface))
+    (with-plans (interface)
+      (loop for task in (tasks-of interface)
+            for parts = (stranded-parts interface task)
+            when parts collect (list task parts)))))
+
+(defun look-for-stranded (interface)
+  "Say so if plans of INTERFACE were begun and wait in vain."
+  (loop for (task parts) in (stranded-plans interface)
+        do (warn-of-stranded interface task parts)))
+
+(defmethod participant-after-ticks ((interface interface) simulation)
+  (unless (simulation-over simulation) (look-for-stranded interface)))
+
+(defun stranded-plan-text ()
+  "Return in a sentence that a plan that was begun in the current simulation waits in vain, or NIL."
+  (let ((interface (usable-interface)))
+    (destructuring-bind (&optional task parts) (and interface (first (stranded-plans interface)))
+      (and task (format nil "At the end ~A" (text-of-stranded task parts))))))
+
+;;;; Plans that the end of the run cuts off
+
+;;; Programs begin plans that never end, and stop when they have seen enough. Loops and policies say
+;;; so, and RUN-UNTIL, PRINT-PLANS and the like do, see NOTE-LOOKED-AFTER. What is left are plans
+;;; that would have ended, had more ticks passed.
+
+(defun cut-off-p (interface task)
+  "True if TASK, of the plans of INTERFACE, is under way and would have ended by itself."
+  (not (or (task-parent task)
+           (task-over-p task)
+           (member task (interface-unwanted interface))
+           (said-p (list :stranded (task-label task))
+                   (simulation-world (interface-simulation interface)))
+           (some #'watches-p (all-tasks task)))))
+
+(defmethod note-seen ((interface interface))
+  (note-looked-after (simulation-world (interface-simulation interface))))
+
+(defmethod participant-cut-off ((interface interface))
+  (when (interface-valid-p interface)
+    (with-plans (interface)
+      (loop for task in (tasks-of interface)
+            when (cut-off-p interface task)
+              collect (format nil "the plan ~A" (task-label task))))))
