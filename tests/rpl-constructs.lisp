@@ -19,7 +19,7 @@
   "Return the states of the frames of the innermost tasks of PLAN when nothing is ready."
   (with-runner (runner)
     (let ((task (rpl:start-plan runner plan)))
-      (rpl:react runner)
+      (rpl:react-to-all runner)
       (mapcar #'frame-states (innermost-tasks task)))))
 
 (test states.have-names

@@ -81,7 +81,7 @@
                                                                  "killer")))
                                            (itself 1)))
                             (setf cleaned t))))))
-      (is (eq :idle (rpl:react runner)))
+      (is (eq :idle (rpl:react-to-all runner)))
       (is (eq :evaporated (rpl:task-state task)))
       (is (<= 1000 n 1001))
       (is-true cleaned))))

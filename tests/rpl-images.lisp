@@ -57,7 +57,7 @@
   (let* ((runner (seen-until 3)) (mark (rpl:runner-mark runner)))
     (is (equal mark (rpl:runner-mark runner)))
     (rpl:advance-timers runner 7)
-    (rpl:react runner)
+    (rpl:react-to-all runner)
     (is (not (equal mark (rpl:runner-mark runner))))))
 
 ;;; Pictures.

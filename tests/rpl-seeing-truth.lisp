@@ -108,9 +108,9 @@
 (test why.names-who-ended-a-plan
   (let* ((runner (rpl:make-plan-runner :trace t))
          (task (rpl:start-plan runner (rpl:interp-lambda () (rpl:wait-time 9)))))
-    (rpl:react runner)
+    (rpl:react-to-all runner)
     (let ((base:*asker* "the prompt")) (rpl:evaporate task))
-    (let ((base:*asker* "running plans")) (rpl:react runner))
+    (let ((base:*asker* "running plans")) (rpl:react-to-all runner))
     (is-true (has-words-p (why-text task runner) "evaporated, because the prompt ended it"))))
 
 ;;; Valves.

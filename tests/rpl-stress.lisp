@@ -254,7 +254,7 @@ last one run with its start."
     (rpl:stop-plan runner)
     (loop while (rpl:plan-runner-tasks runner)
           do (rpl:apply-next-batch runner)
-             (rpl:react runner)
+             (rpl:react-to-all runner)
              (when (rpl:next-wake-time runner)
                (rpl:advance-timers runner (rpl:next-wake-time runner)))
           repeat 10000)

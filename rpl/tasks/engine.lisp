@@ -4,7 +4,7 @@
 
 (export '(advance-timers note-tick apply-next-batch close-runner digest-runner idle-p
           make-plan-runner next-wake-time heard-from-outside-p plan-deadlocked-p rest-in-tick
-          react react-to-all reseed-runner start-plan stop-plan))
+          react-to-all reseed-runner start-plan stop-plan))
 
 ;;; A reaction runs ready tasks until none is ready. Only then is the next posted batch applied, and
 ;;; time passes only when there is none. So a task that gives a command and waits for its pulse has
@@ -88,24 +88,22 @@ the end of a tick's budget has broken off goes on in the next tick: each task ge
       (setf (runner-broken-off-p runner) t))
     outcome))
 
-(defun hear-next (runner hear)
-  "Call HEAR if RUNNER, whose round is over, is to hear what was posted before its tasks go on.
-Return what it returns."
-  (declare (type function hear))
+(defun hear-next (runner)
+  "Apply the next batch if RUNNER, whose round is over, is to hear what was posted before its tasks
+go on. True if there was one."
   (when (or (null (runner-spent runner))
             (null (runner-budget runner))
             (not (runner-charged-p runner))
             (>= (- (runner-steps runner) (runner-heard-at runner)) +thoughts+))
     (setf (runner-heard-at runner) (runner-steps runner))
-    (funcall hear runner)))
+    (apply-next-batch runner)))
 
-(defun run-rounds (runner hear)
-  "Run the ready tasks of RUNNER until none is ready; HEAR, a function, is called between rounds and
-returns true if it brought something new. Return :idle or :budget."
+(defun run-rounds (runner)
+  "Run the ready tasks of RUNNER until none is ready and nothing posted. Return :idle or :budget."
   (loop
     (let ((outcome (run-round runner)))
       (cond ((eq outcome :budget) (return :budget))
-            ((hear-next runner hear))
+            ((hear-next runner))
             ((runner-spent runner) (release-spent runner))
             (t (return :idle))))))
 
@@ -139,28 +137,20 @@ often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
                     " in " (task-label task) "; time passes all the same. "
                     (runaway-remedy task)))))
 
-(defun react-hearing (runner hear)
+(defun react-to-all (runner)
+  "Let RUNNER react to what is ready and, one after the other, to all that has been posted, and
+return :idle. Return :budget instead when the budget of steps is spent before, and what is left
+waits for the next reaction; without a budget that is after *RUNAWAY-LIMIT* steps, with a warning."
   (at-home (runner)
     (give-budget runner)
     (let ((outcome (let ((*leaves-offer-restarts* *break-on-user-error*))
-                     (run-rounds runner hear))))
+                     (run-rounds runner))))
       (when (and (eq outcome :budget)
                  (null (runner-budget runner))
                  (not (runner-exhausted runner))
                  (not (standing-still-p runner)))
         (warn-of-runaway runner))
       outcome)))
-
-(defun react (runner)
-  "Run the ready tasks of RUNNER until none is ready, and return :idle. Return :budget instead when
-the budget of steps is spent before; without a budget that is after *RUNAWAY-LIMIT* steps, with a
-warning."
-  (react-hearing runner (constantly nil)))
-
-(defun react-to-all (runner)
-  "Let RUNNER react to what is ready and, one after the other, to all that has been posted. Return
-as REACT does; after :budget what is left waits for the next reaction."
-  (react-hearing runner #'apply-next-batch))
 
 ;;; Posting: any thread may POST a function of no arguments, or a batch of settings that are applied
 ;;; at one instant, see APPLY-SETTINGS. Each is done between two reactions, in the order of posting.
