@@ -87,8 +87,6 @@ a symbol, NIL for the robot itself."
                        (create-fluent-vector name (count kind kinds))
                        (create-fluent name))))))
 
-;;;; What plans ask of their robot without its doing anything
-
 ;;; Arguments may be fluents; what counts is their value. Parts are given by index, or as such.
 
 (defun find-part (kind index operator)
@@ -103,37 +101,29 @@ robot."
                     :expected (format nil "the index of a ~(~A~): ~A has ~D, counted from 0"
                                       kind (rpl-robot) (length parts)))))))
 
-(defmacro define-robot-accessors (&body definitions)
-  "Define accessors of the plans' robot: (name reader documentation)."
-  `(progn
-     ,@(loop for (name reader text) in definitions
-             collect `(public ,name)
-             collect `(defun ,name ()
-                        ,(format nil "~A Signals MISUSE without a robot. (Manual C.)" text)
-                        (,reader (rpl-robot))))))
-
-(defmacro define-part-accessors (&body definitions)
-  "Define accessors of its parts: (name kind reader documentation)."
+(defmacro define-accessors (&body definitions)
+  "Define accessors of the plans' robot and of its parts: (name kind reader documentation)."
   `(progn
      ,@(loop for (name kind reader text) in definitions
+             for part-p = (not (eq 'robot kind))
              collect `(public ,name)
-             collect `(defun ,name (,(intern (string kind)))
-                        ,(format nil "~A ~A is an index or a fluent. Signals WRONG-ARGUMENT. ~
-                                      (Manual C.)" text kind)
-                        (,reader (find-part ',kind ,(intern (string kind)) ',name))))))
+             collect `(defun ,name ,(and part-p (list kind))
+                        ,(format nil "~A ~:[Signals MISUSE without a robot~;~A is an index or a ~
+                                      fluent. Signals WRONG-ARGUMENT~]. (Manual C.)"
+                                 text part-p kind)
+                        (,reader ,(if part-p `(find-part ',kind ,kind ',name) '(rpl-robot)))))))
 
 (defun num-cameras (robot) (length (robot-cameras robot)))
 (defun num-hands (robot) (length (robot-hands robot)))
 (defun num-bins (robot) (length (robot-bins robot)))
 
-(define-robot-accessors
-  (rpl-robot-speed robot-speed "Return the robot's speed, in metres per tick.")
-  (rpl-robot-turn-angle robot-turn-angle "Return the robot's turn angle, in radians per tick.")
-  (rpl-robot-num-cameras num-cameras "Return how many cameras the robot has.")
-  (rpl-robot-num-hands num-hands "Return how many hands the robot has.")
-  (rpl-robot-num-bins num-bins "Return how many storage bins the robot has."))
-
-(define-part-accessors
+(define-accessors
+  (rpl-robot-speed robot robot-speed "Return the robot's speed, in metres per tick.")
+  (rpl-robot-turn-angle robot robot-turn-angle
+   "Return the robot's turn angle, in radians per tick.")
+  (rpl-robot-num-cameras robot num-cameras "Return how many cameras the robot has.")
+  (rpl-robot-num-hands robot num-hands "Return how many hands the robot has.")
+  (rpl-robot-num-bins robot num-bins "Return how many storage bins the robot has.")
   (rpl-camera-field-of-view camera camera-field-of-view
    "Return how wide the camera sees, in radians.")
   (rpl-camera-resolution camera camera-resolution
