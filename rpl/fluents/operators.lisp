@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(function-given-p misses-nothing-p lifting lifting-and lifting-or))
+(export '(function-given-p misses-nothing-p lifting))
 
 ;;; A view is a network that remembers. To read it, be it by FLUENT-VALUE or by being woken by it,
 ;;; uses up what it says; so each reader needs a view of its own. While somebody waits for it, it is
@@ -42,7 +42,6 @@
     answer))
 
 (defun make-view (name sources bases memory &key always-p test key)
-  "Return a view of SOURCES called NAME; see VIEW."
   (let ((view nil))
     (dolist (base bases) (setf (fluent-looked base) :always))
     (setf view (%make-view name (lambda (&rest values) (look view (first values)))
@@ -95,8 +94,6 @@ Pulses alone are no change. Signals WRONG-ARGUMENT. (CRAM's.)"
                (cons (count-sets bases) (funcall key (fluent-value fluent)))
                :test (coerce test 'function) :key key)))
 
-;;;; Lisp's operators
-
 ;;; LIFTING is what plans turn calls of these operators into. Where no argument is a fluent it is
 ;;; plain Lisp, and where the compiler can see that none is, nothing is left of it.
 
@@ -140,20 +137,6 @@ called if the result is known before. From the first fluent on, the result is a 
         when (or (null more) (eq absorbing (and value t)))
           return value))
 
-(defmacro lifting-and (&rest forms)
-  "AND of FORMS; from the first of them that is a fluent on, a network."
-  (cond ((null forms) t)
-        ((null (rest forms)) (first forms))
-        (t `(lift-junction 'and #'every-value nil
-                           (list ,@(loop for form in forms collect `(lambda () ,form)))))))
-
-(defmacro lifting-or (&rest forms)
-  "OR of FORMS; from the first of them that is a fluent on, a network."
-  (if (rest forms)
-      `(lift-junction 'or #'some-value t
-                      (list ,@(loop for form in forms collect `(lambda () ,form))))
-      (first forms)))
-
 ;;; The same under the names of the operators, for ordinary code. Each is also a function.
 
 (defmacro define-lifted (&rest operators)
@@ -173,12 +156,18 @@ called if the result is known before. From the first fluent on, the result is a 
 (defmacro lifted:and (&rest forms)
   "Evaluate FORMS until one is false, as Lisp's AND; from the first one that is a fluent on, return
 a network."
-  `(lifting-and ,@forms))
+  (cond ((null forms) t)
+        ((null (rest forms)) (first forms))
+        (t `(lift-junction 'and #'every-value nil
+                           (list ,@(loop for form in forms collect `(lambda () ,form)))))))
 
 (defmacro lifted:or (&rest forms)
   "Evaluate FORMS until one is true, as Lisp's OR; from the first one that is a fluent on, return a
 network."
-  `(lifting-or ,@forms))
+  (if (rest forms)
+      `(lift-junction 'or #'some-value t
+                      (list ,@(loop for form in forms collect `(lambda () ,form))))
+      (first forms)))
 
 (defmacro lifted:if (test then &optional else)
   "Evaluate THEN or ELSE as Lisp's IF; TEST may be a fluent and counts by its value (manual D.2)."

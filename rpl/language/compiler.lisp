@@ -54,8 +54,8 @@
             ((is "CASE" "ECASE") `(,(first form) (operand-value ,(second form)) ,@(cddr form)))
             ((is "CCASE") (ccase-meaning form))
             ((is "LET" "LET*") (let-meaning form))
-            ((is "AND") `(lifting-and ,@(rest form)))
-            ((is "OR") `(lifting-or ,@(rest form)))
+            ((is "AND") `(lifted:and ,@(rest form)))
+            ((is "OR") `(lifted:or ,@(rest form)))
             ((is "LOOP") (if (plan-loop-p form)
                              (loop-meaning (rest form) environment)
                              (extended-loop-meaning form environment)))
@@ -150,8 +150,6 @@ fluent to wait for."
                                             `(multiple-value-call #'bundle-up ,meaning)
                                             meaning)
                                         scope))))
-
-;;;; Nodes
 
 ;;; Every function here named X-CODE returns a form; evaluated once, when the plan is loaded, that
 ;;; form builds the nodes.

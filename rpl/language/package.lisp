@@ -8,4 +8,5 @@ DEFINE-CONSTRUCT adds to it.")
   (:import-from :ars-magna.nisp
                 #:untyped-bindings #:untyped-lambda-list #:lambda-list-variables
                 #:matchvar-p #:matchvar-name)
+  (:local-nicknames (:lifted :ars-magna.rpl.lifted))
   (:export #:node #:task #:frame))
