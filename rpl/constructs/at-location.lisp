@@ -17,7 +17,6 @@ a fluent: the stays under way."
   (task nil :type task :read-only t))
 
 (defun whereabouts ()
-  "Return the whereabouts of the robot of the plan that asks."
   (or (runner-note *runner* 'whereabouts)
       (setf (runner-note *runner* 'whereabouts) (make-whereabouts))))
 

@@ -10,13 +10,11 @@
      (unwind task frame (failure-of failure task frame)))))
 
 (defun check-fail (form)
-  "Warn if the word that FORM, a FAIL, begins with may be a slip for :CLASS."
   (when (and (cddr form) (keywordp (second form)) (resembles-p (second form) :class))
     (doubt-form form "fail takes ~(~S~) for the class of the failure. Did you mean :class?"
                 (second form))))
 
 (defun check-class (form scope)
-  "Warn if the class that FORM, a FAIL in SCOPE, gives is a name and no variable."
   (let ((class (and (eq :class (second form)) (third form))))
     (when (name-without-quote-p class scope)
       (doubt-own-form form "~(~A~) is no variable. The class of a failure is a keyword: (fail ~
@@ -30,21 +28,13 @@
       `(make-failing :form ',(form-as-written form)
                       :arguments ,(value-lambda `(list ,@arguments) scope))))
 
-;;;; Handlers
-
 ;;; A handler runs in an environment of the failure, which is remembered meanwhile. To retry is to
 ;;; leave for the body.
 
 (defun handler-index (failure types)
   (position-if (lambda (type) (failure-matches-p failure type)) types))
 
-(defun enter-handler (handler type failure frame)
-  (make-frame handler
-              (vector (frame-environment frame) (failure-subject failure type))
-              frame))
-
 (defun handler-code (clause scope)
-  "Return code for the handler of CLAUSE, (type ([variable]) form...)."
   (destructuring-bind (type (&optional (variable (gensym "FAILURE"))) &rest body) clause
     (declare (ignore type))
     (binding-body-code body (variable-scope (single-scope scope) (list variable)))))
@@ -142,7 +132,10 @@ at the handler's end the failure goes on. Return all values of BODY."
               (next handling)
               (setf memory signal)
               (values t
-                      (enter-handler (svref handlers index) (nth index types) signal frame)
+                      (make-frame (svref handlers index)
+                                  (vector environment
+                                          (failure-subject signal (nth index types)))
+                                  frame)
                       nil)))))))
 
 (define-construct handle-failure (clauses &body body)
@@ -156,12 +149,9 @@ at the handler's end the failure goes on. Return all values of BODY."
        `(make-leave :form ',(form-as-written form) :target ,(scope-retry scope) :result +nothing+)
        (reject-clause (author) form "retry only in a handler of handle-failure"))))
 
-;;;; How often a handler may retry
-
 ;;; A counter is a variable; another one, that only macros know, holds what it started with.
 
 (defun start-variable (counter)
-  "Return the variable that holds what COUNTER, a symbol, started with."
   (or (get counter 'start-variable)
       (setf (get counter 'start-variable)
             (make-symbol (format nil "START-OF-~A" counter)))))
@@ -204,8 +194,6 @@ down. (CRAM's.)"
   "Let COUNTER, of WITH-RETRY-COUNTERS, be what it was at first. Return that. (CRAM's.)"
   (check-counter "reset-counter" counter environment)
   `(setq ,counter ,(start-variable counter)))
-
-;;;; Cleanups
 
 ;;; While the cleanup runs, the frame remembers the signal that is to go on after it, a completion
 ;;; if none. A task that is cleaning up does not evaporate: see EVAPORATE.

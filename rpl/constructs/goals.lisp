@@ -47,11 +47,7 @@ what is in the holes."
     (and (fits-p shape object values)
          (values t (coerce values 'list)))))
 
-(defun covers-p (shape count other)
-  (values (match-shape shape count other)))
-
 (defun pattern-text (pattern)
-  "Return PATTERN as people write it, without packages."
   (labels ((plain (pattern)
              (cond ((variable-of pattern)
                     (make-symbol (format nil "?~A" (plain-name (variable-of pattern)))))
@@ -60,8 +56,6 @@ what is in the holes."
                    (t pattern))))
     (let ((*print-gensym* nil) (*print-pretty* nil))
       (safe-text (plain pattern) :escape nil))))
-
-;;;; Goals
 
 ;;; A goal is a plan that is found by a pattern. Of those that match, the most specific is chosen:
 ;;; one whose pattern matches nothing that the others' do not; of several such, the one defined
@@ -98,7 +92,7 @@ what is in the holes."
   (remove operator (all-goals) :key #'goal-operator :test-not #'eq))
 
 (defun goal-covers-p (goal other)
-  (covers-p (goal-shape goal) (length (goal-variables goal)) (goal-shape other)))
+  (match-shape (goal-shape goal) (length (goal-variables goal)) (goal-shape other)))
 
 (defun more-specific-p (goal other)
   "True if the pattern of OTHER matches all that of GOAL does, and more."
@@ -131,8 +125,8 @@ if there is none."
 
 (defun goal-name (operator pattern shape count)
   (let ((old (find-if (lambda (goal)
-                        (and (covers-p shape count (goal-shape goal))
-                             (covers-p (goal-shape goal) (length (goal-variables goal)) shape)))
+                        (and (match-shape shape count (goal-shape goal))
+                             (match-shape (goal-shape goal) (length (goal-variables goal)) shape)))
                       (goals-of operator))))
     (if old
         (entry-name (find old (registry-entries *goals*) :key #'entry-object))

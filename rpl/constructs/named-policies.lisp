@@ -209,15 +209,10 @@ the variables around it. (CRAM's, where it takes a name.)"
         do (setf text (policed-text policy arguments (list text)))
         finally (return text)))
 
-(defun call-like-p (form scope)
-  (and (typep form '(cons symbol))
-       (not (constantp (first form)))
-       (not (known-variable-p (first form) (scope-environment scope)))
-       (fboundp (first form))))
-
 (defun check-policy-arguments (arguments form scope)
-  "Signal MALFORMED-DEFINITION if ARGUMENTS, for the policy of FORM, are a step of the body."
-  (when (call-like-p arguments scope)
+  (when (and (consp arguments)
+             (name-without-quote-p (first arguments) scope)
+             (fboundp (first arguments)))
     (reject-clause (author) form
                    (format nil "the list of the policy's arguments before the body, () if it takes ~
                                 none: (with-named-policy ~(~S~) () ~(~A~) ...)"

@@ -53,8 +53,6 @@ Of a task that evaporated or was left, return NIL (CRAM's; the last is ours)."
                +parked+))))
    (over (pass-on-outcome memory task frame))))
 
-;;;; Side by side, but some after others
-
 ;;; All steps are started, but what comes later in an order has a gate, which is closed until what
 ;;; comes earlier is over. The orders hold as long as the construct runs; then they are lifted.
 

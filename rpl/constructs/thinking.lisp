@@ -14,7 +14,6 @@ WRONG-ARGUMENT."
     (ticks-of span unit operator)))
 
 (defun price-lambda (operator span unit form scope)
-  "Return the lambda expression, of the environment, for the ticks that OPERATOR in FORM costs."
   (check-unit unit form)
   (value-lambda `(price-of ',operator ,span (or ,unit :ticks)) scope))
 

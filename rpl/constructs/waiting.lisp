@@ -5,7 +5,6 @@
 (addition deadline-missed deadline-missed-ticks)
 
 (defun time-out (timer)
-  "Let the task that TIMER is for go on with NIL."
   (let ((task (timer-client timer)))
     (setf (task-timer task) nil)
     (stop-waiting task)
@@ -221,7 +220,6 @@ Ends only by RETURN, failure or evaporation (manual D.4)."
           (go ,again)))))
 
 (defun doubt-polled (condition form)
-  "Warn if CONDITION, which FORM, a WAIT-UNTIL, tests, is known to be true at once."
   (let ((advice (if (realp condition)
                     (format nil "~S is a number, which counts as true. To let time pass, write ~
                                  (wait-time ~:*~S)." condition)

@@ -29,12 +29,7 @@
            nil)))
 
 (defun doubt-valve (valve scope)
-  "Warn if VALVE, a form in SCOPE for a valve, is the name of a function and of no variable."
-  (when (and valve
-             (symbolp valve)
-             (fboundp valve)
-             (not (member valve (scope-variables scope)))
-             (not (known-variable-p valve (scope-environment scope))))
+  (when (and (name-without-quote-p valve scope) (fboundp valve))
     (doubt-definition "~A: ~(~A~) is a function and no variable. Call it: (with-valve ~
                        ((~:*~(~A~))) ...)"
                       (author) valve)))

@@ -171,8 +171,6 @@ list that (LIST-OF member), a structure IN, keeps in its slots FIRST-TYPE and LA
 (define-membership watcher watcher-fluent :join join-watchers :leave leave-watchers)
 (define-membership link link-source :join join-links :leave leave-links)
 
-;;;; Variables known to hold fluents
-
 ;;; Of a part of which the robot has several, such as a camera, a variable holds a vector of
 ;;; fluents. That vector is true, always, and so never what a condition means.
 

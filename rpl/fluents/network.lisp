@@ -259,8 +259,6 @@ each other's values.")
     (format stream "fluent ~A~@[ = ~A~]" (fluent-text fluent)
             (unless *inside-fluent* (value-text fluent)))))
 
-;;;; Repair after a change that was left halfway
-
 ;;; The lists of fluents may be in any state. So the fluents that somebody watches are found from
 ;;; the watchers, which are known; what the fluents remember of each other is dropped and made anew.
 

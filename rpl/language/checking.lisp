@@ -18,7 +18,6 @@
                               (apply #'format nil control arguments))))))
 
 (defun warn-of-form (form control &rest arguments)
-  "Warn of FORM as WARN-OF-DEFINITION does."
   (say-of-form #'warn-of-definition form control arguments))
 
 (defun doubt-form (form control &rest arguments)

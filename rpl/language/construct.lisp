@@ -103,8 +103,6 @@ frame is in that. (:child-ended form...): what is done when CHILD has ended as H
        ,@(mapcar #'third functions)
        ',name)))
 
-;;;; Constructs
-
 ;;; A construct has four sides. Users meet a macro: its lambda list, documentation, and the error if
 ;;; it is written outside of plans. The compiler makes a node of it. A task runs the node step by
 ;;; step, in states that have names. And signals pass it. See rpl/README.md for how to add one.

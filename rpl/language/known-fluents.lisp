@@ -32,7 +32,6 @@
 ;;; Conditions.
 
 (defun check-condition (form)
-  "Signal MALFORMED-DEFINITION if FORM, a condition, is a variable that holds a vector of fluents."
   (let ((kind (vector-variable form)))
     (when kind
       (reject-clause (author) form
@@ -135,7 +134,6 @@ one."
        (second form)))
 
 (defun look-at-counting (form environment)
-  "Warn if FORM, of the plan's text, is an INCF or DECF with a fluent as its place."
   (when (and (operator-in-p form '("INCF" "DECF"))
              (typep form '(cons t (cons t (or null (cons t null)))))
              (known-fluent-p (second form) environment))

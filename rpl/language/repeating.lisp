@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(block-code make-leave each-body-code give-way))
+(export '(block-code make-leave each-body-code give-way item-list))
 
 ;;; To leave is to send an ESCAPE up. Where it crosses the border of a task, that task ends, its
 ;;; siblings evaporate, and the escape goes on in the task around them.
@@ -94,8 +94,6 @@ FORM, can be left. There is a node for it only if it is."
         `(make-jump :form ',(form-as-written form) :target ,target :place ,place)
         (reject-name "tag" tag (mapcar #'car (scope-tags scope))))))
 
-;;;; Loops
-
 ;;; After each turn others that are ready get theirs, so that a loop that never waits cannot keep
 ;;; them out. All of these can be left by RETURN.
 
@@ -160,6 +158,19 @@ a test made before each turn. COUNT is a number up to 1e15. Return NIL."
   (:code (turns-code form (note-own-text `(turn-count ,count)) body scope)))
 
 ;;; Over the elements of a list, and numbers.
+
+(defun item-list (operator sequence)
+  "Return the elements of SEQUENCE, which OPERATOR goes through, in a list. Signals WRONG-ARGUMENT
+unless it is a vector or a list that ends."
+  (unless (typep sequence '(and sequence (or (not list) (satisfies proper-list-p))))
+    (reject-argument operator 'sequence sequence "a vector, or a list that ends"))
+  (coerce sequence 'list))
+
+(defun whole-list (operator list)
+  "Return LIST, which OPERATOR goes through. Signals WRONG-ARGUMENT unless it is a list that ends."
+  (unless (proper-list-p list)
+    (reject-argument operator 'list list "a list that ends"))
+  list)
 
 (define-expression each
   "BODY for each element of the list that ITEMS of the environment returns, in an environment of

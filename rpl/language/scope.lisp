@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(check-variables plain-parameters item-list inner-scope scope single-scope
+(export '(check-variables plain-parameters inner-scope scope single-scope
           variable-scope scope-variables scope))
 
 (defun variable-trouble (name environment)
@@ -112,23 +112,6 @@ are a lambda list."
            (when (typep (second form) '(cons t cons))
              (check-variables (list (first (second form))) environment form))))))
 
-;;;; Sequences that a construct goes through
-
-(defun item-list (operator sequence)
-  "Return the elements of SEQUENCE, which OPERATOR goes through, in a list. Signals WRONG-ARGUMENT
-unless it is a vector or a list that ends."
-  (unless (typep sequence '(and sequence (or (not list) (satisfies proper-list-p))))
-    (reject-argument operator 'sequence sequence "a vector, or a list that ends"))
-  (coerce sequence 'list))
-
-(defun whole-list (operator list)
-  "Return LIST, which OPERATOR goes through. Signals WRONG-ARGUMENT unless it is a list that ends."
-  (unless (proper-list-p list)
-    (reject-argument operator 'list list "a list that ends"))
-  list)
-
-;;;; Scopes
-
 ;;; Variables that a plan binds live in environments, vectors linked by element 0. A leaf is a Lisp
 ;;; function of the environment at its place; within it each visible variable is a symbol macro for
 ;;; its element. Local functions live in environments too.
@@ -175,7 +158,6 @@ nodes" :writable :export)
   (inner-scope scope :several t))
 
 (defun check-lexical (variables environment)
-  "Signal MALFORMED-DEFINITION if one of VARIABLES is a task variable."
   (let ((variable (find-if (lambda (variable) (task-variable-p variable environment)) variables)))
     (when variable
       (reject-clause (author) variable

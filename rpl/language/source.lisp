@@ -78,12 +78,9 @@ user's that is called as iterate's are is none."
        (cdr (find-if (lambda (names) (member (first form) names :test #'string=))
                      *advice* :key #'car))))
 
-(defun advice-for (form)
-  (or (own-advice-for form)
-      "Bind the value that it needs with let before, so that the plan waits there."))
-
 (defun reject-suspension (form container)
-  (let ((advice (advice-for container)))
+  (let ((advice (or (own-advice-for container)
+                    "Bind the value that it needs with let before, so that the plan waits there.")))
     (call-at-place form
                    (lambda ()
                      (error 'misplaced-suspension

@@ -41,12 +41,13 @@ form and its scope and returns code that builds a node."
 (defun check-own-form (form environment)
   "Signal MALFORMED-DEFINITION if FORM is an IF of the plan's text that is none of a plan's, or a
 LET that binds a task variable; or if it binds what cannot be bound."
-  (when (own-text-p form) (check-names form environment))
-  (when (and (own-text-p form) (operator-in-p form '("LET" "LET*")) (proper-list-p (second form)))
-    (check-lexical (mapcar (lambda (binding) (first (ensure-list binding))) (second form))
-                   environment))
-  (when (and (own-text-p form) (operator-in-p form '("IF")))
-    (unless (typep form '(cons t (cons t (cons t (or null (cons t null))))))
+  (when (own-text-p form)
+    (check-names form environment)
+    (when (and (operator-in-p form '("LET" "LET*")) (proper-list-p (second form)))
+      (check-lexical (mapcar (lambda (binding) (first (ensure-list binding))) (second form))
+                     environment))
+    (unless (or (not (operator-in-p form '("IF")))
+                (typep form '(cons t (cons t (cons t (or null (cons t null)))))))
       (reject-clause (author) form "(if test then [else]): put several forms into (seq ...)"))))
 
 (defun check-operator (form)

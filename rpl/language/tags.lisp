@@ -25,7 +25,6 @@ BODY is the code of and of the node that it stands for: see Replacing below."
      (complete task result))))
 
 (defun tag-task (node environment)
-  "Return the task that is to run NODE, which is tagged."
   (multiple-value-bind (holder index) (funcall (tagged-place node) environment)
     (let ((task (and holder (svref holder index))))
       (if (and task (eq (task-state task) :created))
@@ -114,8 +113,6 @@ WITH-TASK-SUSPENDED and by the loss of a valve (CRAM's words of 2009 and of 2020
       (setf (task-status-fluent task)
             (create-fluent (format nil "(task-status ~(~A~))" (or (task-name task) 'task))
                            (status-word task (task-state task))))))
-
-;;;; Replacing what is tagged
 
 ;;; What is tagged can be named from outside by a path: the plan, and the tag, or the tags around
 ;;; each other. A tagged node keeps the layers of its scope, so that text that comes later can be

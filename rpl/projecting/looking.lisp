@@ -3,7 +3,6 @@
 (in-package :ars-magna.rpl-projecting)
 
 (defun call-with-rollout (function rollout &key print)
-  "Call FUNCTION where ROLLOUT, run again, has ended; see WITH-ROLLOUT."
   (check-argument with-rollout rollout (rollout-p rollout)
                   "a rollout, as PROJECTION-ROLLOUTS returns")
   (roll-out (rollout-scene rollout) (rollout-trial rollout) (rollout-seed rollout)

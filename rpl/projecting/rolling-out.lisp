@@ -80,8 +80,6 @@ see GO-TO-END."
                     (ways-along trails trial (outcome-word how))
                     broken))))
 
-;;;; Worlds believed in
-
 ;;; Such a world is made by a function of the user's, WORLD, which is called with a function and a
 ;;; seed: it is to call that in a WITH-SIMULATION with that seed, when it has put things where they
 ;;; are believed to be. Nothing there leads to the true run: that is not the current one, its robots
@@ -158,8 +156,6 @@ SCENE, where that has ended in the world that the question believes in."
         (error (condition)
           (setf values (list (funcall then (no-rollout scene trial seed condition))))))
       (values-list values))))
-
-;;;; Rollouts
 
 ;;; A run is forked once for a question: that fork, the moment, never goes on. Each rollout is a
 ;;; fork of it with a seed of its own; so all begin alike, also if the run goes on meanwhile, and

@@ -116,8 +116,6 @@ has given as many as it may in this tick."
                                  it: (with-valve ((rpl-robot-valve)) ...)"
                             (command-name command) (wait-text outcome resource))))))
 
-;;;; Tasks side by side
-
 ;;; The newer command counts (manual 3.1.2), and that is often what a plan is for: a policy, or what
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
 ;;; plans that were begun one after the other know nothing of each other.

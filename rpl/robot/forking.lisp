@@ -74,8 +74,6 @@ those that have begun in OLD since."
 
 (attend *rewind-hooks* begin-era)
 
-;;;; What is asked of plans from outside, done again
-
 ;;; Plans do by themselves what they did. That they were begun and ended, that somebody else set
 ;;; their fluents, gave commands by plan functions, or said a word to a task, such as SUSPEND, is in
 ;;; no journal; the run remembers it, if it is one that can be rewound.
@@ -175,8 +173,6 @@ where all runs do that are no forks. Fluents have the values there that they had
       (when (eq from *realm*) (setf *realm* +root+)))))
 
 (attend *simulator-hooks* leave-rewound)
-
-;;;; Copying
 
 ;;; Plans are copied while they rest, between two reactions: then all that they are about to do is
 ;;; in their tasks, and in what was posted to them.

@@ -146,7 +146,6 @@ for that, or some plan is ready. For any thread."
                 (interface-robot interface) (thread-name (interface-thread interface)))))
 
 (defun check-not-kept (interface)
-  "Signal MISUSE if a plan keeps the thread of those of INTERFACE, which is another than this."
   (let ((task (hog-of interface)))
     (when (and task (not (eq (current-thread) (interface-thread interface))))
       (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."

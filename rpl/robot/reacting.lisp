@@ -107,8 +107,6 @@ on."
   (let ((*reacting* nil) (*held* '()) (*asker* nil))
     (funcall function)))
 
-;;;; Reacting
-
 ;;; Headless, plans react at the end of each tick until all wait, so that they see every tick; live
 ;;; too, unless the thinking mode of the run gives them a thread of their own.
 
@@ -182,22 +180,19 @@ something."
 
 ;;; What the journal is told of plans, besides what they did: it is no part of the run.
 
-(defun remark-trouble (interface kind words task failure)
-  "Let the journal of the run of INTERFACE say of TASK, called WORDS, that it failed by FAILURE or,
-if that is NIL, was ended. Return the remark."
+(defun remark-trouble (interface kind task failure)
+  "Let the journal of the run of INTERFACE say of TASK, by KIND a :PLAN or a :PART of one, that it
+failed by FAILURE or, if that is NIL, was ended. Return the remark."
   (remark (interface-simulation interface) kind
-          (format nil "~A ~A ~:[was ended~;failed: ~:*~A~]" words (task-label task)
-                  (and failure (one-line-text failure)))
+          (format nil "~@[in ~A: ~]~:[task~;plan~] ~A ~:[was ended~;failed: ~:*~A~]"
+                  (and (task-parent task) (task-label (task-top task)))
+                  (eq :plan kind) (task-label task) (and failure (one-line-text failure)))
           (interface-robot interface)))
 
 (defmethod hear-of-trouble ((interface interface) task failure)
   (when (simulation-journal (interface-simulation interface))
-    (let ((remark (remark-trouble interface :part (part-words task) task failure)))
+    (let ((remark (remark-trouble interface :part task failure)))
       (when failure (setf (interface-told interface) (cons failure remark))))))
-
-(defun part-words (task)
-  "Return words for the label of TASK to follow: which plan it is part of, unless it is one."
-  (format nil "~@[in ~A: ~]task" (and (task-parent task) (task-label (task-top task)))))
 
 (defun remark-end (interface task)
   "Let the journal of the run of INTERFACE say that TASK, a plan, failed or was ended; and no more
@@ -207,7 +202,7 @@ that this failure happened, if that was just now."
     (destructuring-bind (&optional told . remark) (shiftf (interface-told interface) nil)
       (when (and remark (eq told failure) (eql (first remark) (simulation-tick simulation)))
         (unremark simulation remark)))
-    (remark-trouble interface :plan "plan" task failure)))
+    (remark-trouble interface :plan task failure)))
 
 (defun no-longer-unwanted (interface task)
   (loop for tasks = (interface-unwanted interface)

@@ -8,7 +8,6 @@
   (interface-runner interface))
 
 (defun usable-runner ()
-  "Return the runner of the interface that can be used here, or NIL."
   (let ((interface (usable-interface)))
     (and interface (interface-runner interface))))
 

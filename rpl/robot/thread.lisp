@@ -75,8 +75,6 @@ end, until the semaphore ENDED says that the thread has."
                  (end-hog interface thread look (<= 3 stuck)))))
         finally (setf (interface-hog interface) nil)))
 
-;;;; The thread
-
 ;;; It lives as long as there are plans and ticks pass by themselves, and sleeps only while none of
 ;;; the plans is ready. The next tick that finds plans starts another.
 

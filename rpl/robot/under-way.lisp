@@ -79,8 +79,6 @@ and is carried out first, or goes on in the background."
   (not (or (deed-begun-p deed)
            (command-instant-p (deed-command deed)))))
 
-;;;; Commands and their ends
-
 ;;; The simulator answers in its own thread; plans hear an answer, a list of settings of fluents,
 ;;; between two reactions. A plan's command that ends older ones on its resource lets the plan hear
 ;;; of that at once: of their answers that have come in already, and else :INTERRUPT. So a wait that
@@ -233,8 +231,6 @@ the trace knows of it."
                (not (command-instant-p (deed-command deed))))
       (withdraw-deed deed interface)
       (tell-interrupted deed))))
-
-;;;; Commands that no plan has given
 
 ;;; Fluents tell plans how their own commands end. What the prompt or a program has told the robot
 ;;; to do ends unheard, and a plan such as (whenever robot-stopped* ...) stays silent. Plans that

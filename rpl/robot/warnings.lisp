@@ -41,8 +41,6 @@ table of what has been looked through."
   (some-kicker (lambda (kicker) (telling-kicker-p kicker interface))
                (simulation-world (interface-simulation interface))))
 
-;;;; Commands that came to nothing
-
 ;;; Commands do not fail: fluents such as ROBOT-MOVEMENT-ERROR* tell how they have ended. A plan
 ;;; that reads none of these may succeed though nothing was done. Reading, waiting and networks all
 ;;; count as looking; being blocked and interrupted are left out, as plans make use of both.
@@ -152,8 +150,6 @@ NIL."
                   on.~@[ ~A~]"
                  (task-label task) (deed-name deed) (unawaited-advice deed)))))
 
-;;;; Plans that nothing will wake
-
 ;;; Programs may set fluents between two calls of RUN-TICKS. So it is a warning, once for each plan
 ;;; and run, and who reads no messages is shown it if the plan still waits when the run ends.
 
@@ -228,8 +224,6 @@ of its plans can go on."
   (let ((interface (usable-interface)))
     (destructuring-bind (&optional task parts) (and interface (first (stranded-plans interface)))
       (and task (format nil "At the end ~A" (text-of-stranded task parts))))))
-
-;;;; Plans that the end of the run cuts off
 
 ;;; Programs begin plans that never end, and stop when they have seen enough. Loops and policies say
 ;;; so, and RUN-UNTIL, PRINT-PLANS and the like do, see NOTE-LOOKED-AFTER. What is left are plans

@@ -64,8 +64,6 @@ there to answer, it is a message.")
 
 (attend *failure-hooks* consider-break)
 
-;;;; Expression by expression
-
 ;;; A runner with plans to be gone through has a STEPPER, which is called before each step of any
 ;;; of its tasks (see WATCHED-STEP); without one this costs nothing. Only steps that begin an
 ;;; expression count. Leaves have no steps of their own: one stops before those that are steps of a

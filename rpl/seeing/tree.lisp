@@ -67,8 +67,6 @@ values; and the valves that they have or want."
       (dolist (valve (remove-duplicates (mapcan #'valves-of (all-tasks which)) :from-end t))
         (write-valve valve stream)))))
 
-;;;; As data that never change
-
 ;;; An image is made where no plan goes on, as between two ticks; whoever draws from it may do so in
 ;;; any thread. It has the rows that are to be seen, from top to bottom, and no more than so many of
 ;;; them: what is left out, or folded away, is only counted.

@@ -8,9 +8,8 @@
 ;;; A task with a gate is at a frame of its own before its first expression, and goes on when
 ;;; nothing holds the gate any more. Its status is :created until then.
 
-(define-record (gate (:constructor make-gate (task)))
-  "What keeps TASK from starting."
-  (task nil task)
+(define-record (gate (:constructor make-gate ()))
+  "What keeps a task from starting."
   (holds '() list "what keeps the gate closed" :writable :export))
 
 (defstruct (gate-node (:include node (step #'step-gate)) (:copier nil))
@@ -59,7 +58,7 @@
       (unless (at-start-p task)
         (reject-use "~A has started already: nothing can come before it." (task-label task)))
       (put-gate task))
-    (setf (task-gate task) (make-gate task)))
+    (setf (task-gate task) (make-gate)))
   (push hold (gate-holds (task-gate task))))
 
 (defun release-hold (task hold)
@@ -75,8 +74,6 @@
   (spawn parent node environment index level task)
   (when (task-gate task) (put-gate task))
   task)
-
-;;;; Blocking
 
 ;;; A blocked task keeps its place, with all that it consists of: what it waits for still counts,
 ;;; and it runs again when nobody blocks it any longer. The expressions that it is at may want to do

@@ -54,8 +54,6 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
 (defmethod value-behind ((task task))
   "BEGIN-PLAN returns the task of a plan that goes on; RUN-PLAN, the values of one that it runs.")
 
-;;;; Repair
-
 ;;; An interrupt from outside, such as Control-C or a time limit, may leave a reaction at any point,
 ;;; also between two changes that belong together. What is true then is what tasks say of
 ;;; themselves: their parents, states and frames. All else (who is ready, when who wakes, who hears
@@ -148,8 +146,6 @@ know each other."
                  (null (task-signal task)) (null (task-cleaning task)))
         (stop-waiting task)
         (end-parts task)))))
-
-;;;; Care
 
 ;;; An error in a leaf becomes a failure of its task. While *BREAK-ON-USER-ERROR* is true, and
 ;;; somebody is there to answer, the debugger comes first; its restarts are: do the leaf again, let

@@ -248,8 +248,6 @@ plans, mean this one."
     (values (procedure-body procedure)
             (apply (procedure-entry procedure) arguments))))
 
-;;;; Forks
-
 ;;; All runs share the plans that were defined by name. But INTERP-LAMBDA makes a plan when it is
 ;;; evaluated, and the functions in its nodes, and in those of its local plans, have closed over
 ;;; the variables around it. Such nodes belong to one run, and so do the nodes that lead to them; a

@@ -47,8 +47,6 @@
     (decf (ring-count ring))
     item))
 
-;;;; Timers: a heap
-
 ;;; Timers due at the same tick come in the order in which they were set. A timer knows its place
 ;;; in the heap, so that one that is no longer wanted leaves at once.
 

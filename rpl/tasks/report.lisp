@@ -159,8 +159,6 @@ somebody waits for the end."
     (when (eq (task-state task) :failed)
       (report-failure (task-result task) awaited-p))))
 
-;;;; Places
-
 ;;; A place is a list. First comes the plan: its name, its number, or (name number) if several plans
 ;;; of that name are under way. Then, for each step inwards, which part: (:tag name), or the number
 ;;; of the branch, from 0. It stays true when the task is over.

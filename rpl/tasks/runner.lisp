@@ -259,8 +259,6 @@ have used their slice."
     (and (< (runner-mask runner) (ash 2 (task-level task)))
          (zerop (ring-count (svref (runner-rings runner) (task-level task)))))))
 
-;;;; Calls from outside, such as SUSPEND and EVAPORATE
-
 ;;; Plans do again by themselves what they did, given what they were told. So whoever is to repeat a
 ;;; run must know what was said to its plans from outside: each word that can be notes itself, with
 ;;; the task or plan runner that it is said to.

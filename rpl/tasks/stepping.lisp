@@ -69,8 +69,6 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
                              (runner-courtesies runner))
               runner))
 
-;;;; Steps
-
 ;;; Before each step a task gives way if somebody of a higher level has become ready, so that a
 ;;; policy reacts to what the last step did before the next one is taken.
 
