@@ -142,8 +142,7 @@
                  (:file "runs") (:file "lines") (:file "frames") (:file "importing")
                  (:file "exporting")))
    (:module "rpl/pictures" :serial t
-    :components ((:file "package") (:file "bars") (:file "timeline") (:file "task-tree")
-                 (:file "saving")))
+    :components ((:file "package") (:file "bars") (:file "timeline") (:file "task-tree")))
    (:module "src/plots" :serial t
     :components ((:file "package") (:file "figures") (:file "looks") (:file "axis")
                  (:file "plane") (:file "line-chart") (:file "survival-chart")

@@ -228,8 +228,7 @@ is free from FROM on. Return from where on it is free then."
       (look-box canvas :failure (- (place (span-start span) scale) half) y (* 2 half) (* 3 half)))))
 
 (defun draw-mark (canvas outcome x y)
-  "Draw how a task ended: a line, crossed if it failed, and struck through if it was ended. NIL: it
-goes on."
+  "Draw how a task ended: a line, crossed if it failed, struck through if ended. NIL: it goes on."
   (let ((color (second (assoc outcome *end-looks*))))
     (when color
       (box canvas color (- x 1) y 2 +bar-height+)

@@ -1,4 +1,4 @@
-;;;; task-tree.lisp -- the tasks of plans that are under way as a tree, on any canvas.
+;;;; task-tree.lisp -- the tasks of plans that are under way as a tree, also in a file.
 
 (in-package :ars-magna.rpl-pictures)
 
@@ -45,8 +45,7 @@
       (:stepped (draw-rectangle canvas draw-gcontext* x y (1- size) (1- size))))))
 
 (defun draw-fold-mark (canvas image x y)
-  "Draw a triangle that points down at the parts of the task of IMAGE, or right if there are none
-to be seen."
+  "Draw a triangle that points down at the parts of the task of IMAGE, right if they are folded."
   (let ((folded-p (task-image-folded-p image)))
     (with-subject (canvas (make-fold-mark (task-image-serial image) folded-p))
       (with-color #x404048
@@ -134,3 +133,23 @@ where it ends, in pixels."
         (write-at canvas 6 (+ y 12) unseen #x606060)
         (incf y +line-height+)))
     (+ y 4)))
+
+(defun tree-svg (image)
+  (with-output-to-string (stream)
+    (with-svg (canvas stream)
+      (with-canvas (canvas) (values 640 (draw-task-tree canvas image))))))
+
+(addition save-plan-tree)
+(define-with-keywords save-plan-tree
+    (file &key runner (most 300))
+  "Save a picture of the tasks of the plans under way in FILE, replacing it: SVG or, where the
+program rsvg-convert is installed, PNG, as its name ends. Each task stands below the one that it is
+part of, with a mark for how it is, what it is at, and what it waits for. RUNNER is the plan runner,
+by default the one in use. At most MOST tasks are drawn, the others counted. Return the file's
+truename. Signals WRONG-ARGUMENT, and MISUSE where no plans have run."
+  (check-argument save-plan-tree most (whole-p most 1 1000000) "an integer from 1 to 1000000")
+  (let ((kind (picture-kind 'save-plan-tree file))
+        (image (call-with-plans-in-use
+                (lambda (in-use)
+                  (image-of-tasks (or runner in-use (runner-to-see)) :most most)))))
+    (save-svg (tree-svg image) file kind)))
