@@ -107,8 +107,7 @@ DEF-GOAL of PERCEIVE that matches, which should leave the world as it was. Retur
 believed, by the DEF-GOAL of BELIEF that matches; where there is none, what was perceived. Fails
 with UNKNOWN-GOAL if there is none of PERCEIVE, and as its plan fails. (CRAM's and XFRM's; what it
 returns is ours.)"
-  (:arguments goal)
-  (:parts (goal function (value-lambda goal scope)))
+  (:like achieve)
   (:steps
    (begin
     (setf memory (make-pursuit 'perceive (funcall goal environment)))
@@ -123,8 +122,7 @@ returns is ours.)"
   "Return in a plan whether the robot believes GOAL, a list such as `(on ,a ,b), which is evaluated:
 what the DEF-GOAL of BELIEF that matches returns, which should do nothing to the world. Fails with
 UNKNOWN-GOAL if there is none. (BELIEF of XFRM; the syntax is ours.)"
-  (:arguments goal)
-  (:parts (goal function (value-lambda goal scope)))
+  (:like achieve)
   (:steps
    (begin
     (setf memory (make-pursuit 'belief (funcall goal environment)))

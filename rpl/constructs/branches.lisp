@@ -97,9 +97,6 @@ far, last first."
   "Return the failure of TASK at FRAME that stands for FAILURES, last first."
   (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
-(defun give-up (record task frame)
-  (unwind task (frame-up frame) (all-failed (attempt-record-failures record) task frame)))
-
 (defun attempts-code (attempts scope)
   `(vector ,@(loop for attempt in attempts collect (plan-code attempt scope))))
 
@@ -119,7 +116,8 @@ fail with a composite failure."
       (cond (attempt
              (next trying)
              (enter (the node attempt) inner frame))
-            (t (give-up memory task frame))))))
+            (t (unwind task (frame-up frame)
+                       (all-failed (attempt-record-failures memory) task frame)))))))
   (:unwind
    (when (and (in-state-p trying) (typep signal 'plan-failure))
      (push signal (attempt-record-failures memory))
@@ -152,8 +150,7 @@ return its value. If it never does, fail with a composite failure."
 ;;;; For each element of a sequence
 
 (defun turn-environment (environment item tags)
-  "Return an environment, in ENVIRONMENT, of ITEM and of tasks that are yet to start, one for each
-of TAGS."
+  "Return an environment, in ENVIRONMENT, of ITEM and of new tasks, one for each of TAGS."
   (coerce (list* environment item (loop for tag in tags collect (make-task tag +nothing+)))
           'simple-vector))
 
@@ -216,8 +213,7 @@ and FAILURES so far, last first."
     (:failed (push result (tally-failures tally)))))
 
 (defun decide-by-tally (task frame tally branches)
-  "End what TASK waits in at FRAME if TALLY, of so many BRANCHES, says that it succeeds, or can do
-so no more."
+  "End what TASK waits in at FRAME if TALLY, of so many BRANCHES, has decided the outcome."
   (cond ((zerop (tally-missing tally))
          (complete task (reverse (tally-values tally))))
         ((> (tally-missing tally) (tally-left tally))

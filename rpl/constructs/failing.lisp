@@ -67,8 +67,7 @@
   "Operators that fail with the code of no command unless what is in them does.")
 
 (defun may-fail-so-p (form code)
-  "True if FORM, in a plan's text, may fail with class CODE: it is no command and no construct or
-function that is known not to."
+  "True if FORM, in a plan, may fail with class CODE, as far as is known of what it calls."
   (let ((operator (first form)))
     (cond ((fail-p form) (let ((class (if (eq :class (second form)) (third form) (second form))))
                            (or (not (keywordp class)) (eq class code))))
@@ -79,8 +78,7 @@ function that is known not to."
                       (eq (find-package "COMMON-LISP") (symbol-package operator))))))))
 
 (defun doubt-code (code body form)
-  "Warn if CODE, a class that FORM handles in BODY, is how a command in BODY may end, as nothing in
-that fails so."
+  "Warn if CODE, a class that FORM handles in BODY, is only how a command in BODY may end."
   (let* ((command (find-call (lambda (form) (teller-of-code (first form) code)) body))
          (fluent (and command (teller-of-code (first command) code))))
     (when (and command (not (find-call (lambda (form) (may-fail-so-p form code)) body)))

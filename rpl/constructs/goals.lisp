@@ -100,8 +100,7 @@ what is in the holes."
        (not (goal-covers-p goal other))))
 
 (defun choose-goal (operator instance)
-  "Return the goal for OPERATOR and INSTANCE, such as (on a b), and the values of its variables; NIL
-if there is none."
+  "Return the goal for OPERATOR and INSTANCE, and the values of its variables; NIL if none fits."
   (let ((best nil) (values '()))
     (dolist (goal (goals-of operator) (values best values))
       (multiple-value-bind (matches found)

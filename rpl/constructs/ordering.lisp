@@ -102,8 +102,7 @@ of that."
       (watch (order-watcher order)))))
 
 (defun checked-orders (pairs task)
-  "Return the orders that TASK wants of PAIRS, conses (earlier . later). Signals WRONG-ARGUMENT and
-MISUSE."
+  "Return the orders of PAIRS, conses (earlier . later). Signals WRONG-ARGUMENT and MISUSE."
   (loop for (earlier . later) in pairs
         do (check-argument partial-order earlier (or (task-p earlier) (fluent-p earlier))
                            "a task, such as the name of a :tag, or a fluent")

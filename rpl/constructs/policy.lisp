@@ -38,8 +38,7 @@
                   (cddr policy))))
 
 (defun doubt-policy (policy form scope)
-  "Warn if POLICY, of FORM in SCOPE, has ended before anything happens, does nothing then, or
-returns a value."
+  "Warn if POLICY, of FORM in SCOPE, waits for nothing, does nothing then, or returns a value."
   (let ((once-p (tests-once-p policy scope)))
     (cond ((or once-p (not (suspends-p policy scope)))
            (doubt-own-form form "the policy ~S waits for nothing: it is done once, before the ~

@@ -6,8 +6,7 @@
 ;;; plans it keeps none from going on, or all.
 
 (defun price-of (operator span unit)
-  "Return for how many ticks OPERATOR, which costs SPAN of UNIT, is to think. Signals
-WRONG-ARGUMENT."
+  "Return in ticks what SPAN of UNIT is, which OPERATOR costs. Signals WRONG-ARGUMENT."
   (let ((span (fluent-value span)))
     (unless (amount-p span)
       (reject-argument operator 'span span "a number not below 0, up to 1e15"))
@@ -18,8 +17,7 @@ WRONG-ARGUMENT."
   (value-lambda `(price-of ',operator ,span (or ,unit :ticks)) scope))
 
 (defun think-for (task ticks alone)
-  "Let TASK, whose step is under way, think for TICKS; if ALONE is true, nobody else goes on
-meanwhile."
+  "Let TASK think for TICKS; if ALONE is true, nobody else goes on meanwhile."
   (when alone (stand-still (task-runner task) ticks))
   (park task (start-timer task ticks))
   +parked+)
@@ -71,8 +69,7 @@ and what its body has come to: a RESULT, or a SIGNAL."
         0)))
 
 (defun start-priced-branch (body task environment)
-  "Start BODY as a part of TASK, whose steps are not charged for if thinking is. Return what a step
-returns."
+  "Start BODY as a part of TASK that is not charged for its steps. Return what a step returns."
   (let ((branch (start-branch body task environment 0 (task-level task))))
     (when (runner-charged-p (task-runner task)) (setf (task-uncounted-p branch) t)))
   (await-parts task))

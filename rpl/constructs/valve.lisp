@@ -90,8 +90,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
            (some-line function (line-behind tree)))))
 
 (defun holders (valve)
-  "Return the claims that hold VALVE: that of its owner, and those of tasks that this is part of,
-innermost first."
+  "Return the claims that hold VALVE, innermost first: its owner's, and those of tasks around that."
   (loop for claim = (first (valve-claims valve)) then (cdr (assoc valve (claim-outer claim)))
         while claim
         when (member valve (claim-taken claim) :test #'eq) collect claim))
@@ -260,8 +259,7 @@ VALVE and the rival."
 
 ;; The one who has it now has no parts yet, and no less priority than those behind: no other can.
 (defun grant-waiting (valve)
-  "Grant the first of the claims that wait for VALVE and can be granted, or else give it back to
-those who lost it last."
+  "Grant the first claim that waits for VALVE and can be granted, or give VALVE back to its losers."
   (let ((claim (some-line #'next-in-line (valve-lines valve))))
     (when claim (admit claim)))
   (dolist (holder (holders valve))

@@ -10,10 +10,13 @@
     (stop-waiting task)
     (wake task nil timer)))
 
-(defun start-timer (task ticks)
+(defun timer-in (ticks task function)
+  "Return a new timer that calls FUNCTION in TICKS, on behalf of TASK."
   (let ((runner (task-runner task)))
-    (setf (task-timer task)
-          (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) #'time-out task))))
+    (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) function task)))
+
+(defun start-timer (task ticks)
+  (setf (task-timer task) (timer-in ticks task #'time-out)))
 
 (defun ticks-of (span unit operator)
   "Return SPAN, a number or fluent, of UNIT (:ticks or :seconds) in ticks, for OPERATOR."
@@ -35,8 +38,7 @@
     (doubt-form form "~(~A~) does not wait for ~A, which is less than 0." (first form) span)))
 
 (defun span-lambda (operator span unit form scope)
-  "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, a use of
-OPERATOR, in ticks."
+  "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, in ticks."
   (check-unit unit form)
   (check-span span form)
   (value-lambda `(ticks-of ,span (or ,unit :ticks) ',operator) scope))
@@ -255,12 +257,6 @@ tick. CONDITION may itself wait. (Ours: what policies and AT-LOCATION watch is w
       (decide task (failure-of (make-condition 'deadline-missed :ticks (car (frame-data frame)))
                                task frame)))))
 
-(defun start-deadline (task ticks)
-  "Let TASK miss its deadline in TICKS. Return what its frame is to remember."
-  (let ((runner (task-runner task)))
-    (cons ticks (set-timer (runner-timers runner) (+ (runner-tick runner) ticks)
-                           #'miss-deadline task))))
-
 (defun end-deadline (task memory)
   (when memory (cancel-timer (cdr memory) (runner-timers (task-runner task)))))
 
@@ -275,7 +271,8 @@ up to 1e15; with 0 or less there is time for what takes none (ours; CRAM's is a 
   (:steps
    (begin
     (next over)
-    (setf memory (start-deadline task (max 0 (funcall span environment))))
+    (let ((ticks (max 0 (funcall span environment))))
+      (setf memory (cons ticks (timer-in ticks task #'miss-deadline))))
     (start-branch body task environment 0 (task-level task))
     (await-parts task))
    (over (values (frame-up frame) value)))

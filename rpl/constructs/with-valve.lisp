@@ -68,8 +68,7 @@ error message says so (manual D; priorities ours)."
    nil))
 
 (defun split-valves (valves)
-  "Return those of VALVES that come before :priority, and the form after that. Signals
-MALFORMED-DEFINITION."
+  "Return those of VALVES that come before :priority, and the form after that."
   (let ((rest (member-if #'keywordp valves)))
     (unless (typep rest '(or null (cons (eql :priority) (cons t null))))
       (reject-clause (author) valves "(valve... [:priority number])"))

@@ -113,7 +113,6 @@ says what has happened."
     (spread-by-height backlog)))
 
 (defmacro spreading (&body body)
-  "Run BODY, which spreads a change."
   `(let* ((instants (list nil))
           (*spreading* instants))
      (declare (dynamic-extent instants))
@@ -195,8 +194,7 @@ says what has happened."
     (spread fluent :change)))
 
 (defun set-elsewhere (home fluent value)
-  "Give FLUENT, of HOME, VALUE: now if nobody has HOME or attends to it, otherwise when that gets to
-it."
+  "Give FLUENT, of HOME, VALUE: now if nobody has HOME or attends to it, otherwise by a post."
   (if (and (not (posted-p home))
            (not (funcall (home-attended-p home)))
            (call-having home #'take-home (lambda () (set-now fluent value) t)))

@@ -40,8 +40,7 @@ like any other."
         (push symbol names)))))
 
 (defun nearest-operator (name)
-  "Return what that of the known operators is called which NAME may be meant for, or NIL. A single
-letter is like no other."
+  "Return the name of the known operator that NAME may be meant for, or NIL."
   (let ((nearest (and (< 1 (length (symbol-name name)))
                       (nearest-name name (known-operators)))))
     (and nearest (plain-name nearest))))
@@ -53,8 +52,7 @@ letter is like no other."
                     (first form) (shape-text lambda-list) trouble))))
 
 (defun nisps-own (name)
-  "Return the symbol that is called like NAME, is another, and is a construct or function of NISP,
-where users' packages have them from; or NIL."
+  "Return the construct or function of NISP that is called like NAME and is another, or NIL."
   (multiple-value-bind (symbol status)
       ;; To packages with local nicknames NISP may mean another.
       (let ((*package* (find-package "KEYWORD"))) (find-symbol (symbol-name name) "NISP"))
@@ -117,8 +115,7 @@ function, and what to write; or NIL. What knows more names has a method.")
                           (funcall look form)))))))
 
 (defun check-call (form scope)
-  "Warn, now or when all has been read, if FORM, a call of a plan or of what is not known, is not
-right."
+  "Warn if FORM, a call of a plan or of what is unknown, is not right, when all has been read."
   (let ((local (assoc (first form) (scope-procedures scope))))
     (if local
         (check-fit form (fourth local))
@@ -199,8 +196,7 @@ in a call of which TEST says :NOWHERE."
        (null (find-call #'may-return-p (rest form)))))
 
 (defun check-after-whenever (forms)
-  "Warn if one of FORMS, which are done one after the other, is a WHENEVER that never ends, and not
-the last."
+  "Warn if one of FORMS, steps, is a WHENEVER that never ends, and not the last."
   (let ((form (find-if #'endless-whenever-p (butlast forms))))
     (when (and form *definition*)
       (doubt-form form "what stands after whenever is never done, as that goes on until something ~
@@ -210,8 +206,7 @@ the last."
 ;;; Variables.
 
 (defun check-use (variables where form)
-  "Warn of those of VARIABLES, bound by FORM of the author's text, that the forms WHERE do not
-mention: declarations count."
+  "Warn of those of VARIABLES, bound by FORM, that the forms WHERE do not mention."
   (when (in-source-p form)
     (dolist (variable variables)
       (when (and (symbol-package variable) (not (mentions-p variable where)))

@@ -200,8 +200,7 @@ would wait."
        (suspension form scope)))
 
 (defun binds-fluents-p (form scope)
-  "True if FORM is a LET of the plan's text that binds variables to fluents; leaves do not keep an
-account of these."
+  "True if FORM is a LET of the plan that binds variables to fluents, which leaves do not note."
   (and (consp form)
        (own-text-p form)
        (operator-in-p form '("LET" "LET*"))
@@ -245,8 +244,7 @@ it, and those to the left of them too, to keep the order."
                 form)))
 
 (defun naming-code (code scope)
-  "Return CODE, which builds a node that runs in the environment of SCOPE, so that the node knows
-the names of the variables there."
+  "Return CODE for a node that knows the names of the variables in SCOPE."
   (let ((names (names-by-level scope)))
     (if (some #'identity names)
         `(name-variables ,code ',names)

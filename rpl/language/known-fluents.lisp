@@ -63,8 +63,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
         (t form)))
 
 (defun mistaken-for-fluent-p (form environment)
-  "True if FORM, in ENVIRONMENT, is known to give the value of a fluent, or is the quoted name of
-one."
+  "True if FORM is known to give the value of a fluent, or is the quoted name of one."
   (typecase form
     ((cons (eql quote)) (known-fluent-p (second form) environment))
     (cons (and (known-value-p form environment)
@@ -187,8 +186,7 @@ one."
              forms))
 
 (defun bound-to-fluents (bindings body scope sequential)
-  "Return the variables that BINDINGS, of a LET or if SEQUENTIAL a LET* around BODY, bind to known
-fluents for good."
+  "Return the variables that BINDINGS, of a LET or LET* around BODY, bind to fluents for good."
   (let ((*fluents-here* (scope-fluents scope)) (found '()))
     (loop for (variable value) in (remove-if #'atom bindings)
           do (cond ((and (known-fluent-p value (scope-environment scope))

@@ -6,8 +6,7 @@
           variable-scope scope-variables scope))
 
 (defun variable-trouble (name environment)
-  "Return in words why NAME cannot be a lexical variable in ENVIRONMENT, or NIL. That it is special
-is another matter."
+  "Return in words why NAME cannot be a variable, lexical or special, in ENVIRONMENT; or NIL."
   (cond ((not (symbolp name)) "is no symbol")
         ((or (null name) (keywordp name)) "is a constant")
         ((member name lambda-list-keywords) "is a word of lambda lists")
@@ -182,8 +181,7 @@ nodes" :writable :export)
     (layered-scope scope (list :functions level names) level :function names)))
 
 (defun wrapped-scope (scope wrapping &rest additions)
-  "Return SCOPE with WRAPPING, a form to be completed by a body, around leaves; macros get to see
-ADDITIONS."
+  "Return SCOPE with WRAPPING, a form to be completed by a body, around leaves; see LAYERED-SCOPE."
   (apply #'layered-scope scope (list :wrapping wrapping) (scope-level scope) additions))
 
 (defun scope-variables (scope)

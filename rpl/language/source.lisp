@@ -119,8 +119,7 @@ otherwise, as in ordinary Lisp code."
   (reject-in-lisp form))
 
 (defun construct-behind (form)
-  "Return the construct that FORM, what a macro of the author's has expanded it to, stands for; NIL
-if it stands for none."
+  "Return the construct that FORM stands for, an author's macro's expansion; or NIL."
   (typecase form
     ((cons (eql in-plans-only)) (second form))
     ((cons (eql construct-form)) (second (second form)))))

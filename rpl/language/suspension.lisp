@@ -51,8 +51,7 @@ LET that binds a task variable; or if it binds what cannot be bound."
       (reject-clause (author) form "(if test then [else]): put several forms into (seq ...)"))))
 
 (defun check-operator (form)
-  "Signal MALFORMED-DEFINITION if FORM, of the plan's text, starts with neither a symbol nor a
-LAMBDA."
+  "Signal MALFORMED-DEFINITION if FORM, of the plan's text, starts with no operator."
   (unless (or (typep (first form) '(cons (eql lambda))) (not (own-text-p form)))
     (reject-clause (author) form "an operator first of all: data is written '(...) or (list ...)")))
 

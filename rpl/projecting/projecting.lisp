@@ -157,8 +157,7 @@ UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
 ;;;; Doing what goes best
 
 (defun question-of-branches (task forms options)
-  "Return the question of TASK which of the branches FORMS is the best, given the plist OPTIONS; NIL
-if there is only one."
+  "Return the question of TASK which of FORMS is the best, by OPTIONS; NIL if there is only one."
   (let ((options (checked-options 'try-best options)))
     (and (rest forms)
          (%make-question :operator 'try-best :task task :interface (asking-interface task)

@@ -125,8 +125,7 @@ run, the tick, and how many questions plans have asked before in that."
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
 (defun tell-of-errors (question projections)
-  "Say once, if functions that QUESTION gives have broken off rollouts of PROJECTIONS, in how many
-they did, and why the first time."
+  "Say once in how many rollouts of PROJECTIONS functions of QUESTION failed, and why first."
   (let* ((rollouts (mapcan (lambda (projection) (copy-list (projection-rollouts projection)))
                            projections))
          (broken (remove-if-not #'rollout-broken rollouts)))

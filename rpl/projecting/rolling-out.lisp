@@ -3,8 +3,7 @@
 (in-package :ars-magna.rpl-projecting)
 
 (defun end-of (task question interface)
-  "Return how the rollout has ended in which TASK, or else the asking task of QUESTION, is what
-counts; NIL if it has not."
+  "Return how TASK, or else the asking task of QUESTION, has ended; NIL if it has not."
   (cond (task (how-over interface task))
         ((question-ended question))
         (t (how-over interface (task-top (wish-task question))))))
@@ -63,8 +62,7 @@ reaction may, or more, since it was called last, or made."
         (when (<= *runaway-limit* (- steps before)) :runaway)))))
 
 (defun run-rollout (scene trial seed question interface begin)
-  "Return the rollout number TRIAL, with SEED, of SCENE, having run it in the current simulation:
-see GO-TO-END."
+  "Run and return the rollout number TRIAL, with SEED, of SCENE, in this run: see GO-TO-END."
   (let* ((start (simulation-tick))
          (runner (interface-runner interface))
          (steps (counted-steps runner))
@@ -87,8 +85,7 @@ see GO-TO-END."
 ;;; be read, but not changed or commanded; and fluents have a realm for each rollout.
 
 (defun object-of-run (object)
-  "Return an object that belongs to a run and is OBJECT, or in it if that is a list or vector; or
-NIL."
+  "Return OBJECT, or an object in it if it is a list or vector, that belongs to a run; or NIL."
   (let ((seen (make-hash-table :test 'eq)))
     (labels ((look (object)
                (typecase object

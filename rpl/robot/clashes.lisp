@@ -59,8 +59,7 @@ waited for that; see COMMANDS-IN-TICK."
   (exhaust-reaction runner))
 
 (defun count-takeover (interface resource older newer)
-  "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if
-that was too often."
+  "Note that NEWER took RESOURCE over from OLDER (NIL: no task); after too many let time pass."
   (let ((count (takeover-count interface resource)))
     (unless (and older newer (eq (task-top older) (task-top newer)))
       ;; Plans that take a part from one another make way in the end: that is no rush of one.
@@ -99,8 +98,7 @@ tick, and in those before that TAKEOVERS have cut short."
         name)))
 
 (defun wait-text (outcome resource)
-  "Return how a plan waits for the end of a command on RESOURCE of which OUTCOME makes settings, or
-NIL if nothing tells of that."
+  "Return how a plan waits for the end of a command on RESOURCE, which OUTCOME tells of; or NIL."
   (let ((pulse (assoc :pulse (funcall outcome resource :interrupt))))
     (and pulse (format nil "(wait-for ~A)" (fluent-form-text (second pulse))))))
 
@@ -126,8 +124,7 @@ has given as many as it may in this tick."
          (operator-called-p (node-form (frame-node frame)) "PAR" "PAR-LOOP" "PARTIAL-ORDER"))))
 
 (defun reacting-to-events-p (task whole)
-  "True if TASK, a part of WHOLE (NIL: of nothing), runs what a construct does when something
-happens."
+  "True if TASK, a part of WHOLE (NIL: of nothing), runs what is done when something happens."
   (loop for each in (lineage task)
         until (eq each whole)
         thereis (loop for frame in (frame-chain (task-frame each))
@@ -207,8 +204,7 @@ deed NEWER, most likely by mistake; NIL if that may be meant, as where it reacts
          ticks)))
 
 (defun tell-of-hurry (interface older newer)
-  "Say once if the deed NEWER of INTERFACE has cut the deed OLDER short before that has begun, or
-just after."
+  "Say once if the deed NEWER of INTERFACE has cut OLDER short before it began, or just after."
   (let ((ticks (and newer (hurry older newer))))
     (when ticks
       (tell-once interface (list :hurry-in-plan (deed-name older) (deed-name newer))

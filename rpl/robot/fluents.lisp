@@ -13,8 +13,7 @@ part is a symbol, NIL for the robot itself.")
 (pushnew '*fluent-variables* *kept-variables*)
 
 (defun fluent-kind (kind)
-  "Return the name of the kind of part called KIND, or NIL for ROBOT. Signals MALFORMED-DEFINITION
-if there is none."
+  "Return the name of the kind of part called KIND, or NIL for ROBOT. Signals if there is none."
   (unless (same-name-p kind 'robot)
     (or (find-kind-name kind 'part)
         (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA"))))
@@ -90,8 +89,7 @@ a symbol, NIL for the robot itself."
 ;;; Arguments may be fluents; what counts is their value. Parts are given by index, or as such.
 
 (defun find-part (kind index operator)
-  "Return the part of KIND with INDEX (an integer, one of the parts, or a fluent) of the plans'
-robot."
+  "Return the part of KIND of the plans' robot that INDEX is: its number, itself, or a fluent."
   (let* ((index (fluent-value index))
          (parts (parts-of-kind (rpl-robot) kind)))
     (cond ((find index parts) index)

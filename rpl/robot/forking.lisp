@@ -109,8 +109,7 @@ forks too."
     (funcall function)))
 
 (defun name-of-fluent (fluent)
-  "Return how a fluent variable leads to FLUENT: a list of that and, if it holds a vector, the
-index; or else FLUENT."
+  "Return the variable of FLUENT and, if that holds a vector, the index, as a list; or FLUENT."
   (loop for (variable) in *fluent-variables*
         for value = (symbol-value variable)
         for index = (and (vectorp value) (position fluent value :test #'eq))
@@ -119,8 +118,7 @@ index; or else FLUENT."
         finally (return fluent)))
 
 (defun change-again (function name value)
-  "Call FUNCTION with the fluent that NAME, as NAME-OF-FLUENT has returned it elsewhere, means here,
-and VALUE."
+  "Call FUNCTION with the fluent that NAME, see NAME-OF-FLUENT, means here, and VALUE."
   (funcall function
            (if (consp name)
                (destructuring-bind (variable index) name
@@ -205,8 +203,7 @@ where all runs do that are no forks. Fluents have the values there that they had
                   when the plans have come to rest.")))
 
 (defun call-holding-at-rest (interface function)
-  "Call FUNCTION, holding the plans of INTERFACE. Return its value; :BUSY if somebody else has
-them."
+  "Call FUNCTION, holding the plans of INTERFACE. Return its value; :BUSY if others have them."
   (multiple-value-bind (value free-p)
       (call-if-free (interface-lock interface)
                     (lambda ()

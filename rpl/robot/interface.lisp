@@ -95,8 +95,7 @@ been told since which robot it commands")
           (and runner (if (idle-p runner) (next-wake-time runner) :ready)))))
 
 (defun call-holding (function interface)
-  "Call FUNCTION, holding the plans of INTERFACE, which this thread has locked. It can be
-interrupted."
+  "Call FUNCTION, holding the plans of INTERFACE, locked by this thread. It can be interrupted."
   (let* ((held (cons interface *held*)) (*held* held))
     (declare (dynamic-extent held))
     (in-any-case
@@ -181,7 +180,6 @@ known to be at Lisp code that does not return. One that waits in a debugger can 
        interface)))
 
 (defmacro with-plans ((interface) &body body)
-  "Run BODY while nobody else touches the plans of INTERFACE."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
      (call-with-plans #'body ,interface)))

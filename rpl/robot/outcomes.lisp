@@ -14,8 +14,7 @@
     (if (simple-vector-p value) (svref value (part-index part)) value)))
 
 (defun convert-argument (value type operator)
-  "Return what VALUE, perhaps a fluent or an index, stands for as an argument of
-TYPE (reading 181)."
+  "Return what VALUE, perhaps a fluent or an index, is as an argument of TYPE (reading 181)."
   (let ((value (fluent-value value)) (kind (find-kind-name type 'part)))
     (cond (kind (find-part kind value operator))
           ((and (same-name-p type 'destination) (integerp value))

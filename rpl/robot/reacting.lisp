@@ -65,8 +65,7 @@ it."))
            (interface-wishes interface)))
 
 (defun serve-next (interface)
-  "Serve a wish of INTERFACE if there is one, and time need not pass first. True if its task goes
-on."
+  "Serve a wish of INTERFACE if there is one whose time has come. True if its task goes on."
   (let ((wish (wish-to-serve interface)))
     (when (and wish
                (not (interface-closing-p interface))
@@ -169,8 +168,7 @@ nothing happens."
 ;;; The runner.
 
 (defun busy-p (interface)
-  "True if a command of a plan is under way, or something else may still happen that tells plans
-something."
+  "True if a command of a plan is under way, or something may still happen that plans hear of."
   (let ((simulation (interface-simulation interface)))
     (or (find nil (interface-deeds interface) :key #'deed-over-p)
         (wish-to-serve interface)

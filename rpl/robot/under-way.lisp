@@ -182,8 +182,7 @@ the plan at work ends; an error says no more than that."
     (funcall function)))
 
 (defun issue-deed (interface command resource arguments outcome issue)
-  "Issue COMMAND on RESOURCE with ARGUMENTS; OUTCOME says what plans hear of its end. ISSUE is what
-the trace knows of it."
+  "Issue COMMAND on RESOURCE; OUTCOME says what plans hear of its end. ISSUE is for the trace."
   (let* ((task (task-at-work interface))
          (cleanup-p (and task (some #'task-cleaning (lineage task)) t))
          (deed (make-deed command resource outcome task cleanup-p issue

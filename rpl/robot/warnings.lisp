@@ -102,8 +102,7 @@ supersedes how the same command ended before."
       (setf (interface-unread interface) (remove-if #'of-task-p (interface-unread interface))))))
 
 (defun tell-of-unread (interface task)
-  "Say once if a command of TASK, a plan of INTERFACE that has succeeded, came to nothing, and
-nobody has looked."
+  "Say once if a command of TASK, which has succeeded, came to nothing and nobody has looked."
   (let ((unread (find-if #'still-unread-p (take-unread interface task)))
         (simulation (interface-simulation interface)))
     (when (and unread (not (message-queue-listener *message-queue*)))
@@ -134,8 +133,7 @@ nobody has looked."
                  (interface-deeds interface)))
 
 (defun unawaited-advice (deed)
-  "Return in a sentence what to do if DEED is not to be under way when its plan has succeeded; or
-NIL."
+  "Return in a sentence what to do if DEED is to end with its plan; or NIL."
   (if (eq :evaporated (task-state (deed-task deed)))
       (format nil "What gave it was ended before, as by a deadline. ~
                    If the command is to end as well, stop it: (rpl-robot-stop).")

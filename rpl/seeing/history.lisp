@@ -25,8 +25,7 @@
       (reject-use "There was no task ~A in this trace." number)))
 
 (defun ancestry (number trace)
-  "Return the entries of TRACE for the starts of the task NUMBER and of those that it is part of,
-innermost first. Signals MISUSE."
+  "Return the entries of TRACE for the starts of task NUMBER and those around it, innermost first."
   (loop for each = number then (trace-entry-value start)
         while each
         for start = (start-of each trace)
@@ -189,8 +188,7 @@ function TEXT makes another of an expression."
     bar))
 
 (defun calls-in (stack)
-  "Return the calls of plan procedures among the expressions of STACK, innermost first, outermost
-first."
+  "Return the calls of plan procedures in STACK, which has the innermost first, outermost first."
   (reverse (remove-if-not (lambda (form)
                             (and (consp form)
                                  (symbolp (first form))
@@ -216,16 +214,14 @@ first."
 (defun call-at (span depth) (nth depth (span-calls span)))
 
 (defun runs-of (spans depth)
-  "Return SPANS, of commands, as a list of lists: those that follow each other in one call at
-DEPTH."
+  "Return SPANS, of commands, as lists of those that follow each other in one call at DEPTH."
   (loop while spans
         collect (let ((call (call-at (first spans) depth)))
                   (loop while (and spans (eq call (call-at (first spans) depth)))
                         collect (pop spans)))))
 
 (defun call-bar (bar spans depth until)
-  "Return the bar, part of BAR, of the call at DEPTH in which the commands SPANS were issued; it
-ends before UNTIL."
+  "Return the bar in BAR of the call at DEPTH that issued the commands SPANS; it ends before UNTIL."
   (let ((call (make-bar (bar-serial bar) bar nil (call-at (first spans) depth)
                         (span-start (first spans)) (1+ (bar-depth bar)))))
     (setf (bar-call-p call) t

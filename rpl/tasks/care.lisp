@@ -60,8 +60,7 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
 ;;; of which fluent) is made anew from that.
 
 (defun live-parts (task)
-  "Return TASK and the tasks that it consists of, as far as they are not over. Make right how they
-know each other."
+  "Return TASK and its parts that are not over. Make right how they know each other."
   (let ((children (loop for child = (task-newest-child task) then (task-older child)
                         repeat 1000000
                         while child

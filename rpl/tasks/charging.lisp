@@ -43,8 +43,7 @@ tick, or as many as it needs if that is NIL."
     (- budget paid)))
 
 (defun give-budget (runner)
-  "Let the reaction of RUNNER that begins take its steps: what is left of this tick's budget, if
-that is counted."
+  "Let the reaction of RUNNER that begins take its steps: what is left of this tick's budget."
   (let ((budget (runner-budget runner)) (tick (runner-tick runner)))
     (setf (runner-slice runner)
           (max 1 (min +slice+ (floor (or budget *runaway-limit*) 10))))

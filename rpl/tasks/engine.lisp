@@ -249,8 +249,7 @@ so."
 ;;;; Plans without a robot, in virtual time
 
 (defun run-until-over (runner task limit)
-  "Run the plans of RUNNER until TASK is over. Return its state, or :deadlock, or :limit when it is
-past tick LIMIT."
+  "Run the plans of RUNNER until TASK is over. Return its state, :deadlock, or :limit past LIMIT."
   (loop
     (react-to-all runner)
     (let ((wake (next-wake-time runner)) (idle-p (idle-p runner)) (tick (runner-tick runner)))

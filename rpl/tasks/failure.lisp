@@ -76,8 +76,7 @@ innermost first.")
 (defconstant +longest-failure+ 2000 "How many characters the text of a failure has at most.")
 
 (defmacro reporting ((condition) form)
-  "Return the beginning of the text that FORM returns; if it cannot, what can be printed of
-CONDITION."
+  "Return the beginning of the text of FORM; if it fails, what can be printed of CONDITION."
   `(cut (handler-case (printing-words () ,form)
           ((or error storage-condition) () (report-anyhow ,condition)))
         +longest-failure+))
@@ -91,11 +90,6 @@ CONDITION."
 type if that signals an error."
   (reporting (failure) (or (our-text failure) (report-briefly failure))))
 
-(defun failure-type-p (object)
-  (and (symbolp object)
-       (find-class object nil)
-       (subtypep object 'plan-failure)))
-
 (defun make-failure (arguments)
   "Return the failure that (fail ARGUMENTS...) means."
   (destructuring-bind (&optional (head nil) &rest more) arguments
@@ -103,7 +97,7 @@ type if that signals an error."
           ((typep head 'plan-failure) head)
           ((typep head 'condition) (make-condition 'lisp-failure :condition head))
           (t (when (and (eq head :class) (consp more)) (setf head (pop more)))
-             (if (failure-type-p head)
+             (if (and (symbolp head) (find-class head nil) (subtypep head 'plan-failure))
                  (apply #'make-condition head more)
                  (make-condition 'plan-failure :class head :data more))))))
 

@@ -72,8 +72,7 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
                (or (resembles-p type class) (ending-p own other) (ending-p other own)))))))
 
 (defun missed-clause (failure)
-  "Return what a clause around FAILURE is for that was most likely meant for its class, which is the
-second value; NIL if there is none."
+  "Return the type of a clause around FAILURE that was meant for its class, and that; or NIL."
   (let* ((own (failure-class failure))
          (class (if (and own (symbolp own)) own (type-of failure))))
     (loop for form in (failure-plan-backtrace failure)

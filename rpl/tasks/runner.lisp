@@ -225,8 +225,7 @@ does to clean up only by what blocks that."
        (<= (task-slice task) 0)))
 
 (defun take-ready (runner)
-  "Return the task of RUNNER that is next to run, or NIL. Blocked ones are put aside, and those that
-have used their slice."
+  "Return the next task of RUNNER to run, or NIL. Put aside blocked ones and those out of slice."
   (declare #.*hot* (type plan-runner runner))
   (loop
     (let ((level (1- (integer-length (logandc2 (runner-mask runner) +interrupt+)))))

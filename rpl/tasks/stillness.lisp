@@ -37,8 +37,7 @@ frames, is about.")
         (list task))))
 
 (defun obstacles (task)
-  "Return the tasks without which TASK, which is no more than one task, cannot go on; NIL if that is
-unknown."
+  "Return the tasks without which TASK, without its parts, cannot go on; NIL if that is unknown."
   (or (and (task-awaiting task) (hinderers (task-awaiting task)))
       (those-who-took-from task)))
 
@@ -100,8 +99,7 @@ unknown."
         others))
 
 (defun report-circle-left (task)
-  "Queue a warning if the parts that TASK is left with, as one has ended, wait in a circle
-through it."
+  "Queue a warning if the parts left to TASK, as one has ended, wait in a circle through it."
   (when (and (task-newest-child task) (null (task-signal task)))
     (let* ((part (first-working-part task))
            (tasks (and (or (task-awaiting part) (plusp (task-blocked part)))
@@ -238,8 +236,7 @@ through it."
 ;;; Reports.
 
 (defun warn-of-wait (task text)
-  "Queue a warning that TASK is at a wait that does not do what was meant, as TEXT says, once for
-each form."
+  "Queue a warning TEXT, once for each form, of a wait of TASK that does not do what was meant."
   (when (first-warning-p (task-form task) (task-runner task))
     (warn-notably "In the plan " (task-label (task-top task)) ", " text)))
 

@@ -88,8 +88,7 @@ record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
         issue))))
 
 (defun call-with-answer (issue error function)
-  "Call FUNCTION, which lets plans hear the answer to ISSUE, as NOTE-COMMAND returned it, with the
-error code ERROR; note that in the trace."
+  "Call FUNCTION, by which plans hear the answer ERROR to ISSUE, see NOTE-COMMAND; trace that."
   (let ((*asker* (if issue (make-answer issue error) *asker*)))
     (when (and issue *runner* (runner-trace *runner*))
       (trace-doing *runner* :answer issue error))
