@@ -221,46 +221,37 @@
     :components
     ((:file "package")
      (:module "terminal" :serial t
-      :components ((:file "keyboard") (:file "process") (:file "telling") (:file "input")
-                   (:file "handed-octets")
-                   (:file "escapes") (:file "columns") (:file "drawn-line") (:file "console")
-                   (:file "screen") (:file "asking") (:file "json") (:file "layout")))
+      :components ((:file "process") (:file "layout") (:file "input") (:file "escapes")
+                   (:file "drawn-line") (:file "console") (:file "screen") (:file "json")))
      (:module "editing" :serial t
-      :components ((:file "keys") (:file "changes") (:file "growing") (:file "history")
-                   (:file "kinds-of-lines") (:file "pasting")
-                   (:file "octet-queue") (:file "editor")
-                   (:file "search") (:file "tabbing") (:file "ahead")
-                   (:file "standard") (:file "handed-text")))
+      :components ((:file "keys") (:file "changes") (:file "history")
+                   (:file "kinds-of-lines") (:file "editor") (:file "typing")))
      (:module "prompt" :serial t
-      :components ((:file "user-names") (:file "reporting") (:file "line-askers")
-                   (:file "repetition")
+      :components ((:file "reporting")
                    (:file "listener")
-                   (:file "break-state") (:file "session") (:file "visit")
-                   (:file "listening") (:file "going-on")
+                   (:file "session") (:file "visit")
+                   (:file "listening")
                    (:file "line")
-                   (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
-                   (:file "comments") (:file "robot-lines") (:file "finding")
-                   (:file "foreign-files")
-                   (:file "carrying-out") (:file "breakage") (:file "guarding")
-                   (:file "plans") (:file "loading") (:file "worlds")
-                   (:file "choices")
-                   (:file "answering") (:file "debugger")
-                   (:file "clx") (:file "window-system") (:file "completing")
-                   (:file "prompt") (:file "sessions") (:file "visits")))
+                   (:file "quantities") (:file "arguments") (:file "errands")
+                   (:file "reading") (:file "finding")
+                   (:file "loading")
+                   (:file "carrying-out") (:file "guarding")
+                   (:file "plans") (:file "worlds")
+                   (:file "breakage") (:file "debugger")
+                   (:file "clx") (:file "completing")
+                   (:file "prompt")))
      (:module "lines" :serial t
-      :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
+      :components ((:file "own-lines")
                    (:file "running-lines") (:file "status-lines")
                    (:file "map-lines") (:file "world-lines")
                    (:file "plan-lines")
-                   (:file "manipulate-line")
+                   (:file "acting-lines")
                    (:file "topics") (:file "help")
-                   (:file "rewind-line") (:file "picture-lines")
-                   (:file "window-lines") (:file "trial-lines")
-                   (:file "fork-line") (:file "map-file-lines")))
+                   (:file "picture-lines") (:file "other-runs")))
      (:module "shell" :serial t
-      :components ((:file "options") (:file "texts") (:file "experiments")
-                   (:file "executable") (:file "spreading") (:file "experiment-command")
-                   (:file "table-commands") (:file "scripts") (:file "time-limit")
+      :components ((:file "options") (:file "experiments")
+                   (:file "spreading") (:file "experiment-command")
+                   (:file "scripts")
                    (:file "main")))))))
 
 (defsystem "ars-magna/clim"
@@ -293,8 +284,8 @@
   :serial t
   :components
   ((:module "src/fiveam" :serial t
-    :components ((:file "package") (:file "deciding") (:file "subject") (:file "trying")
-                 (:file "repeating") (:file "telling") (:file "checking")))))
+    :components ((:file "package") (:file "deciding") (:file "trying")
+                 (:file "checking")))))
 
 ;;; Loaded by ./cli/ars-magna --manual.
 (defsystem "ars-magna/manual"
@@ -304,9 +295,9 @@
   :components
   ((:module "cli/manual" :serial t
     :components ((:file "package") (:file "html") (:file "guide")
-                 (:file "examples") (:file "entries") (:file "command-entries")
-                 (:file "definition-entries") (:file "symbol-entries") (:file "book")
-                 (:file "linking") (:file "frame") (:file "reference") (:file "writing")))))
+                 (:file "examples") (:file "entries")
+                 (:file "definition-entries")
+                 (:file "linking") (:file "writing")))))
 
 ;;; Loaded after the tests where McCLIM is found: see load-tests in cli/build.lisp.
 (defsystem "ars-magna/clim-tests"

@@ -120,12 +120,13 @@ for it.")
       (change-to stream text point))))
 
 ;;; Keys that do other things: each a function of the stream. What it returns ends the line, if it
-;;; is not NIL: the text that was typed, or :EOF.
+;;; is the text that was typed, or :EOF.
 
 (defvar *actions* '() "Lists (key function).")
 
 (defmacro define-action (keys (stream) documentation &body body)
-  "Let each of KEYS do what BODY does. If that returns a text, or :EOF, the line has ended."
+  "Let each of KEYS do what BODY does. If that returns a text, or :EOF, the line has ended; other
+values say nothing."
   `(let ((function (lambda (,stream) ,documentation ,@body)))
      (dolist (key ',keys)
        (setf *actions* (cons (list key function) (remove key *actions* :key #'first))))))
@@ -141,35 +142,30 @@ for it.")
   "Clear the line; if there is nothing typed, or a program has asked for it, end what waits for it."
   (if (or (string= "" (typed-text-of stream)) (console-asked-p (edited-console stream)))
       (heed-interrupt)
-      (change-to stream "" 0))
-  nil)
+      (change-to stream "" 0)))
 
 (define-action (:control-d) (stream)
   "Delete the character under the cursor; if there is nothing typed, end the input."
   (cond ((string= "" (typed-text-of stream)) :eof)
-        (t (do-change stream (change-of :delete)) nil)))
+        (t (do-change stream (change-of :delete)))))
 
 (define-action (:control-y) (stream)
   "Insert what was killed last."
-  (insert-typed stream (edited-killed stream))
-  nil)
+  (insert-typed stream (edited-killed stream)))
 
 (define-action (:control-l) (stream)
   "Clear the screen."
-  (clear-window (edited-console stream))
-  nil)
+  (clear-window (edited-console stream)))
 
 (define-action (:control-z) (stream)
   "Stop this process until its user wants it back."
-  (stop-here stream)
-  nil)
+  (stop-here stream))
 
 (define-action (:control-\\) (stream)
   "End this process at once."
   (hide-line (edited-console stream))
   (tell-pastes-apart (edited-console stream) nil)
-  (quit-by-signal)
-  nil)
+  (quit-by-signal))
 
 ;;; The history.
 
@@ -187,8 +183,7 @@ for it.")
          (start (line-start (drawn-line-text line) (drawn-line-point line))))
     (if (zerop start)
         (show-entry stream 'older 'newer)
-        (change-to stream (drawn-line-text line) (1- start))))
-  nil)
+        (change-to stream (drawn-line-text line) (1- start)))))
 
 (define-action (:down :control-n) (stream)
   "Go on in the history."
@@ -197,8 +192,7 @@ for it.")
          (end (line-end text (drawn-line-point line))))
     (if (= end (length text))
         (show-entry stream 'newer 'older)
-        (change-to stream text (line-end text (1+ end)))))
-  nil)
+        (change-to stream text (line-end text (1+ end))))))
 
 ;;; Reading a line.
 
@@ -229,7 +223,8 @@ for it.")
         ((consp key) (press-given stream (first key) (second key)))
         ((null key) (if (string= "" (typed-text-of stream)) :eof (typed-text-of stream)))
         ((change-of key) (do-change stream (change-of key)) nil)
-        ((action-of key) (funcall (action-of key) stream))))
+        ((action-of key) (let ((end (funcall (action-of key) stream)))
+                           (and (typep end '(or string (eql :eof))) end)))))
 
 (defun call-editing (function stream)
   (let ((console (edited-console stream)))
@@ -254,19 +249,15 @@ without saying so, is drawn once. Return a text, or :EOF, if the line has ended 
     (insert-typed stream (format nil "~{~A~}" (reverse texts)))
     (unless (eq next :none) (press stream next))))
 
-(defun stand-as-first-line (stream)
-  "Let no more of what was typed stand on the screen than its first line. The others are shown when
-they are read."
-  (let* ((text (typed-text-of stream)) (end (position #\Newline text)))
-    (when end (change-to stream (subseq text 0 end) end))))
-
 (defun press-keys (stream)
   "Do what the keys that are pressed do, until the line has ended. Return what EDIT-LINE does."
   (when (console-asked-p (edited-console stream)) (tell-asking (edited-console stream)))
   (loop for key = (read-key (octet-reader stream))
         for end = (if (stringp key) (press-text stream key) (press stream key))
         until end
-        finally (stand-as-first-line stream)
+        ;; Only its first line stands on the screen; the others are shown when they are read.
+        finally (let* ((text (typed-text-of stream)) (newline (position #\Newline text)))
+                  (when newline (change-to stream (subseq text 0 newline) newline)))
                 (return end)))
 
 (defun edit-line (stream)
@@ -301,3 +292,57 @@ of the input."
 (defmethod stream-clear-input :after ((stream edited-text))
   (setf (edited-lines stream) '())
   (take-all-octets (edited-ahead stream)))
+
+;;;; Control R
+
+;;; The prompt says meanwhile what is looked for. Control R again goes on to an older line; control
+;;; G gives up; any other key takes the line that was found and does what it does to it.
+
+(defun found-entry (stream sought skipped)
+  "Return the entry of the history with SOUGHT in it that comes before SKIPPED others, and where in
+it SOUGHT begins; NIL if there is none."
+  (let* ((entries (remove-if-not (lambda (entry) (search sought entry :test #'char-equal))
+                                 (remove-duplicates (history-entries (edited-history stream))
+                                                    :test #'string= :from-end t)))
+         (entry (and (string/= "" sought) (nth skipped entries))))
+    (values entry (and entry (search sought entry :test #'char-equal)))))
+
+(defun show-search (stream sought skipped)
+  "Show what is found for SOUGHT. NIL if nothing is."
+  (multiple-value-bind (entry place) (found-entry stream sought skipped)
+    (change-line (edited-console stream)
+                 (lambda (line)
+                   (setf (drawn-line-label line)
+                         (format nil "(search~:[, not found~;~]) ~A: "
+                                 (or entry (string= "" sought)) sought))
+                   (when entry
+                     (setf (drawn-line-text line) entry
+                           (drawn-line-point line) place))))
+    entry))
+
+(defun search-keys (stream)
+  "Let keys say what is looked for. Return the first key that says something else."
+  (loop with sought = "" and skipped = 0
+        for key = (read-key (octet-reader stream))
+        do (cond ((stringp key) (setf sought (uiop:strcat sought key)
+                                      skipped 0))
+                 ((eq key :rubout) (setf sought (subseq sought 0 (max 0 (1- (length sought))))
+                                         skipped 0))
+                 ((eq key :control-r) (when (found-entry stream sought (1+ skipped))
+                                        (incf skipped)))
+                 (t (return key)))
+           (show-search stream sought skipped)))
+
+(define-action (:control-r) (stream)
+  "Look for a line in the history."
+  (let* ((line (line-of stream))
+         (prompt (drawn-line-label line))
+         (text (drawn-line-text line))
+         (point (drawn-line-point line)))
+    (show-search stream "" 0)
+    (let ((key (search-keys stream)))
+      (change-line (edited-console stream)
+                   (lambda (line) (setf (drawn-line-label line) prompt)))
+      (if (member key '(:control-g :control-c))
+          (change-to stream text point)
+          (press stream key)))))

@@ -1,4 +1,4 @@
-;;;; picture-lines.lisp -- PICTURE, and FILM: the run so far, to be played in a browser.
+;;;; picture-lines.lisp -- the world in files and windows: PICTURE, FILM, WINDOW, IMPORT, EXPORT.
 
 (in-package :ars-magna.cli)
 
@@ -70,3 +70,129 @@ are those of PICTURE, and ANYWAY: also if what is defined is not what the run be
                     :anyway (/= (length words) (length others)) options)))
       (format t "~A~%" (native-name (call-telling-ticks
                                      #'save session (simulation-tick (current-simulation))))))))
+
+;;;; Windows
+
+;;; Neither this program nor its tests need McCLIM. It is found by ASDF, or through a Quicklisp that
+;;; is installed. The program's own second core, for --window, has it already; the first one, and a
+;;; Lisp of the user's, load it when somebody wants a window.
+
+(defun configure-asdf ()
+  "In this program, let ASDF find the project, and what has been compiled of it."
+  (when (find-package :ars-magna.build)
+    (uiop:symbol-call :ars-magna.build :configure)))
+
+(defun call-or-say (function trouble)
+  "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
+is of no interest. If that fails, signal BAD-LINE with TROUBLE, the control string of a text that
+says why."
+  (handler-case
+      (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream))
+            (*package* (find-package :cl-user))
+            (*readtable* (copy-readtable nil))
+            (*read-default-float-format* 'single-float))
+        (handler-bind ((warning #'muffle-warning)) (funcall function)))
+    (error (condition)
+      (reject-line trouble (one-line (condition-text condition))))))
+
+(defun load-windows (quicklisp-p)
+  "Load the system of windows, and McCLIM through Quicklisp before if QUICKLISP-P."
+  (when quicklisp-p
+    (call-or-say #'ars-magna.clx:get-by-quicklisp
+                 "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then say ~
+                  WINDOW again."))
+  (call-or-say (lambda () (asdf:load-system "ars-magna/clim"))
+               "No window: McCLIM is there, but cannot be loaded: ~A"))
+
+;; Read when this file is loaded, so that a saved program has it with it.
+(defparameter *how-to-get-windows*
+  (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt"))
+  "What is to be done where McCLIM is not installed.")
+
+(defun reject-unfit-clx ()
+  "Signal BAD-LINE if the CLX that would be loaded is known not to work."
+  (let ((trouble (ars-magna.clx:clx-trouble)))
+    (when trouble (reject-line "No window: ~A" trouble))))
+
+(defun ensure-windows ()
+  "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM, or
+if CLX does not work."
+  (unless *display-opener*
+    (when (member (environment-value "DISPLAY") '(nil "") :test #'equal)
+      (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
+                    world here, PICTURE in a file."))
+    (configure-asdf)
+    (let ((found-p (ars-magna.clx:find-library "mcclim/looks")))
+      (unless (or found-p (find-package :quicklisp) (ars-magna.clx:quicklisp-file))
+        (write-string *how-to-get-windows*)
+        (reject-line "No window: McCLIM is not installed; what is to be done stands above."))
+      (reject-unfit-clx)
+      (format t "Loading what windows need; the first time that takes some minutes.~%")
+      (finish-output)
+      (load-windows (not found-p)))))
+
+;;;; WINDOW
+
+(defun robot-at-work-called (name)
+  "Return the robot called NAME, of this run or of another that is live. Signals BAD-LINE if there
+is none."
+  (let* ((name (robot-called name))
+         (robot (or (find name (and *simulation* (simulation-robots *simulation*))
+                          :key #'robot-name)
+                    (find-robot name nil)))
+         (simulation (and robot (robot-simulation robot))))
+    (if (and simulation
+             (not (simulation-over simulation))
+             (or (eq simulation *simulation*) (live-p simulation)))
+        robot
+        (reject-elsewhere name))))
+
+(define-line "WINDOW" (session (name :robot-name "the robot; the one commanded if left out"
+                                     :optional))
+    (:seeing)
+    "Open a window that shows the robot NAME in its world while it runs, and takes commands to it;
+one that is open already comes to the front. McCLIM has to be installed; where it is not, this says
+how it is. Closing the window changes nothing here. It closes by itself when the run is over."
+  (let ((robot (if name (robot-at-work-called name) (session-robot))))
+    (ensure-windows)
+    (open-display robot)
+    (format t "The window of ~A is open.~%" (robot-name robot))))
+
+(define-line "DISPLAY" (session) (:seeing)
+    "Show the robot and its world in a window, as WINDOW does."
+  (let ((robot (session-robot)))
+    (ensure-windows)
+    (open-display robot)))
+
+;;;; Maps in files
+
+(defun free-middle (map)
+  "Return the point of MAP nearest its middle that a robot can stand at, a list, or NIL."
+  (let ((point (nearest-free-point map (list (/ (map-width map) 2) (/ (map-height map) 2)))))
+    (and point (list (pt-x point) (pt-y point)))))
+
+(defun tell-imported (map report)
+  "Say what MAP is like, of which REPORT is what IMPORT-MAP reports, and what can be done with it."
+  (destructuring-bind (&key width height cell free occupied unknown walls) report
+    (format t "~(~A~): ~D by ~D cells of ~A m~:[~;, each a metre here~], ~D free, ~D occupied, ~
+               ~D unknown, in ~D walls.~%"
+            (map-name map) width height (amount-text cell) (/= 1 cell) free occupied unknown walls)
+    (format t "For a robot there: (defrobot NAME (~(~A~) (~:[X Y~;~:*~{~,1F~^ ~}~]) 0)), and then ~
+               WORLD ~2:*~(~A~).~%"
+            (map-name map) (free-middle map))))
+
+(define-line "IMPORT" (session (file :file "a YAML file, as ROS's map_server keeps them"))
+    (:seeing)
+    "Make a map of the occupancy grid in FILE, and of the image that it names. The map is called
+like FILE. In the simulator a cell is a metre wide, whatever it was on the floor: GO 5 m drives
+through five."
+  (multiple-value-call #'tell-imported (import-map file)))
+
+(define-line "EXPORT" (session (file :file "a name that ends in .yaml"))
+    (:seeing)
+  "Write the walls of the map that the robot is in into FILE, an occupancy grid as ROS's map_server
+keeps them, and beside it an image in PGM. A pair that is there is replaced, other files are not.
+IMPORT reads them."
+  (multiple-value-bind (description image)
+      (export-map (world-map (robot-world (session-robot))) file)
+    (format t "~A~%~A~%" (native-name description) (native-name image))))

@@ -1,8 +1,204 @@
-;;;; writing.lisp -- the manual, written to a directory.
+;;;; writing.lisp -- the pages of the manual, written: their frame, the reference, the index.
 
 (in-package :ars-magna.manual)
 
-(export '(write-manual main))
+(export '(examples-of-entry write-manual main))
+
+(defparameter *version* (asdf:component-version (asdf:find-system "ars-magna")))
+
+(defparameter *ways*
+  '(("index.html" "Contents") ("introduction.html" "Introduction") ("tutorial.html" "Tutorial")
+    ("reference.html" "Reference") ("names.html" "All names") ("about.html" "About"))
+  "Lists (file title): where each page leads.")
+
+(defun write-frame (out title body)
+  "Write to OUT a page called TITLE around BODY, HTML. All that it needs lies beside it."
+  (format out "<!DOCTYPE html>
+<html lang=\"en\">
+<head>
+<meta charset=\"utf-8\">
+<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
+<title>~A - ARS MAGNA</title>
+<link rel=\"stylesheet\" href=\"style.css\">
+</head>
+<body>
+<header>
+<p class=\"ways\"><strong>ARS MAGNA</strong>~:{ | <a href=\"~A\">~A</a>~}</p>
+<div id=\"search\"></div>
+</header>
+<main>
+~A
+</main>
+<footer><p>ARS MAGNA ~A. Made of its sources by <code>./cli/ars-magna --manual</code>.</p></footer>
+<script src=\"search-index.js\"></script>
+<script src=\"search.js\"></script>
+</body>
+</html>
+"
+          (escaped title) *ways* body *version*))
+
+(defun list-html (items)
+  (format nil "<ul>~%~{<li>~A</li>~%~}</ul>~%" items))
+
+;;; The contents of a page of the guide, before it.
+
+(defun contents-html (page)
+  (let ((headings (remove 2 (headings (page-tokens page)) :key #'first :test-not #'eql)))
+    (if (< (length headings) 3)
+        ""
+        (format nil "<nav class=\"contents\">~%~A</nav>~%"
+                (list-html (loop for (nil id text) in headings
+                                 collect (link (format nil "#~A" id) (escaped text))))))))
+
+(defun write-guide-page (out page book)
+  (write-frame out (page-title page)
+               (format nil "~A~A~%<p class=\"source\">From <code>~A</code>.</p>"
+                       (contents-html page) (page-html page book) (escaped (page-source page)))))
+
+;;; The first page.
+
+(defun page-links (part book)
+  (list-html (loop for page in (remove part (book-pages book) :key #'page-part :test-not #'eq)
+                   collect (link (page-file page) (escaped (page-title page))))))
+
+(defun chapters-in (book)
+  (remove-if-not (lambda (chapter) (find chapter (book-entries book) :key #'entry-chapter))
+                 (mapcar #'first *chapters*)))
+
+(defun entries-in (chapter book)
+  (remove chapter (book-entries book) :key #'entry-chapter :test-not #'eq))
+
+(defun chapter-links (book)
+  (list-html (loop for chapter in (chapters-in book)
+                   collect (format nil "~A (~D): ~A"
+                                   (link (chapter-file chapter) (escaped (chapter-title chapter)))
+                                   (length (entries-in chapter book))
+                                   (escaped (chapter-introduction chapter))))))
+
+(defun write-first-page (out book)
+  (write-frame out "Contents"
+               (format nil "<h1>ARS MAGNA</h1>
+<p>An abstract robot simulator for people who build reactive planners.</p>
+<h2 id=\"learn\">Learn</h2>~%~A
+<h2 id=\"guide\">Guide</h2>~%~A
+<h2 id=\"examples\">Examples</h2>~%~A
+<h2 id=\"reference\">Reference</h2>~%~A
+<p>~A lists everything that has a name.</p>
+<h2 id=\"inside\">Inside</h2>~%~A"
+                       (page-links :learning book) (page-links :guide book)
+                       (page-links :examples book) (chapter-links book)
+                       (link "names.html" "All names")
+                       (format nil "~A~A" (page-links :inside book) (page-links :about book)))))
+
+;;;; The reference
+
+(defun fact-html (fact book)
+  (destructuring-bind (label text) fact
+    (format nil "~@[<strong>~A:</strong> ~]~A" (and (string/= "" label) (escaped label))
+            (prose-html text book))))
+
+;;; Examples.
+
+(defun from-html (example)
+  (link (format nil "~A#~A" (page-file (example-page example)) (example-id example))
+        (escaped (format nil "~A: ~A" (page-title (example-page example))
+                         (example-heading example)))))
+
+(defun example-html (example book)
+  (format nil "<pre class=\"example\"><code>~A</code></pre>~%<p class=\"from\">~A</p>~%"
+          (if (example-lisp-p example)
+              (linked-lisp (example-text example) book)
+              (escaped (example-text example)))
+          (from-html example)))
+
+(defun shown-p (example named-p)
+  "True if EXAMPLE is to be shown with the entry, which it names if NAMED-P is true."
+  (or named-p (<= (count #\Newline (example-text example)) *longest-example*)))
+
+(defun examples-of-entry (entry examples)
+  "Return those of EXAMPLES that are for ENTRY, and true if they name it."
+  (let ((chapter (entry-chapter entry)))
+    (examples-for (entry-key entry)
+                  (cond ((eq :prompt chapter) :typed)
+                        ((member chapter *chapters-of-lisp*) :called)
+                        (t :written))
+                  examples)))
+
+(defun examples-html (entry book)
+  (multiple-value-bind (examples named-p) (examples-of-entry entry (book-examples book))
+    (format nil "~{~A~}"
+            (loop for example in examples
+                  collect (if (shown-p example named-p)
+                              (example-html example book)
+                              (format nil "<p class=\"from\">Used in ~A.</p>~%"
+                                      (from-html example)))))))
+
+(defparameter *about-examples*
+  "An example is a part of the page that its link leads to. What it uses and Lisp does not know is
+defined there, further up."
+  "What a chapter says of its examples.")
+
+;;; Entries and chapters.
+
+(defun entry-html (entry book)
+  (format nil "<section id=\"~A\">~%<h3>~A</h3>~%~@[<p class=\"use\"><code>~A</code></p>~%~]~A~A~A~
+               ~@[<p class=\"from\">~A</p>~]~%</section>~%"
+          (anchor (entry-name entry)) (escaped (entry-name entry))
+          (and (string/= (entry-use entry) (entry-name entry)) (escaped (entry-use entry)))
+          (docstring-html (entry-text entry) book (lisp-names (entry-use entry)))
+          (if (entry-facts entry)
+              (list-html (mapcar (lambda (fact) (fact-html fact book)) (entry-facts entry)))
+              "")
+          (examples-html entry book)
+          (entry-file entry)))
+
+(defun sections-of (entries)
+  (remove-duplicates (mapcar #'entry-section entries) :test #'string= :from-end t))
+
+(defun section-html (section entries book)
+  (format nil "~@[~A~]~A~{~A~}"
+          (and (string/= "" section)
+               (format nil "<h2 id=\"section-~A\">~A</h2>~%" (anchor section) (escaped section)))
+          (format nil "<p class=\"names\">~{~A~^, ~}</p>~%"
+                  (mapcar (lambda (entry)
+                            (link (format nil "#~A" (anchor (entry-name entry)))
+                                  (escaped (entry-name entry))))
+                          entries))
+          (mapcar (lambda (entry) (entry-html entry book)) entries)))
+
+(defun write-chapter (out chapter book)
+  (let ((entries (entries-in chapter book)))
+    (write-frame out (chapter-title chapter)
+                 (format nil "<h1>~A</h1>~%<p>~A</p>~%<p>~A</p>~%~{~A~}"
+                         (escaped (chapter-title chapter))
+                         (escaped (chapter-introduction chapter))
+                         (escaped *about-examples*)
+                         (loop for section in (sections-of entries)
+                               collect (section-html
+                                        section
+                                        (remove section entries :key #'entry-section
+                                                                :test-not #'string=)
+                                        book))))))
+
+(defun write-reference (out book)
+  (write-frame out "Reference"
+               (format nil "<h1>Reference</h1>~%~A" (chapter-links book))))
+
+;;; All names.
+
+(defun write-names (out book)
+  (write-frame out "All names"
+               (format nil "<h1>All names</h1>~%~A"
+                       (list-html
+                        (loop for entry in (sort (copy-list (book-entries book)) #'string<
+                                                 :key #'entry-key)
+                              collect (format nil "~A (~(~A~)): ~A"
+                                              (link (entry-address entry)
+                                                    (escaped (entry-name entry)))
+                                              (escaped (chapter-title (entry-chapter entry)))
+                                              (escaped (entry-sentence entry))))))))
+
+;;;; The whole
 
 (defparameter *own-files* '("style.css" "search.js")
   "The files beside this one that go with the pages as they are.")

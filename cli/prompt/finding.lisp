@@ -4,8 +4,6 @@
 
 (export '(all-lines find-line))
 
-(defvar *aliases* '() "Lists (name text), in upper case and as typed: what ALIAS has defined.")
-
 (defun all-lines ()
   "Return a list of all line commands: the prompt's own, then the robot's."
   (append *lines*

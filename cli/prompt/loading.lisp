@@ -1,6 +1,71 @@
-;;;; loading.lisp -- loading a user's file form by form, to tell on which line something is wrong.
+;;;; loading.lisp -- which file a name means; loading a Lisp file form by form.
 
 (in-package :ars-magna.cli)
+
+(defun existing-file (name)
+  "Return the path of the Lisp file NAME, with or without its type, or NIL."
+  (let ((path (path-called name)))
+    (and (pathname-name path)
+         (or (existing-path path)
+             (existing-path (make-pathname :type "lisp" :defaults path))))))
+
+(defun file-called (name)
+  "Return the path of the Lisp file NAME, with or without its type. Signals BAD-LINE."
+  (or (existing-file name) (reject-line "There is no file ~A." name)))
+
+(defun foreign-text (path)
+  "Return in a sentence what is in the file PATH, and what reads it, if that is neither Lisp nor
+lines; or NIL."
+  (let ((advice (file-advice path :lisp)))
+    (and advice (format nil "~A: ~A." (native-name path) advice))))
+
+(defun script-text (path)
+  (format nil "It looks like a script of lines: ars-magna ~A." (native-name path)))
+
+(defun check-lisp-file (path)
+  (let ((text (foreign-text path)))
+    (when text (reject-line "~A" text))))
+
+(defun check-form-of-file (form path)
+  "Signal BAD-LINE if FORM, from the file PATH, which is being loaded, is the beginning of a line."
+  (when (and (symbolp form) (not (boundp form)) (line-called (symbol-name form)))
+    (reject-line "~A is a command of the prompt. ~A" form (script-text path))))
+
+(defun start-of-form (text start)
+  "Return where, from START, the next form in TEXT begins; its length if there is none."
+  (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
+        for end = (and (< position (length text)) (skip-comment text position))
+        while end
+        do (setf start end)
+        finally (return position)))
+
+(defun first-form-of (path)
+  "Return the first form in the file PATH; NIL if there is none that can be read."
+  (ignore-errors (let ((text (file-text path)) (*read-eval* nil))
+                   (values (read-from-string text t nil :start (start-of-form text 0))))))
+
+(defun only-defines-p (path)
+  (ignore-errors
+   (let ((text (file-text path)) (robot-p nil) (*read-eval* nil))
+     (loop for (form end) = (multiple-value-list
+                             (read-from-string text nil text :start (or end 0)))
+           until (eq form text)
+           do (when (same-name-p (first form) 'defrobot) (setf robot-p t))
+           always (or (starts-with-subseq "DEF" (symbol-name (first form)))
+                      (starts-with-subseq "IN-" (symbol-name (first form))))
+           finally (return robot-p)))))
+
+(defun check-typed-load (form)
+  "Signal BAD-LINE if FORM, as typed, loads a file that cannot be Lisp."
+  (when (typep form '(cons (eql load) (cons string)))
+    (when (many-files-p (second form))
+      (reject-line "~A cannot be loaded: ~A." (second form) (unusable-file-text (second form))))
+    (let ((path (existing-file (second form))))
+      (when path
+        (check-lisp-file path)
+        (check-form-of-file (first-form-of path) path)))))
+
+;;;; Loading
 
 (defun call-watched-at (place function)
   "Call FUNCTION, while PLACE, a function, says to whoever watches where in a file that is."

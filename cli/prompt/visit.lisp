@@ -1,4 +1,4 @@
-;;;; visit.lisp -- a trial that a prompt is in: how far it is, and how time passes in it.
+;;;; visit.lisp -- a trial that a prompt is in: lines are read between its ticks.
 
 (in-package :ars-magna.cli)
 
@@ -67,3 +67,126 @@ has none."
         ((plusp (visit-steps visit)) :running)
         ((visit-running-p visit) (values :running (visit-rate visit)))
         (t (values :paused (visit-rate visit)))))
+
+;;;; The prompt inside of a trial
+
+;;; The prompt's own thread runs the trial, and reads lines at its gate, between two ticks. So what
+;;; lines look at stands still, and is the trial's own: robots, plans, variables. A line that wants
+;;; time to pass says so, and has it when it is done. Where somebody types, ticks pass at a pace
+;;; while nothing is typed. Whatever leads out of the trial, be it a line, an error or control C,
+;;; unwinds it; there is nothing else to be ended.
+
+(defun leave-visit (session &optional (next #'values))
+  "Leave the trial that SESSION is in; then call NEXT, a function. Nobody hears what the trial has
+to say of that."
+  (setf (visit-left-p (session-visit session)) t)
+  (stop-listening session)
+  (throw 'left-visit next))
+
+(defun call-outside (session function)
+  "Call FUNCTION where SESSION is in no trial: if it is in one, leave that first."
+  (if (session-visit session)
+      (leave-visit session function)
+      (funcall function)))
+
+;;; Has a line changed the run? Then that is no longer the one of the experiment.
+
+(defun visit-state ()
+  "Return what decides how the current simulation goes on: a digest, and what has been asked of it."
+  (list (state-digest *simulation* t) (timeline-inbox (timeline-of *simulation*))))
+
+(defun note-if-changed (session visit before)
+  "Say so if the run in VISIT is no longer in the state BEFORE."
+  (unless (or (visit-changed visit) (every #'eql before (visit-state)))
+    (setf (visit-changed visit) (simulation-tick *simulation*))
+    (format (session-console session) "~&~:[From here on, this is not the experiment's run any ~
+                                       more~;Nothing comes of that: the trial is over~].~%"
+            (visit-result visit))))
+
+;;; Lines.
+
+(defun answer-others ()
+  "Answer what other threads, such as a window's, ask of the current simulation."
+  (answer-questions (timeline-custody (timeline-of *simulation*))))
+
+(defun await-typed-line (session seconds)
+  "Wait until somebody has typed a line for SESSION, for SECONDS at most. True if he has."
+  (let ((console (session-console session)))
+    (unless (or (session-batch-p session) (unanswered-p console))
+      (with-lock ((session-lock session)) (show-prompt console "Robot> "))))
+  (loop with end = (+ (seconds-now) seconds)
+        for left = (- end (seconds-now))
+        do (answer-others)
+        thereis (or (reader-lines (session-reader session))
+                    (typed-within-p (session-input session) (max 0 (min 0.05 left))))
+        while (plusp left)))
+
+(defun begin-visit (session visit)
+  "Let robots be called by their names, and be seen if there is a window to be had."
+  (unless (shiftf (visit-begun-p visit) t)
+    (call-by-name (mapcar #'robot-name (simulation-robots *simulation*)))
+    (when (display-wanted-p session)
+      (announce-display (session-robot) '()))))
+
+(defun visit-line (session visit)
+  (call-aside
+   (lambda ()
+     (tell-whereabouts session)
+     (begin-visit session visit)
+     (let ((before (visit-state)))
+       (call-guarded session (lambda ()
+                               (when (watched-p session)
+                                 (loop until (await-typed-line session 1)))
+                               (let ((*while-typing* #'answer-others))
+                                 (next-line-inside session))))
+       (note-if-changed session visit before))
+     (call-guarded session (lambda () (show-messages session)))
+     (when (session-over-p session) (leave-visit session)))))
+
+;;; Between ticks.
+
+(defun tell-stop (session visit)
+  "Say that the ticks which were to pass in VISIT have passed, or were stopped."
+  (when (shiftf (visit-interrupted-p visit) nil)
+    (answered (session-console session))
+    (setf (visit-stepped-p visit) t))
+  (when (and (zerop (visit-steps visit)) (shiftf (visit-stepped-p visit) nil))
+    (when (visit-progress visit) (end-progress (shiftf (visit-progress visit) nil)))
+    (format (session-console session) "~&Tick ~D.~%" (simulation-tick *simulation*))))
+
+(defun next-due (visit)
+  "Return when the tick after the one of VISIT that is due now will be."
+  (let ((rate (visit-rate visit)))
+    (if (eq :free rate)
+        (seconds-now)
+        (+ (max (visit-due visit) (- (seconds-now) 0.25d0)) (/ 1d0 rate)))))
+
+(defun wait-for-tick (session visit)
+  "Wait until the next tick is due in VISIT. NIL if somebody has typed a line before."
+  (let ((left (if (eq :free (visit-rate visit)) 0 (- (visit-due visit) (seconds-now)))))
+    (if (watched-p session)
+        (unless (call-aside (lambda () (await-typed-line session left)))
+          (setf (visit-due visit) (next-due visit))
+          t)
+        (progn (when (plusp left) (await-time (visit-due visit) *simulation*))
+               (setf (visit-due visit) (next-due visit))
+               t))))
+
+(defun tick-passes-p (session visit)
+  (cond ((plusp (visit-steps visit))
+         (when (session-terminal-p session)
+           (unless (visit-progress visit)
+             (setf (visit-progress visit) (make-progress-line (session-console session))))
+           (note-progress (visit-progress visit) "Tick ~D, ~D to go. Control-C pauses."
+                          (simulation-tick *simulation*) (visit-steps visit)))
+         (decf (visit-steps visit))
+         t)
+        ((visit-running-p visit) (wait-for-tick session visit))))
+
+(defun visit-gate (session visit)
+  (lambda (simulation)
+    (declare (ignore simulation))
+    (when (visit-left-p visit) (leave-visit session))
+    (tell-stop session visit)
+    (loop until (tick-passes-p session visit) do (visit-line session visit))
+    1))

@@ -1,4 +1,4 @@
-;;;; options.lisp -- the arguments of ./cli/ars-magna, taken apart.
+;;;; options.lisp -- the arguments of ./cli/ars-magna, taken apart; texts beside the sources.
 
 (in-package :ars-magna.cli)
 
@@ -100,3 +100,31 @@ If OTHERS is true, those that are none count as (:other argument). Signals USAGE
 
 (defun option-values (key options)
   (loop for (other value) in options when (eq key other) collect value))
+
+;;;; Texts
+
+;;; They are read when this file is loaded, so that a saved program has them with it.
+
+(defparameter *texts*
+  (loop for name in '("usage.txt" "usage-experiment.txt" "usage-merge.txt" "usage-compare.txt"
+                      "spread-parallel.sh" "spread-slurm.sh")
+        collect (list name (file-text (asdf:system-relative-pathname
+                                       "ars-magna" (format nil "cli/shell/~A" name)))))
+  "Lists (name text).")
+
+(defparameter *version* (asdf:component-version (asdf:find-system "ars-magna"))
+  "The version of this program.")
+
+(defun text-called (name)
+  (second (assoc name *texts* :test #'string=)))
+
+(defun with-settings (text settings)
+  "Return TEXT, of a script, with SETTINGS, lists (variable value comment), in their place."
+  (let ((mark "@SETTINGS@"))
+    (with-output-to-string (out)
+      (write-string text out :end (search mark text))
+      (format out "~:{~A=~A~40T# ~A~:^~%~}"
+              (loop for (variable value comment) in settings
+                    collect (list variable (uiop:escape-sh-token (princ-to-string value))
+                                  comment)))
+      (write-string text out :start (+ (search mark text) (length mark))))))

@@ -1,4 +1,4 @@
-;;;; scripts.lisp -- ./cli/ars-magna SCRIPT: a file of lines as they are typed at the prompt.
+;;;; scripts.lisp -- ./cli/ars-magna SCRIPT: a batch of lines, and how long it may take.
 
 (in-package :ars-magna.cli)
 
@@ -28,3 +28,78 @@
     (report-object (session-account session) "end" :status status
                                                    :errors (session-errors session))
     status))
+
+;;;; The time limit
+
+;;; A thread looks now and then at what the session is at, as that of a live run is watched by its
+;;; own (src/time/pacing.lisp).
+
+(defparameter *hog-patience* 3
+  "How many seconds a batch may be in one call of users' code before that is named.")
+
+(defconstant +time-over+ 124 "The status to exit with at a time limit, as that of timeout(1).")
+
+(defparameter *grace* 3
+  "How many seconds what a time limit has ended may take to put itself in order.")
+
+(defun call-under-way (session calls)
+  "Return in words whose code SESSION is in, of which CALLS tells, or its live run; and how many
+calls were begun before. Without a second value, which form of a file is loaded, or NIL."
+  (let ((simulation (session-simulation session)))
+    (cond ((user-calls-origin calls) (values (whose-code calls) (user-calls-count calls)))
+          ((user-calls-place calls) (whose-code calls))
+          ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
+
+(defun watch-for-calls (session calls ended)
+  "Name users' code that keeps SESSION, of which CALLS tells, until the semaphore ENDED is
+signalled. What is seen four times on end, a third of *HOG-PATIENCE* apart, has been there so long."
+  (loop with seen = nil and looks = 0
+        until (wait-on-semaphore ended (/ *hog-patience* 3))
+        do (multiple-value-bind (whose count) (call-under-way session calls)
+             (unless (eql count seen) (setf seen count looks 0))
+             (when (and whose count (= 4 (incf looks)))
+               (say-where session
+                          (format nil "~A has not returned for ~D s and goes on. Control-C ends ~
+                                       the batch, and so does the option --time-limit SECONDS."
+                                  whose *hog-patience*))))))
+
+(defun say-stopped (session whose reason)
+  (say-where session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
+
+(defun end-at-limit (session calls thread seconds ended)
+  "End SESSION, which THREAD is at, after SECONDS, unless the semaphore ENDED is signalled before.
+If it does not let itself be ended, end this process."
+  (unless (wait-on-semaphore ended seconds)
+    (let ((whose (call-under-way session calls)) (said nil))
+      (flet ((say ()
+               (unless (shiftf said t)
+                 (say-stopped session whose (format nil "the time limit of ~A s is over"
+                                                    (amount-text seconds))))))
+        (interrupt-thread thread (lambda ()
+                                   (allowing-interrupts
+                                     (say)
+                                     (throw 'leave +time-over+))))
+        (unless (wait-on-semaphore ended *grace*)
+          (say)
+          (end-process +time-over+))))))
+
+(defun tell-at-once (session calls)
+  "Let control C say whose code SESSION is in, of which CALLS tells, before it ends that at once."
+  (setf *before-ending-at-once*
+        (lambda ()
+          (say-stopped session (call-under-way session calls) "control C has come again"))))
+
+(defun call-with-watchers (session options function)
+  "Call FUNCTION, which runs SESSION. If nobody sits there, code that does not return is named. The
+time limit of OPTIONS, if any, ends FUNCTION."
+  (let* ((calls (make-user-calls)) (*user-calls* calls)
+         (ended (make-semaphore "session ended"))
+         (thread (current-thread)) (seconds (option-value :time-limit options)))
+    (unless (session-terminal-p session)
+      (tell-at-once session calls)
+      (start-thread (lambda () (watch-for-calls session calls ended)) "watcher of the batch"))
+    (when seconds
+      (start-thread (lambda () (end-at-limit session calls thread seconds ended)) "time limit"))
+    (unwind-protect (funcall function)
+      (signal-semaphore ended)
+      (signal-semaphore ended))))

@@ -1,6 +1,85 @@
-;;;; trying.lisp -- the trials of a check, one after the other until their number decides.
+;;;; trying.lisp -- trials of a plan or an experiment, repeated until their rate is decided.
 
 (in-package :ars-magna.fiveam)
+
+(export '(repeat-trial))
+
+(defstruct (subject (:constructor make-subject
+                        (function form package robots parameters clean limit))
+                    (:copier nil))
+  "FUNCTION, made of FORM, which somebody wrote in PACKAGE, is tried with ROBOTS under PARAMETERS,
+lists (name value), without noise if CLEAN is true, for LIMIT ticks."
+  (function nil :read-only t)
+  (form nil :read-only t)
+  (package nil :type package :read-only t)
+  (robots '() :type list :read-only t)
+  (parameters '() :read-only t)
+  (clean nil :read-only t)
+  (limit 0 :read-only t))
+
+(defconstant +usual-limit+ 100000 "For how many ticks a trial may go on unless its author says.")
+
+;;; Its trials, as those of an experiment.
+
+(defun parameter-parts (parameters operator)
+  "Return PARAMETERS, lists (name value) that OPERATOR was given, as EXPERIMENT-FROM takes them."
+  (unless (and (proper-list-p parameters)
+               (every (lambda (part) (and (proper-list-p part) (= 2 (length part)))) parameters))
+    (reject-argument operator 'parameters parameters "lists (name value)"))
+  (loop for (name value) in parameters
+        for symbol = (parameter-symbol (find-parameter name))
+        collect (list (list symbol value) value)))
+
+(defun experiment-of (subject operator seed)
+  "Return an experiment of SUBJECT's trials from SEED on. OPERATOR is who wants it."
+  (let ((limit (subject-limit subject)))
+    (unless (integerp seed) (reject-argument operator 'seed seed "an integer"))
+    (unless (whole-p limit 1)
+      (reject-argument operator 'limit limit "a number of ticks from 1 to 1e9"))
+    (let ((experiment (experiment-from operator (string-downcase operator)
+                                       :robots (subject-robots subject)
+                                       :run (subject-function subject)
+                                       :seed seed :limit limit
+                                       :parameters (parameter-parts (subject-parameters subject)
+                                                                    operator)
+                                       :clean (subject-clean subject))))
+      (setf (experiment-package experiment) (subject-package subject))
+      experiment)))
+
+;;; From what its author wrote.
+
+(defun robot-names (operator robots form)
+  "Return the names in ROBOTS, a name or a list. Signals MALFORMED-DEFINITION if there is none."
+  (let ((names (ensure-list (if (and (consp robots) (eq 'quote (first robots)))
+                                (second robots)
+                                robots))))
+    (unless (and (proper-list-p names) names (every #'symbolp names))
+      (reject-clause operator form
+                     "an option :robots, with the name of a robot or a list of names of one map"))
+    names))
+
+(defun parameters-form (operator parameters)
+  "Return a form for the lists (name value) that PARAMETERS mean: lists (name form), or a form."
+  (if (and (consp parameters) (consp (first parameters)))
+      `(list ,@(loop for part in parameters
+                     do (unless (and (proper-list-p part) (= 2 (length part))
+                                     (symbolp (first part)))
+                          (reject-clause operator part
+                                         "(parameter form), as in :parameters ((max-speed* 2))"))
+                     collect `(list ',(first part) ,(second part))))
+      parameters))
+
+(defun subject-maker (operator form robots parameters clean limit)
+  "Return a form for the subject that OPERATOR, a macro of this name, was given in these."
+  (doubt-nested-run form)
+  (let ((names (robot-names operator robots form)))
+    `(make-subject (lambda ()
+                     (declare (special ,@(variables-among names)))
+                     ,form)
+                   ',form (find-package ,(package-name *package*)) ',names
+                   ,(parameters-form operator parameters) ,clean ,limit)))
+
+;;;; A trial
 
 (defstruct (rate-check (:conc-name check-)
                        (:constructor make-check (experiment condition subject at-least trials
@@ -60,3 +139,69 @@
         until (loop for result in (some-more check first)
                       thereis (count-result check result)))
   check)
+
+;;;; Many trials
+
+;;; A check ends in a log that is read elsewhere, perhaps long after. So what it says repeats a
+;;; trial in any Lisp that has the same code, whatever has been set there.
+
+(defun replay-subject (subject seed options)
+  (unless (integerp seed) (reject-argument 'repeat-trial 'seed seed "an integer"))
+  (apply #'replay-trial (experiment-of subject 'repeat-trial (1- seed)) 1 1 options))
+
+(define-user-macro repeat-trial
+    (form &rest options
+          &key robots (seed 1) parameters clean (limit +usual-limit+)
+          until then rate step journal trace)
+  "Run the trial with SEED of a check of FORM by IS-SUCCESS-RATE again, the other arguments being
+those of the check: the very run that it was, but in the open. It is what a check that fails prints:
+
+  (repeat-trial (run-plan 'fetch-thing '((:color blue)) '((109 24)))
+    :robots marvin :seed 7 :parameters ((motion-noise* 0.2)))
+
+UNTIL, THEN, RATE, STEP, JOURNAL and TRACE are as for REPLAY-TRIAL: to see it at a pace, to stop it
+in the middle, and so on. Return a plist, and signal errors, as that does; MALFORMED-DEFINITION,
+too."
+  (declare (ignore until then rate step journal trace))
+  `(replay-subject ,(subject-maker "repeat-trial" form robots parameters clean limit) ,seed
+                   (list ,@(loop for (key value) on options by #'cddr
+                                 unless (member key '(:robots :seed :parameters :clean :limit))
+                                   append (list key value)))))
+
+;;; As a text.
+
+(defun text-in (package form)
+  "Return FORM as its author, in PACKAGE, would write it, on one line if it is short."
+  (let* ((text (form-text form package))
+         (line (one-line text)))
+    (if (< (length line) 90) line text)))
+
+(defun text-of (form check)
+  (text-in (experiment-package (check-experiment check)) form))
+
+(defun literal (value)
+  "Return a form that returns VALUE."
+  (if (or (consp value) (and (symbolp value) (not (keywordp value)) (not (member value '(t nil)))))
+      `',value
+      value))
+
+(defun repetition-options (subject seed)
+  (let ((robots (subject-robots subject)) (parameters (subject-parameters subject)))
+    `(:robots ,(if (rest robots) robots (first robots))
+      :seed ,seed
+      ,@(unless (= +usual-limit+ (subject-limit subject)) `(:limit ,(subject-limit subject)))
+      ,@(when parameters
+          `(:parameters ,(loop for (name value) in parameters
+                               collect (list name (literal value)))))
+      ,@(when (subject-clean subject) '(:clean t)))))
+
+(defun repetition-text (check result)
+  "Return a form, as text, that repeats the trial of CHECK that RESULT is of."
+  (let ((subject (check-subject check)))
+    (flet ((text (form) (text-of form check)))
+      (if subject
+          (format nil "(~A ~A~%    ~{~A ~A~^ ~})" (text 'repeat-trial) (text (subject-form subject))
+                  (mapcar #'text (repetition-options subject (result-seed result))))
+          (format nil "(~A '~A ~S ~D)" (text 'replay-trial)
+                  (text (experiment-name (check-experiment check)))
+                  (condition-name (check-condition check)) (result-trial result))))))

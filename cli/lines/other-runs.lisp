@@ -1,6 +1,58 @@
-;;;; trial-lines.lisp -- TRIAL and FAILURES: from a row of an experiment's table to its run.
+;;;; other-runs.lisp -- REWIND, TRIAL and FORK: from the run that goes on to another one.
 
 (in-package :ars-magna.cli)
+
+;;; The plans that go on after that are others than those that the prompt waited for: it lets these
+;;; go without a word, and takes up those, also when somebody rewinds by Lisp.
+
+(defun let-errands-go (old new)
+  "Say nothing of how the plans of OLD end that prompts wait for, as NEW goes on in its place."
+  (declare (ignore new))
+  (dolist (errand (with-lock (*plan-errands-lock*)
+                    (remove old *plan-errands* :key #'plan-errand-simulation :test-not #'eq)))
+    (setf (plan-errand-let-go-p errand) t
+          (session-after-rewind (plan-errand-session errand)) #'take-up-plans)))
+
+(attend *rewind-hooks* let-errands-go)
+
+(defun rewind-here (session ticks)
+  "Let SESSION go on in a run that is TICKS ticks back."
+  (rewind ticks)
+  ;; The commands that are under way again are nobody's errands.
+  (setf (session-after-rewind session) nil
+        (session-lisp-p session) t)
+  (take-up-plans session))
+
+(defun check-rewindable (session)
+  (check-run)
+  (when (session-visit session)
+    (reject-line "A trial is what it is. TRIAL begins it anew, at tick 0.")))
+
+(defun rewind-and-tell (session ticks)
+  (let ((tick (- (simulation-tick *simulation*) ticks)))
+    (rewind-here session ticks)
+    (tell-others session *simulation*
+                 (format nil "Another prompt has let the run go back to tick ~D.~%" tick))
+    (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
+            (time-text session *simulation* tick) (mapcar #'task-label (plans)))))
+
+(define-line "REWIND" (session (n tick-span "how far"))
+    (:running)
+    "Go back N ticks, plans included, and go on from there; 0 undoes what was done since the last
+tick. What came after has not happened; the journal says that there was something. Programs that
+wait for the end of a command, such as that of GO-TO, do not go on: they are told :INTERRUPT."
+  (check-rewindable session)
+  (rewind-and-tell session n))
+
+(define-line "REWIND-TO" (session (tick count "the tick to go back to"))
+    (:running)
+    "Go back to the end of TICK, and go on from there, as REWIND does that counts from now."
+  (check-rewindable session)
+  (let ((now (simulation-tick *simulation*)))
+    (unless (<= tick now) (reject-line "It is only tick ~D." now))
+    (rewind-and-tell session (- now tick))))
+
+;;;; TRIAL
 
 ;;; Which trial is meant.
 
@@ -201,3 +253,68 @@ opens one of each."
                         (first names)
                         name)
                     condition)))
+
+;;;; FORK
+
+;;; In a fork the prompt is in a headless run: time passes as its lines need it. The run that was
+;;; forked stands still meanwhile. As a trial, a fork is entered by a line that goes on until
+;;; another one leads out.
+
+(defun copied-run (seed)
+  (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))))
+    (keep-forks t fork)
+    fork))
+
+(defun read-in-fork (session)
+  (loop until (session-over-p session)
+        do (call-guarded session (lambda () (next-line-inside session)))
+           (call-guarded session (lambda () (show-messages session)))))
+
+(defun tell-fork (session)
+  (format (session-console session)
+          "~&In a fork, at tick ~D. STEP lets time pass, FORK OFF leads back.~@[ Plans under way: ~
+           ~{~A~^, ~}.~]~%"
+          (simulation-tick *simulation*) (mapcar #'task-label (plans))))
+
+(defun enter-fork (session fork)
+  "Let SESSION, which waits for nothing that it has asked for before, be in FORK until a line leads
+out."
+  (let ((errands (shiftf (session-errands session) '()))
+        (depth (session-forks session)))
+    (setf (session-forks session) (1+ depth))
+    (unwind-protect (catch 'left-fork
+                      (call-in-fork fork (lambda ()
+                                           (tell-fork session)
+                                           (read-in-fork session))))
+      (drop-errands session)
+      (setf (session-errands session) errands
+            (session-forks session) depth))))
+
+(defun go-to-fork (session seed)
+  "Let SESSION be in a fork of the current run until a line leads out; then forget it."
+  (let ((fork (copied-run seed)) (run *simulation*))
+    (tell-others session run (format nil "Another prompt is in a fork of the run, which waits.~%"))
+    (unwind-protect (call-with-others-paused (lambda () (enter-fork session fork)))
+      (tell-others session run
+                   (format nil "The fork is left; the run ~:[waits no longer~;is paused~].~%"
+                           (paused-p run)))
+      (stop-listening session)
+      (release-fork fork)
+      (unless (session-over-p session)
+        (format (session-console session) "~&Back from the fork. ~A~%"
+                (time-text session *simulation*))))))
+
+(define-line "FORK" (session (seed :off "OFF, or an integer from which all its chance is to come"
+                                   :optional))
+    (:running)
+    "Go on in a copy of the run, plans and all, which goes the way that the run would, or with SEED
+as it might. The run itself waits. FORK OFF leads back to it, as it was; the copy is forgotten."
+  (check-run)
+  (cond ((session-visit session) (reject-line "A trial is what it is. TRIAL OFF leads out."))
+        ((null seed) (go-to-fork session nil))
+        ((string-equal seed "off")
+         (when (zerop (session-forks session)) (reject-line "The prompt is in no fork."))
+         (throw 'left-fork t))
+        (t (go-to-fork session (or (ignore-errors (parse-integer seed))
+                                   (reject-line "The seed of a fork is an integer, not ~A."
+                                                seed))))))

@@ -1,0 +1,262 @@
+;;;; typing.lisp -- what is typed at the terminal or in a window, also ahead of its time.
+
+(in-package :ars-magna.cli)
+
+(export '(take-waiting make-handed-text press-key typed-ahead))
+
+;;; Nobody reads the keys then. So they are kept as what they come to: lines that wait, each as a
+;;; line that was chosen elsewhere, and after those what is being typed, as if it had been pasted.
+;;; Whoever reads next finds keys like others. The arrow up goes to what was entered before, as at a
+;;; prompt. What needs the prompt, such as Tab, does nothing.
+
+(defstruct (ahead (:copier nil))
+  "What was typed ahead. LINES wait, the oldest first; TEXT is being typed, the cursor at POINT."
+  (lines '() :type list)
+  (text "" :type string)
+  (point 0 :type (integer 0)))
+
+(defun change-ahead (ahead text point &optional killed)
+  (declare (ignore killed))
+  (setf (ahead-text ahead) text
+        (ahead-point ahead) point))
+
+(defun insert-ahead (ahead text)
+  (multiple-value-call #'change-ahead ahead
+    (inserted text (ahead-text ahead) (ahead-point ahead))))
+
+(defun enter-ahead (ahead lines)
+  "Let LINES wait after those of AHEAD."
+  (setf (ahead-lines ahead) (append (ahead-lines ahead) lines)))
+
+(defun type-last-again (ahead)
+  (let ((line (first (last (ahead-lines ahead)))))
+    (when line
+      (setf (ahead-lines ahead) (butlast (ahead-lines ahead)))
+      (change-ahead ahead line (length line)))))
+
+(defun show-neighbour (ahead entries step)
+  "Let what is STEP further in ENTRIES than what is being typed in AHEAD be typed instead. The empty
+line is before the first."
+  (let* ((entries (cons "" (append (reverse (ahead-lines ahead)) entries)))
+         (place (position (ahead-text ahead) entries :test #'string=))
+         (next (and place (+ place step))))
+    (when (and next (< -1 next (length entries)))
+      (change-ahead ahead (nth next entries) (length (nth next entries))))))
+
+(defun press-given-ahead (ahead kind text)
+  (ecase kind
+    (:paste (insert-ahead ahead (without-answers text)))
+    (:entry (enter-ahead ahead (list text)))))
+
+(defun press-ahead (ahead key entries)
+  "Do to AHEAD what KEY does. ENTRIES, the newest first, were entered before its lines."
+  (cond ((stringp key) (insert-ahead ahead key))
+        ((consp key) (press-given-ahead ahead (first key) (second key)))
+        ((and (eq key :rubout) (string= "" (ahead-text ahead))) (type-last-again ahead))
+        ((change-of key) (multiple-value-call #'change-ahead ahead
+                           (funcall (change-of key) (ahead-text ahead) (ahead-point ahead))))
+        (t (case key
+             (:return (enter-ahead ahead (lines-in (ahead-text ahead)))
+              (change-ahead ahead "" 0))
+             ((:up :control-p) (show-neighbour ahead entries 1))
+             ((:down :control-n) (show-neighbour ahead entries -1))
+             (:control-c (change-ahead ahead "" 0))))))
+
+;;; From octets, and to octets.
+
+(defun text-reader (text)
+  "Return a function that returns the next character of TEXT, or NIL, or is given one to return
+first."
+  (let ((position 0))
+    (lambda (&optional again)
+      (cond (again (decf position) nil)
+            ((< position (length text)) (prog1 (char text position) (incf position)))))))
+
+(defun ahead-in (octets entries)
+  "Return what OCTETS, a string that has not been read yet, come to after ENTRIES."
+  (loop with ahead = (make-ahead)
+        with next = (text-reader octets)
+        for key = (read-key next)
+        while key do (press-ahead ahead key entries)
+        finally (return ahead)))
+
+(defun octets-of-ahead (ahead)
+  (let ((text (ahead-text ahead)))
+    (format nil "~{~A~}~A~V@{~A~:*~}"
+            (loop for line in (ahead-lines ahead) collect (octets-of-key (list :entry line)))
+            (if (string= "" text) "" (octets-of-key (list :paste text)))
+            (- (length text) (ahead-point ahead)) (octets-of-key :left))))
+
+;;;; The terminal
+
+;;; A terminal that obeys nothing, such as a buffer of Emacs, edits lines itself.
+
+(defun obeying-terminal-p (stream)
+  "True if STREAM, of this process, is a terminal that moves its cursor when it is told to."
+  (and (interactive-stream-p stream)
+       (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
+
+(defun standard-output ()
+  (let ((stream (text-output 1)))
+    (make-console stream (and (obeying-terminal-p stream) #'window-size))))
+
+(defun file-for-history ()
+  "Return the pathname of the file that the environment names for what was typed, or NIL."
+  (let ((name (environment-value "ARS_MAGNA_HISTORY")))
+    (and name (string/= name "") (native-path name))))
+
+(defun standard-input (console plain)
+  "Return what is typed into this process. It is edited on CONSOLE if that is possible, unless PLAIN
+is true."
+  (let ((octets (octet-input 0)))
+    (if (and (not plain) (console-window console) (obeying-terminal-p octets))
+        (make-instance 'edited-text :octets octets :by-hand-p t :console console
+                                    :history (make-history (file-for-history)))
+        (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets)))))
+
+(defgeneric call-typing (function input)
+  (:documentation "Call FUNCTION, which reads lines from INPUT.")
+  (:method (function input)
+    (declare (ignore input))
+    (funcall function))
+  (:method (function (input edited-text))
+    (let ((console (edited-console input)))
+      (unwind-protect (progn (tell-pastes-apart console t)
+                             (call-handing-over-keys function))
+        (save-entry (edited-history input))
+        (answered console)
+        (tell-pastes-apart console nil)))))
+
+(defgeneric keep-lines (input)
+  (:documentation "Let no line that was typed into INPUT be lost, whatever becomes of this
+process.")
+  (:method (input))
+  (:method ((input edited-text)) (save-entry (edited-history input))))
+
+(defgeneric remember-line (input line before)
+  (:documentation "Let whoever types into INPUT have LINE again, together with the text BEFORE, if
+that is not NIL.")
+  (:method (input line before)
+    (declare (ignore input line before)))
+  (:method ((input edited-text) line before)
+    (if before
+        (amend-entry (edited-history input) line before)
+        (add-entry (edited-history input) line))))
+
+;;; A terminal may paste without saying so, as those do that edit lines themselves. What comes all
+;;; at once, with more than a line, is counted as pasted, too: nobody types as fast, but while
+;;; nothing was read.
+
+(defgeneric pasted-lines-left-p (input)
+  (:documentation "True if lines that were pasted into INPUT, with the one read last, wait to be
+read.")
+  (:method (input)
+    (declare (ignore input))
+    nil)
+  (:method ((input typed-text))
+    (and (typed-by-hand-p input)
+         (typed-followed-p input)
+         (more-at-once-p (typed-octets input))))
+  (:method ((input edited-text))
+    (and (or (edited-lines input) (whole-line-p (edited-ahead input))) t)))
+
+(defgeneric take-waiting (input)
+  (:documentation "Return the lines that wait to be read of INPUT, and leave them unread.")
+  (:method (input)
+    (declare (ignore input))
+    '())
+  (:method ((input edited-text))
+    (setf (typed-position input) (length (typed-line input)))
+    (append (shiftf (edited-lines input) '()) (take-lines-ahead input))))
+
+(defun take-lines-ahead (input)
+  "Return the lines that came into INPUT all at once with the one read last, and leave them unread.
+What is no whole line is being typed."
+  (when (whole-line-p (edited-ahead input))
+    (let ((ahead (ahead-in (coerce (take-all-octets (edited-ahead input)) 'string) '())))
+      (unless (string= "" (ahead-text ahead))
+        (setf (edited-put-off input) (list (ahead-text ahead) (ahead-point ahead))))
+      (ahead-lines ahead))))
+
+(defgeneric swallow-key (input)
+  (:documentation "Take the key that was pressed in INPUT; but leave it to be read if more was typed
+or pasted with it.")
+  (:method (input) (clear-input input))
+  (:method ((input edited-text))
+    (let* ((octets (octets-come input)) (next (text-reader (coerce octets 'string))))
+      (read-key next)
+      (when (funcall next) (add-octets (edited-ahead input) octets)))))
+
+(defun drop-waiting (input)
+  "Leave the lines that wait to be read of INPUT; the history has them as one entry. Return how many
+there were."
+  (let ((lines (take-waiting input)))
+    (when lines (remember-line input (format nil "~{~A~^~%~}" lines) nil))
+    (length lines)))
+
+;;;; Windows
+
+;;; A window hands over keys, and shows the line on a console of its own. All else is as at a
+;;; terminal: what keys do, the history, Tab. What the terminal does meanwhile is not touched.
+
+(defclass handed-text (edited-text) ()
+  (:default-initargs :by-hand-p t)
+  (:documentation "The text that somebody types in a window."))
+
+(defun make-handed-text (console)
+  "Return what is typed elsewhere, with its line shown on CONSOLE. It has the history that the
+prompt at the terminal has."
+  (make-instance 'handed-text :console console :history (make-history (file-for-history))
+                              :octets (make-instance 'handed-octets)))
+
+(defmethod take-keys ((stream handed-text) &key interrupts)
+  (declare (ignore interrupts)))
+
+(defmethod stop-here ((stream handed-text)))
+
+(defmethod call-typing (function (stream handed-text))
+  (unwind-protect (funcall function)
+    (save-entry (edited-history stream))
+    (answered (edited-console stream))))
+
+(defun being-typed-p (stream)
+  "True if a line is being typed into STREAM: nothing is under way that would have to end first."
+  (and (line-of stream) t))
+
+(defmethod keep-ahead ((stream handed-text))
+  (let ((octets (coerce (take-all-octets (edited-ahead stream)) 'string)))
+    (revise-octets (typed-octets stream) (lambda (left) (concatenate 'string octets left)))))
+
+(defun ahead-of (stream octets)
+  (ahead-in octets (history-entries (edited-history stream))))
+
+(defun with-key (stream octets key)
+  "Return OCTETS, which STREAM has not read yet, with those of KEY. Until it reads, they are what is
+typed ahead."
+  (cond ((being-typed-p stream) (uiop:strcat octets (octets-of-key key)))
+        (t (let ((ahead (ahead-of stream octets)))
+             (press-ahead ahead key (history-entries (edited-history stream)))
+             (octets-of-ahead ahead)))))
+
+(defun press-key (stream key)
+  "Let whoever reads STREAM read KEY, as in keys.lisp."
+  (revise-octets (typed-octets stream) (lambda (octets) (with-key stream octets key))))
+
+;;; What waits.
+
+(defun typed-ahead (stream)
+  "Return how many lines wait to be read of STREAM, and what is being typed after them: its text,
+and where in it the cursor is."
+  (let ((ahead (ahead-of stream (handed-left (typed-octets stream)))))
+    (values (+ (length (edited-lines stream)) (length (ahead-lines ahead)))
+            (ahead-text ahead)
+            (ahead-point ahead))))
+
+(defmethod take-waiting ((stream handed-text))
+  (let ((lines '()))
+    (revise-octets (typed-octets stream)
+                   (lambda (octets)
+                     (let ((ahead (ahead-of stream octets)))
+                       (setf lines (shiftf (ahead-lines ahead) '()))
+                       (octets-of-ahead ahead))))
+    (append (call-next-method) lines)))
