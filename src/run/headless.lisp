@@ -1,169 +1,10 @@
-;;;; headless.lisp -- runs whose ticks pass only when asked for.
+;;;; headless.lisp -- WITH-SIMULATION: runs whose ticks pass only when asked for.
 
 (in-package :ars-magna.run)
 
-(export '(fresh-simulation *rewound-end-hooks* variables-among))
+(export '(fresh-simulation *rewound-end-hooks* variables-among undone-text note-lines-typed))
 
 ;;; WITH-SIMULATION makes a fresh world, with fresh robots in it, for its extent.
-
-;;; Passing ticks.
-
-(defun check-headless (simulation operator)
-  (when (simulation-thread simulation)
-    (reject-use "~(~A~): this simulation runs live, its ticks pass by themselves. ~
-                 Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
-
-(defun check-passable (simulation)
-  "Signal MISUSE where ticks of SIMULATION are being passed already."
-  (when (and (owner-p simulation)
-             (or (simulation-ticking-p simulation)
-                 (timeline-passing-p (simulation-timeline simulation))))
-    (reject-use "run-ticks: a tick is under way; time cannot pass inside it, as in a continuation. ~
-                 A plan can be begun there, by (begin-plan ...) instead of (run-plan ...); a plan ~
-                 waits by (wait-time N).")))
-
-(defun await-free (simulation)
-  "Wait a moment for another thread that has SIMULATION in custody only to look at it. Signals
-MISUSE if it passes its ticks."
-  (when (timeline-passing-p (simulation-timeline simulation)) (reject-busy simulation))
-  (answer-meanwhile)
-  (yield-thread))
-
-(defun reject-busy (simulation)
-  (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. One at a time can."
-              (simulation-name simulation)))
-
-(defun pass-freely (count simulation)
-  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
-an error in users' code is to be signalled."
-  (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline))
-         (queue (simulation-messages simulation)))
-    (loop repeat count
-          until (or (timeline-over timeline) (message-queue-unsignalled queue))
-          do (tick simulation)
-             (when (custody-questions custody) (answer-questions custody)))))
-
-;; Who lets ticks pass at a gate may wait there, or leave.
-(defun pass-gate (count simulation gate)
-  "Pass COUNT ticks as PASS-FREELY does, as many at a time as the function GATE allows."
-  (loop with left = count
-        until (or (zerop left) (simulation-over simulation)
-                  (message-queue-unsignalled (simulation-messages simulation)))
-        do (let ((now (min left (funcall gate simulation))))
-             (pass-freely now simulation)
-             (decf left now))))
-
-(defun pass-ticks (count simulation)
-  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
-an error in users' code is to be signalled. Nobody else can do that meanwhile, not even
-continuations."
-  (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
-    (setf (timeline-passing-p timeline) t)
-    (in-any-case
-      (if gate (pass-gate count simulation gate) (pass-freely count simulation))
-      (setf (timeline-passing-p timeline) nil))))
-
-(defun doubt-passing (operator simulation)
-  "Say once if a step of a plan calls OPERATOR, which lets ticks of SIMULATION pass before the plan
-goes on."
-  (when (some #'participant-around-p (simulation-participants simulation))
-    (warn-once (list :in-plan operator) (simulation-world simulation)
-               (format nil "~(~A~) was called inside of a step of a plan, which stands still ~
-                            meanwhile. A plan waits by (wait-time N) or (wait-until TEST)."
-                       operator))))
-
-(addition run-ticks)
-(defun run-ticks (count &optional (simulation (current-simulation)))
-  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. A fork
-that was rewound stands for the one that goes on in its place. Signals WRONG-ARGUMENT, and MISUSE if
-SIMULATION runs live or is inside a tick, or if another thread passes its ticks; and where errors
-in users' code are to be signalled, USER-CODE-ERROR after the tick in which one came up, with a
-restart CONTINUE that lets the other ticks pass."
-  (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
-  (let ((simulation (going-on simulation)))
-    (doubt-passing :run-ticks simulation)
-    (prog1 (pass-ticks-of simulation count)
-      (look-after-ticks simulation))))
-
-(defun look-after-ticks (simulation)
-  "Let those who take part in SIMULATION look at what the ticks have brought that have passed."
-  (dolist (participant (simulation-participants simulation))
-    (participant-after-ticks participant simulation)))
-
-(defun going-on (simulation)
-  "Return SIMULATION or, if it is a fork that was rewound, the one that goes on in its place."
-  (if (fork-p simulation) (latest simulation) simulation))
-
-(defun pass-ticks-alone (simulation count)
-  "Pass COUNT ticks of SIMULATION, as PASS-TICKS does, once no other thread looks at it."
-  (flet ((pass () (pass-ticks count simulation)))
-    (declare (dynamic-extent #'pass))
-    (flet ((pass-inside () (call-inside simulation #'pass) t)
-           (wait () (await-free simulation) nil))
-      (declare (dynamic-extent #'pass-inside #'wait))
-      (loop with custody = (timeline-custody (simulation-timeline simulation))
-            until (call-with-custody custody #'pass-inside #'wait)))))
-
-(defun pass-ticks-of (simulation count)
-  (check-headless simulation 'run-ticks)
-  (check-not-over simulation 'run-ticks)
-  (check-not-secluded simulation)
-  (check-passable simulation)
-  (when *asked-with* (doubt-asked-with (simulation-world simulation)))
-  (loop with last = (+ (simulation-tick simulation) count)
-        do (pass-ticks-alone simulation (- last (simulation-tick simulation)))
-        while (signal-trouble (simulation-messages simulation))
-        until (or (simulation-over simulation) (<= last (simulation-tick simulation))))
-  (simulation-tick simulation))
-
-(defun tell-of-limit (limit simulation)
-  "Say once in the run of SIMULATION that RUN-UNTIL has met LIMIT, which nobody has asked for."
-  (warn-once '(:limit :run-until) (simulation-world simulation)
-             (format nil "run-until: its test was still false after ~D ticks, at tick ~D, and it ~
-                          returned NIL. ~D is the default; (run-until TEST :limit TICKS) sets ~
-                          another."
-                     limit (simulation-tick simulation) limit)))
-
-(defun note-how-met (answer limit-p limit simulation)
-  "Note that RUN-UNTIL has come to an end in SIMULATION: by ANSWER, or if that is NIL by LIMIT,
-which the program has given if LIMIT-P."
-  (cond (answer (note-looked-after (simulation-world simulation)))
-        ((not (or limit-p (simulation-over simulation))) (tell-of-limit limit simulation))))
-
-(addition run-until)
-(define-with-keywords run-until (predicate &key (limit 100000 limit-p)
-                                           (simulation (current-simulation)))
-  "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
-true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit, of which
-a warning tells once in a run if none was given. Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS
-does."
-  (check-argument run-until predicate (or (functionp predicate)
-                                        (and (symbolp predicate) (fboundp predicate)))
-                  "a function of no arguments, such as (lambda () (< 9 (simulation-tick)))")
-  (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
-  (let ((simulation (going-on simulation)))
-    (check-headless simulation 'run-until)
-    (check-not-over simulation 'run-until)
-    (doubt-passing :run-until simulation)
-    (let ((answer (loop for left downfrom limit
-                        thereis (funcall predicate)
-                        until (zerop left)
-                        do (pass-ticks-of (going-on simulation) 1))))
-      (note-how-met answer limit-p limit (going-on simulation))
-      (look-after-ticks (going-on simulation))
-      (values answer (simulation-tick simulation)))))
-
-(addition step-ticks)
-(defun step-ticks (&optional (count 1) (simulation (current-simulation)))
-  "Pass COUNT ticks and then pause. A headless SIMULATION has passed them on return; a live one
-passes them at its pace. Returns nothing."
-  (check-argument step-ticks count (whole-p count 1) "a whole number of ticks, from 1 to 1e9")
-  (if (live-p simulation)
-      (let-pass count simulation)
-      (run-ticks count simulation))
-  (values))
-
-;;; Fresh runs.
 
 (defun blueprint-of (designator)
   "Return the blueprint of the robot DESIGNATOR, which may be a robot or its name."
@@ -307,6 +148,54 @@ Signals WRONG-ARGUMENT. See WITH-SIMULATION."
   (let ((simulation (latest (simulation-meant simulation 'simulation-errors))))
     (errors-in (simulation-messages simulation)
                (lambda (run) (or (null run) (eq simulation (latest run)))))))
+
+;;; The macro, and what is said of one that is not written as it should be.
+
+(defun unquoted (form)
+  "Return FORM without the quote that people put before names elsewhere."
+  (if (and (consp form) (eq 'quote (first form))) (second form) form))
+
+(defun robots-form-p (form environment)
+  "True if FORM, for the robots of WITH-SIMULATION, is an expression that returns them, and no name
+or list of names."
+  (typecase form
+    (symbol (and form (known-variable-p form environment) (not (find-blueprint form nil))))
+    (cons (let ((head (first form)))
+            (and (symbolp head)
+                 (not (eq 'quote head))
+                 (not (find-blueprint head nil))
+                 (or (some #'consp (rest form))
+                     (known-function-p head environment)))))))
+
+(defun doubt-values-of-commands (body)
+  "Warn of each place in BODY, that of a WITH-SIMULATION, that uses the value of a command."
+  (map-calls (lambda (form)
+               (let ((call (find-if (lambda (used)
+                                      (and (typep used '(cons symbol))
+                                           (get (first used) 'command-shape)))
+                                    (values-used-in form))))
+                 (when call
+                   (doubt-definition "~(~A~) returns nothing: it only begins the command. What ~
+                                      comes of that is told to its continuation, when ticks have ~
+                                      passed." (first call)))))
+             body))
+
+(defun unquoted-settings-p (form)
+  "True if FORM, for a list of settings, is such a list itself, or a setting: neither is a call."
+  (and (consp form)
+       (let ((head (first form)))
+         (if (consp head)
+             (not (eq 'lambda (first head)))
+             (and (symbolp head) (not (fboundp head)) (find-parameter head nil))))))
+
+(defun settings-form (form)
+  "Return FORM, that of the list :parameters. Signals MALFORMED-DEFINITION if a quote is missing."
+  (when (unquoted-settings-p form)
+    (reject-clause "with-simulation" (list :parameters form)
+                   (let ((*print-case* :downcase))
+                     (format nil "a quote: :parameters '~S"
+                             (abridged (if (consp (first form)) form (list form)))))))
+  form)
 
 (addition with-simulation)
 (define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal keep

@@ -2,6 +2,85 @@
 
 (in-package :ars-magna.run)
 
+;;; Maps, robots' definitions, kickers and the like are not of one run; neither are some functions
+;;; of ours that its objects hold. A saved run names them, and they must be defined where it is
+;;; loaded.
+
+(defgeneric outer-name (object)
+  (:documentation "Return the name, a list (KIND argument...) of a keyword and plain data, by which
+OUTER-OBJECT finds OBJECT, which is not of any one run; or NIL if it is of one.")
+  (:method (object) (declare (ignore object)) nil)
+  (:method ((map map)) (list :map (qualified-name (map-name map))))
+  (:method ((blueprint blueprint)) (list :robot (qualified-name (blueprint-name blueprint))))
+  (:method ((kicker kicker)) (list :kicker (qualified-name (kicker-name kicker))))
+  (:method ((type place-type)) (list :place-type (qualified-name (place-type-name type))))
+  (:method ((character character)) (list :character (char-code character)))
+  (:method ((command command))
+    (list (if (manipulation-command-p command) :manipulation :command)
+          (qualified-name (command-name command))))
+  (:method ((method manipulation-method))
+    (loop for manipulation in (all-manipulations)
+          for position = (position method (manipulation-methods manipulation))
+          when position
+            return (list :method (qualified-name (manipulation-name manipulation)) position)))
+  (:method ((function function))
+    (let ((name (lasting-name function)))
+      (and name (list :function name))))
+  (:method ((number float))
+    (and (typep number 'double-float)
+         (not (finite-p number))
+         (list :double-float (double-to-bits number)))))
+
+(defgeneric outer-object (kind argument &optional more)
+  (:documentation "Return what the name (KIND ARGUMENT [MORE]) means here. Signals an error if it
+means nothing.")
+  (:method (kind argument &optional more)
+    (declare (ignore argument more))
+    (error "~A is nothing that a run uses" (short-text kind)))
+  (:method ((kind (eql :map)) (name string) &optional more)
+    (declare (ignore more))
+    (find-map name))
+  (:method ((kind (eql :robot)) (name string) &optional more)
+    (declare (ignore more))
+    (find-blueprint name))
+  (:method ((kind (eql :kicker)) (name string) &optional more)
+    (declare (ignore more))
+    (find-kicker name))
+  (:method ((kind (eql :place-type)) (name string) &optional more)
+    (declare (ignore more))
+    (find-place-type name))
+  (:method ((kind (eql :command)) (name string) &optional more)
+    (declare (ignore more))
+    (find-command name))
+  (:method ((kind (eql :manipulation)) (name string) &optional more)
+    (declare (ignore more))
+    (command-for (find-manipulation name)))
+  (:method ((kind (eql :method)) (name string) &optional more)
+    (check-type more unsigned-byte)
+    (or (nth more (manipulation-methods (find-manipulation name)))
+        (error "~(~A~) has not so many methods" name)))
+  (:method ((kind (eql :character)) (code integer) &optional more)
+    (declare (ignore more))
+    (check-type code (integer 0 (#.char-code-limit)))
+    (code-char code))
+  (:method ((kind (eql :function)) (name symbol) &optional more)
+    (declare (ignore more))
+    (or (lasting-function name)
+        (error "~A is no function that objects of a run hold" name)))
+  (:method ((kind (eql :double-float)) (bits integer) &optional more)
+    (declare (ignore more))
+    (check-type bits (unsigned-byte 64))
+    (bits-to-double bits)))
+
+(defun name-at-hand (object)
+  "Return the OUTER-NAME of OBJECT; a second value is true if that means another, or nothing, now."
+  (let ((name (outer-name object)))
+    (values name
+            (and name
+                 (not (eql object (ignore-errors (apply #'outer-object name))))))))
+
+;;;; The inventory
+
 ;;; From the simulation every object is reached that it would need to go on. What has an identity
 ;;; gets a number: structures, arrays and tables; and lists and strings that are met twice, or would
 ;;; make a line of a file too long. All else is written where it is met. Objects of one shape make a

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.run)
 
-(export '(note-doing))
+(export '(note-doing let-fork-be-kept))
 
-;;; A run that is told to keep forks (keeping.lisp) has a PAST: these forks, and as ACTS, in order,
+;;; A run that is told to keep forks has a PAST: these forks, and as ACTS, in order,
 ;;; everything that was done to the run since the oldest fork: what its journal has, and what was
 ;;; asked of plans from outside. A fork of the past goes on as the run did if the acts that it does
 ;;; not repeat by itself are done to it again (redoing.lisp).
@@ -53,11 +53,6 @@ could not be made, as somebody was at work in the run; or NIL."
   (wanted nil :type (or null double-float))
   (rolled nil)
   (warned-p nil :type boolean))
-
-(declaim (inline noting-p))
-(defun noting-p (simulation)
-  "True if somebody wants to know what is done to SIMULATION."
-  (or (simulation-journal simulation) (simulation-past simulation)))
 
 (defun of-itself-p (request)
   "True if a fork comes to REQUEST by itself, as what goes on there too has asked for it."
@@ -158,3 +153,155 @@ in a list, the newest first, what had been asked for by then and not yet been do
   "Return those of ACTS, the newest first, that were done after KEPT had been made, the oldest
 first."
   (reverse (ldiff acts (kept-acts kept))))
+
+;;;; Keeping forks
+
+;;; A fork is made at the end of a tick. When there are too many, each new one ousts the one whose
+;;; loss matters least for its age; so recent forks are close together, old ones are far apart, and
+;;; the first always stays. How often forks are made depends on the clock: keeping them must take no
+;;; more than a small part of the time. No result depends on it, as rewinding repeats what happened
+;;; between two forks.
+
+(addition *forks-to-keep*)
+(defvar *forks-to-keep* nil
+  "What SIMULATOR takes for :KEEP unless it is told: how many forks a live run keeps, so that REWIND
+can go back; T for a usual number, NIL for none. The prompt sets it to T.")
+
+(defconstant +usual-forks+ 30 "How many forks a run keeps if nobody says how many.")
+(defconstant +longest-pace+ 1024 "After how many ticks a run looks at the clock at the latest.")
+
+(defconstant +least-cost+ 1d-4 "How many seconds a fork is taken to cost at least.")
+
+(defparameter *keeping-share* 1/100
+  "Which part of its time a run may spend on keeping forks; 1: it keeps one at each tick.")
+(defparameter *most-kept-octets* (expt 2 28)
+  "How many octets the kept forks of a run may take, as far as that can be foreseen.")
+
+(defun octets-of-fork (simulation)
+  "Return roughly how many octets a fork of SIMULATION takes."
+  (+ 50000 (octets-of-copy (simulation-world simulation))))
+
+(defun room-for-forks (simulation past)
+  "Return how many forks SIMULATION, of PAST, may keep."
+  (clamp (floor *most-kept-octets* (octets-of-fork simulation)) 3 (max 3 (past-limit past))))
+
+(defun least-needed (forks)
+  "Return the one of FORKS, the newest first, without which the gap is smallest for its age. The
+first and the last are needed."
+  (loop with now = (kept-tick (first forks))
+        with best = nil and least = nil
+        for (newer kept older) on forks
+        while older
+        do (let ((loss (/ (- (kept-tick newer) (kept-tick older))
+                          (1+ (- now (kept-tick older))))))
+             (when (or (null least) (<= loss least))
+               (setf best kept least loss)))
+        finally (return best)))
+
+(defun thin-out (past room)
+  "Let PAST have at most ROOM forks."
+  (loop while (> (length (past-forks past)) room)
+        do (setf (past-forks past)
+                 (remove (least-needed (past-forks past)) (past-forks past)))))
+
+(defun warn-of-no-fork (simulation past condition)
+  "Say, once, that CONDITION keeps SIMULATION, of PAST, from keeping a fork."
+  (unless (past-warned-p past)
+    (setf (past-warned-p past) t)
+    (warn-notably (format nil "What is so at tick ~D cannot be kept for REWIND: ~A."
+                         (simulation-tick simulation)
+                         (string-right-trim "." (brief-text condition))))))
+
+(defun fork-to-keep (simulation past)
+  "Return a fork of SIMULATION, of PAST; :BUSY if somebody is at work in it, NIL if it cannot be."
+  (handler-case (call-at-rest (simulation-participants simulation)
+                              (lambda () (fork-now simulation nil '())))
+    (misuse () :busy)
+    (error (condition) (warn-of-no-fork simulation past condition))))
+
+(defun forget-if-full (simulation past)
+  "Forget all that PAST has of SIMULATION if that is too much."
+  (when (and (finite-p *journal-limit*) (> (past-count past) *journal-limit*))
+    (setf (past-forks past) '() (past-acts past) '() (past-count past) 0)
+    (warn-notably (format nil "So much has been asked of this run that REWIND can go back to tick ~
+                              ~D at most; see *JOURNAL-LIMIT*."
+                         (simulation-tick simulation)))))
+
+;; The clock is coarse: of what one fork takes it tells little.
+(defun note-cost (past began)
+  "Let PAST know that making a fork began at BEGAN, in seconds, and has ended."
+  (let ((cost (+ (* 15/16 (past-cost past)) (* 1/16 (- (seconds-now) began)))))
+    (setf (past-cost past) cost
+          (past-due past) (if (< *keeping-share* 1)
+                              (+ began (/ (max cost +least-cost+) *keeping-share*))
+                              began))))
+
+(defun keep-fork (simulation past)
+  "Let SIMULATION, which stands still, keep a fork in PAST, if that can be now. If somebody is at
+work in it, that is to be at the end of the next tick."
+  (forget-if-full simulation past)
+  (let* ((began (or (past-wanted past) (seconds-now)))
+         (tick (simulation-tick simulation))
+         (fork (fork-to-keep simulation past)))
+    (when (simulation-p fork)
+      (push (make-kept fork tick (past-acts past)) (past-forks past))
+      (thin-out past (room-for-forks simulation past)))
+    (setf (past-pace past) 1
+          (past-next past) (1+ tick)
+          (past-wanted past) (if (eq :busy fork) began nil))
+    (unless (eq :busy fork)
+      (note-cost past began))))
+
+(defconstant +looks-for-fork+ 100
+  "How often who makes way for a fork looks whether it has been made, before it gives that up.")
+
+(defun let-fork-be-kept (simulation)
+  "If SIMULATION could not keep a fork because this thread, which is at rest now, was at work, wait
+until the tick has ended and there is one; not for long, as no tick may pass."
+  (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
+    (when (and past (past-wanted past))
+      (loop repeat +looks-for-fork+
+            while (past-wanted past)
+            do (wait-a-while moment 0.002))
+      (setf (past-wanted past) nil))))
+
+(defun keep-fork-in-time (simulation past)
+  "Let SIMULATION keep a fork in PAST unless it has spent too much time on that."
+  (cond ((>= (seconds-now) (past-due past)) (keep-fork simulation past))
+        (t (setf (past-next past) (+ (simulation-tick simulation) (past-pace past))
+                 (past-pace past) (min +longest-pace+ (* 2 (past-pace past)))))))
+
+;;; How it is asked for.
+
+(define-argument-type 'fork-count
+  (lambda (value) (or (typep value 'boolean) (whole-p value 2 1000)))
+  "a number of forks from 2 to 1000, T for a usual one, or NIL for none")
+
+(defun begin-keeping (simulation limit)
+  "Let SIMULATION, which this thread has in custody, keep forks, at most LIMIT, from now on."
+  (let ((past (setf (simulation-past simulation) (make-past limit #'keep-fork-in-time))))
+    (when (eq simulation *simulation*) (look-at-dice simulation past))
+    ;; One can go back as far as here: what has been asked for stays so.
+    (dolist (request (timeline-inbox (simulation-timeline simulation)))
+      (when (zerop (request-phase request))
+        (setf (request-phase request) (phase-number :continuations))))
+    (when (zerop (timeline-phase (simulation-timeline simulation)))
+      (keep-fork simulation past))))
+
+(addition keep-forks)
+(defun keep-forks (&optional (count t) (simulation (current-simulation)))
+  "Let SIMULATION keep forks of itself from now on, so that REWIND can go back as far as here: at
+most COUNT, from 2 to 1000, by default 30, and fewer of a very large world. They are the closer
+together the newer they are, and take about a hundredth of its time. What is asked of the run is
+remembered too. If COUNT is NIL, all that is forgotten. Return nothing. Signals WRONG-ARGUMENT,
+and MISUSE if the run is over."
+  (check-of-type 'keep-forks 'count count 'fork-count)
+  (let ((simulation (simulation-meant simulation 'keep-forks)))
+    (check-not-over simulation 'keep-forks)
+    (asking (simulation)
+      (let ((past (simulation-past simulation))
+            (limit (if (eq t count) +usual-forks+ count)))
+        (cond ((null count) (setf (simulation-past simulation) nil))
+              (past (setf (past-limit past) limit))
+              (t (begin-keeping simulation limit))))))
+  (values))

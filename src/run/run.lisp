@@ -2,8 +2,10 @@
 
 (in-package :ars-magna.run)
 
-(export '(simulation simulation-over simulation-agenda simulation-ticking-p simulation-thread latest
-          add-participant remove-participant headless-p end-simulation))
+(export '(simulation simulation-over simulation-agenda simulation-ticking-p simulation-thread
+          latest add-participant remove-participant headless-p end-simulation))
+
+(addition state-digest)
 
 ;;; A run has no state of its own but the values of the parameters as it knows them: the rest is its
 ;;; timeline's and its world's.
@@ -101,6 +103,11 @@ steps). See SET-THINKING."
   "True inside a tick of SIMULATION, while its world changes."
   (timeline-ticking-p (simulation-timeline simulation)))
 
+(declaim (inline noting-p))
+(defun noting-p (simulation)
+  "True if somebody wants to know what is done to SIMULATION."
+  (or (simulation-journal simulation) (simulation-past simulation)))
+
 (defun simulation-agenda (simulation)
   "Return the agenda of SIMULATION."
   (timeline-agenda (simulation-timeline simulation)))
@@ -132,6 +139,39 @@ these leads to the next, so that all but the last can be forgotten."
     (setf (first line) new
           (simulation-line old) line
           (simulation-line new) line)))
+
+;;; The one run that each world has, made when it is first needed.
+
+(defvar *simulations-lock* (make-lock "simulations"))
+
+(defun residents-queue ()
+  "Return the message queue for the runs of resident worlds: not that of a headless run which may be
+the first to need one."
+  (if (and *simulation* (headless-p *simulation*))
+      (global-value '*message-queue*)
+      *message-queue*))
+
+(defun world-simulation (world)
+  "Return the simulation of WORLD, made if there is none, with a journal."
+  (let ((timeline (ensure-timeline world)))
+    (or (timeline-run timeline)
+        (with-lock (*simulations-lock*)
+          (or (timeline-run timeline)
+              (make-simulation world (lambda (simulation)
+                                       (setf (simulation-messages simulation) (residents-queue))
+                                       (begin-journal simulation))))))))
+
+(defun simulation-meant (designator operator)
+  "Return the simulation DESIGNATOR, or that of the robot DESIGNATOR, for OPERATOR. Signals
+WRONG-ARGUMENT."
+  (cond ((simulation-p designator) designator)
+        ((robot-p designator) (robot-simulation designator))
+        (t (reject-argument operator 'simulation designator "a simulation, or a robot in one"))))
+
+(addition robot-simulation)
+(defun robot-simulation (robot)
+  "Return the simulation of the world that ROBOT is in."
+  (world-simulation (robot-world robot)))
 
 ;;; Who looks on, and who takes part.
 
@@ -207,6 +247,27 @@ SEED. See reading 218."
 
 (define-operator 'set-seed '(integer) #'set-seed)
 
+;;; Thinking.
+
+(addition set-thinking)
+(defun set-thinking (mode &optional (simulation (current-simulation)))
+  "Let thinking in SIMULATION, also if that is under way, cost from now on what MODE says (manual
+1.2), and return it:
+  :FREE                      no ticks: plans react after each tick, as long as it takes them
+  :CHARGED                   the ticks that THINK and WITH-CHARGE say
+  (:CHARGED :BUDGET steps)   these, and a tick for each STEPS of plans: what is not done waits
+  :REAL                      no ticks: where a clock runs, plans have a thread and the clock goes on
+A plan that says so hears of it in its next reaction, mostly in the next tick.
+Free and charged runs are the same on every machine. Without a clock :REAL is as :FREE. The journal
+notes it. Signals WRONG-ARGUMENT."
+  (check-thinking 'set-thinking mode)
+  (let ((simulation (simulation-meant simulation 'set-thinking)))
+    (changing ((simulation-world simulation) set-thinking mode)
+      (set-timeline-thinking (simulation-timeline simulation) mode)))
+  mode)
+
+(define-operator 'set-thinking '(datum) #'set-thinking)
+
 ;;; The end.
 
 (defun interrupt-all (timeline robots)
@@ -240,3 +301,23 @@ it any more."
                (stop-pacing timeline)
                (tell-of-end simulation)
                (interrupt-all timeline robots)))))))))
+
+;;; One number for its state.
+
+(defun state-digest (&optional (simulation (current-simulation)) participants)
+  "Return a 64-bit number that stands for the state of SIMULATION to the bit: two runs that have the
+same digest at a tick go the same way from there, given the same requests. It covers the world,
+robots and parts, what is under way, parameters and dice: all that is said to be state where the
+kinds are defined. What has been asked for since the last tick counts from the next one on, and who
+is told of the end of a command does not count. What plans are about to do counts if PARTICIPANTS
+is true. Functions, such as SCHEDULE is given, count only as such. SIMULATION may be a robot in one.
+Signals WRONG-ARGUMENT."
+  (let ((simulation (simulation-meant simulation 'state-digest)))
+    (asking (simulation)
+      (when (eq simulation *simulation*) (follow-settings simulation))
+      (let ((digest (make-digest)))
+        (digest-state simulation digest)
+        (when participants
+          (dolist (participant (simulation-participants simulation))
+            (participant-digest participant digest)))
+        (digest-value digest)))))

@@ -1,6 +1,73 @@
-;;;; replaced-maps.lisp -- what becomes of runs and robots when their map is defined anew.
+;;;; residents.lisp -- the runs and robots that names mean at top level, also when maps change.
 
 (in-package :ars-magna.run)
+
+;;; One rule for threads that start, stop and replace simulators.
+;;; - Only the thread that has a world in custody changes which run the world has, whether that is
+;;;   over, which thread passes its ticks, whether the world is resident in its map, and which robot
+;;;   there a name means. Another thread may only tell the one that passes ticks to stop.
+;;; - Worlds and runs that follow one another in a map share one custody.
+;;; - A thread that has got custody looks again. It starts and settles nothing in a run that is
+;;;   over, in a world that is no longer resident, or for a retired robot; it looks up what is there
+;;;   now.
+
+(defun blueprints-in (map)
+  (remove map (all-blueprints)
+          :test-not #'eq
+          :key (lambda (blueprint) (find-map (blueprint-map blueprint) nil))))
+
+(defun first-robot-in (map)
+  "Return the robot of MAP that was defined first. Signals MISUSE if there is none."
+  (let ((blueprint (first (blueprints-in map))))
+    (if blueprint
+        (blueprint-robot blueprint)
+        (reject-use "Map ~(~A~) has no robot. Define one: (defrobot NAME (~:*~(~A~) (X Y) ANGLE))."
+                    (map-name map)))))
+
+(defun reject-robots (designators)
+  "Signal UNKNOWN-NAME: a list of DESIGNATORS is to be run."
+  (error 'unknown-name
+         :kind "robot or map" :name designators
+         :remedy (format nil "Give one robot~@[, as '~(~A~)~]: all robots of its map are in its ~
+                              world."
+                         (and (symbolp (first designators)) (first designators)))))
+
+(defun robot-to-start (designator)
+  "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of either.
+One whose map or definition has been replaced means the robot that is called so now."
+  (let ((robot (cond ((map-p designator) (first-robot-in designator))
+                     ((find-robot designator nil))
+                     ((find-map designator nil) (first-robot-in (find-map designator)))
+                     ((consp designator) (reject-robots designator))
+                     (t (reject-name "robot or map" designator
+                                     (append (mapcar #'blueprint-name (all-blueprints))
+                                             (mapcar #'map-name (all-maps))))))))
+    (if (robot-retired robot)
+        (find-again (robot-name robot))
+        robot)))
+
+(defun set-robot (blueprint robot)
+  "Let the variable of BLUEPRINT's name hold ROBOT at top level."
+  (setf (global-value (blueprint-name blueprint)) robot))
+
+(defun settle-by-name (blueprint)
+  "Return the robot that SETTLE-ROBOT returns for BLUEPRINT, after letting its name mean it."
+  (loop
+    (let ((robot (settle-robot blueprint)))
+      ;; A thread that has replaced its world meanwhile has retired it.
+      (asking (robot)
+        (unless (robot-retired robot) (set-robot blueprint robot)))
+      (unless (robot-retired robot) (return robot)))))
+
+(defun find-again (name)
+  "Return the robot called NAME now, made anew if that has not been possible before."
+  (let* ((blueprint (find-blueprint name))
+         (robot (blueprint-robot blueprint)))
+    (if (or (null robot) (robot-retired robot))
+        (settle-by-name blueprint)
+        robot)))
+
+;;; When a map is defined anew.
 
 ;;; The run of the old map's world ends. The robots that are defined in the map are made anew in the
 ;;; new one, as far as they fit. Headless runs under way have worlds of their own and go on.

@@ -1,0 +1,240 @@
+;;;; passing.lisp -- letting ticks pass in a headless run, and waiting for a live one.
+
+(in-package :ars-magna.run)
+
+(export '(doubt-wait))
+
+;;; Passing ticks.
+
+(defun check-headless (simulation operator)
+  (when (simulation-thread simulation)
+    (reject-use "~(~A~): this simulation runs live, its ticks pass by themselves. ~
+                 Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
+
+(defun check-passable (simulation)
+  "Signal MISUSE where ticks of SIMULATION are being passed already."
+  (when (and (owner-p simulation)
+             (or (simulation-ticking-p simulation)
+                 (timeline-passing-p (simulation-timeline simulation))))
+    (reject-use "run-ticks: a tick is under way; time cannot pass inside it, as in a continuation. ~
+                 A plan can be begun there, by (begin-plan ...) instead of (run-plan ...); a plan ~
+                 waits by (wait-time N).")))
+
+(defun await-free (simulation)
+  "Wait a moment for another thread that has SIMULATION in custody only to look at it. Signals
+MISUSE if it passes its ticks."
+  (when (timeline-passing-p (simulation-timeline simulation)) (reject-busy simulation))
+  (answer-meanwhile)
+  (yield-thread))
+
+(defun reject-busy (simulation)
+  (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. One at a time can."
+              (simulation-name simulation)))
+
+(defun pass-freely (count simulation)
+  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
+an error in users' code is to be signalled."
+  (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline))
+         (queue (simulation-messages simulation)))
+    (loop repeat count
+          until (or (timeline-over timeline) (message-queue-unsignalled queue))
+          do (tick simulation)
+             (when (custody-questions custody) (answer-questions custody)))))
+
+;; Who lets ticks pass at a gate may wait there, or leave.
+(defun pass-gate (count simulation gate)
+  "Pass COUNT ticks as PASS-FREELY does, as many at a time as the function GATE allows."
+  (loop with left = count
+        until (or (zerop left) (simulation-over simulation)
+                  (message-queue-unsignalled (simulation-messages simulation)))
+        do (let ((now (min left (funcall gate simulation))))
+             (pass-freely now simulation)
+             (decf left now))))
+
+(defun pass-ticks (count simulation)
+  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
+an error in users' code is to be signalled. Nobody else can do that meanwhile, not even
+continuations."
+  (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
+    (setf (timeline-passing-p timeline) t)
+    (in-any-case
+      (if gate (pass-gate count simulation gate) (pass-freely count simulation))
+      (setf (timeline-passing-p timeline) nil))))
+
+(defun doubt-passing (operator simulation)
+  "Say once if a step of a plan calls OPERATOR, which lets ticks of SIMULATION pass before the plan
+goes on."
+  (when (some #'participant-around-p (simulation-participants simulation))
+    (warn-once (list :in-plan operator) (simulation-world simulation)
+               (format nil "~(~A~) was called inside of a step of a plan, which stands still ~
+                            meanwhile. A plan waits by (wait-time N) or (wait-until TEST)."
+                       operator))))
+
+(addition run-ticks)
+(defun run-ticks (count &optional (simulation (current-simulation)))
+  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. A fork
+that was rewound stands for the one that goes on in its place. Signals WRONG-ARGUMENT, and MISUSE if
+SIMULATION runs live or is inside a tick, or if another thread passes its ticks; and where errors
+in users' code are to be signalled, USER-CODE-ERROR after the tick in which one came up, with a
+restart CONTINUE that lets the other ticks pass."
+  (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
+  (let ((simulation (going-on simulation)))
+    (doubt-passing :run-ticks simulation)
+    (prog1 (pass-ticks-of simulation count)
+      (look-after-ticks simulation))))
+
+(defun look-after-ticks (simulation)
+  "Let those who take part in SIMULATION look at what the ticks have brought that have passed."
+  (dolist (participant (simulation-participants simulation))
+    (participant-after-ticks participant simulation)))
+
+(defun going-on (simulation)
+  "Return SIMULATION or, if it is a fork that was rewound, the one that goes on in its place."
+  (if (fork-p simulation) (latest simulation) simulation))
+
+(defun pass-ticks-alone (simulation count)
+  "Pass COUNT ticks of SIMULATION, as PASS-TICKS does, once no other thread looks at it."
+  (flet ((pass () (pass-ticks count simulation)))
+    (declare (dynamic-extent #'pass))
+    (flet ((pass-inside () (call-inside simulation #'pass) t)
+           (wait () (await-free simulation) nil))
+      (declare (dynamic-extent #'pass-inside #'wait))
+      (loop with custody = (timeline-custody (simulation-timeline simulation))
+            until (call-with-custody custody #'pass-inside #'wait)))))
+
+(defun pass-ticks-of (simulation count)
+  (check-headless simulation 'run-ticks)
+  (check-not-over simulation 'run-ticks)
+  (check-not-secluded simulation)
+  (check-passable simulation)
+  (when *asked-with* (doubt-asked-with (simulation-world simulation)))
+  (loop with last = (+ (simulation-tick simulation) count)
+        do (pass-ticks-alone simulation (- last (simulation-tick simulation)))
+        while (signal-trouble (simulation-messages simulation))
+        until (or (simulation-over simulation) (<= last (simulation-tick simulation))))
+  (simulation-tick simulation))
+
+(defun tell-of-limit (limit simulation)
+  "Say once in the run of SIMULATION that RUN-UNTIL has met LIMIT, which nobody has asked for."
+  (warn-once '(:limit :run-until) (simulation-world simulation)
+             (format nil "run-until: its test was still false after ~D ticks, at tick ~D, and it ~
+                          returned NIL. ~D is the default; (run-until TEST :limit TICKS) sets ~
+                          another."
+                     limit (simulation-tick simulation) limit)))
+
+(defun note-how-met (answer limit-p limit simulation)
+  "Note that RUN-UNTIL has come to an end in SIMULATION: by ANSWER, or if that is NIL by LIMIT,
+which the program has given if LIMIT-P."
+  (cond (answer (note-looked-after (simulation-world simulation)))
+        ((not (or limit-p (simulation-over simulation))) (tell-of-limit limit simulation))))
+
+(addition run-until)
+(define-with-keywords run-until (predicate &key (limit 100000 limit-p)
+                                           (simulation (current-simulation)))
+  "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
+true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit, of which
+a warning tells once in a run if none was given. Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS
+does."
+  (check-argument run-until predicate (or (functionp predicate)
+                                        (and (symbolp predicate) (fboundp predicate)))
+                  "a function of no arguments, such as (lambda () (< 9 (simulation-tick)))")
+  (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
+  (let ((simulation (going-on simulation)))
+    (check-headless simulation 'run-until)
+    (check-not-over simulation 'run-until)
+    (doubt-passing :run-until simulation)
+    (let ((answer (loop for left downfrom limit
+                        thereis (funcall predicate)
+                        until (zerop left)
+                        do (pass-ticks-of (going-on simulation) 1))))
+      (note-how-met answer limit-p limit (going-on simulation))
+      (look-after-ticks (going-on simulation))
+      (values answer (simulation-tick simulation)))))
+
+(addition step-ticks)
+(defun step-ticks (&optional (count 1) (simulation (current-simulation)))
+  "Pass COUNT ticks and then pause. A headless SIMULATION has passed them on return; a live one
+passes them at its pace. Returns nothing."
+  (check-argument step-ticks count (whole-p count 1) "a whole number of ticks, from 1 to 1e9")
+  (if (live-p simulation)
+      (let-pass count simulation)
+      (run-ticks count simulation))
+  (values))
+
+;;; Waiting for a live run.
+
+(addition await-idle)
+(defun await-idle (&optional (simulation (current-simulation)) (seconds 60 given-p))
+  "Wait until nothing that comes to an end is left to do in the live SIMULATION, at most SECONDS.
+True if so; else a warning says what goes on, unless SECONDS are given. Things that have kickers go
+on by themselves, and are not waited for, nor are tracks. Of one that is not live, return at once
+whether nothing is left at all. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and
+MISUSE if the simulator has failed and is paused for that: it would wait in vain."
+  (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
+                  "a number of seconds, from 0 to 1e9")
+  (let ((simulation (simulation-meant simulation 'await-idle)))
+    (cond ((not (live-p simulation)) (idle-p simulation))
+          ((eq (current-thread) (simulation-thread simulation))
+           (reject-use "await-idle: the simulator would wait for itself. Go on in a continuation."))
+          ((some #'participant-around-p (simulation-participants simulation))
+           (reject-use "await-idle: a plan would wait for itself. Wait for a fluent there, such as ~
+                        robot-stopped*."))
+          ((wait-until-idle simulation seconds))
+          ((and (not given-p) (live-p simulation)) (tell-of-vain-wait simulation seconds)))))
+
+(defun tell-of-vain-wait (simulation seconds)
+  "Queue a warning that AWAIT-IDLE has waited SECONDS for SIMULATION in vain. Return NIL."
+  (let ((names (remove-duplicates (unfinished-in-participants simulation) :test #'string=))
+        (*message-queue* (simulation-messages simulation)))
+    (warn-at-once (format nil "await-idle has waited for ~A s, and gives up, as ~:[something is ~
+                               still to be done~;~:*~{~A~^ and ~} did not end~]."
+                          seconds names))
+    nil))
+
+;; Plans first: what they have asked for by the time that they rest is seen then.
+(defun all-still-p (simulation)
+  "True if nothing that comes to an end is left in SIMULATION, and nobody who takes part in it is at
+work."
+  (asking (simulation)
+    (and (notany #'participant-at-work-p (simulation-participants simulation))
+         (settled-p simulation))))
+
+(defun wait-until-idle (simulation seconds)
+  "Do what AWAIT-IDLE says, for one that is live and passes its ticks in another thread."
+  (let ((idle (make-semaphore "idle")))
+    (flet ((look (simulation)
+             (when (settled-p simulation) (signal-semaphore idle))))
+      (in-any-case
+        (progn (add-observer #'look simulation)
+               (await-stillness idle seconds simulation))
+        (remove-observer #'look simulation)))))
+
+(defun await-stillness (idle seconds simulation)
+  "Wait until nothing is left to do in SIMULATION, at most SECONDS; true if so. The semaphore IDLE
+says that it may be so; plans come to rest without a word. Signals MISUSE if SIMULATION has failed."
+  (loop with due = (+ (seconds-now) seconds)
+        do (check-not-failed simulation)
+        thereis (all-still-p simulation)
+        while (and (< (seconds-now) due) (live-p simulation))
+        do (doubt-wait 'await-idle simulation)
+           (wait-patiently idle (min 0.02 (max 0 (- due (seconds-now)))))))
+
+(defun doubt-wait (operator simulation)
+  "Let OPERATOR not wait in vain for the live SIMULATION, if that is paused. Signal MISUSE if nobody
+is there who can let it go on; else queue a warning, once in a run."
+  (when (stands-still-p simulation)
+    (unless *waits-while-paused-p*
+      (reject-use "~(~A~): the run is paused, so nothing that this would wait for can happen. ~
+                   (resume) first." operator))
+    (let ((*message-queue* (simulation-messages simulation)))
+      (warn-once '(:waits-while-paused) (simulation-world simulation)
+                 (format nil "~(~A~) waits, as the run is paused; (resume), in another thread, ~
+                              lets it go on. Control-C ends the wait." operator)))))
+
+(defun check-not-failed (simulation)
+  "Signal MISUSE if the live SIMULATION has failed and is paused for that."
+  (let ((trouble (clock-trouble simulation)))
+    (when trouble
+      (reject-use "await-idle: the simulator has failed and is paused, so nothing goes on: ~A. ~
+                   (resume) lets it go on."
+                  (string-right-trim "." trouble)))))
