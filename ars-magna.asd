@@ -152,32 +152,24 @@
    (:module "src/experiment" :serial t
     :components ((:file "package")))
    (:module "src/experiment/question" :serial t
-    :components ((:file "values") (:file "condition") (:file "experiment") (:file "designs")
-                 (:file "clauses")
-                 (:file "defexperiment") (:file "question")))
+    :components ((:file "values") (:file "experiment") (:file "clauses")
+                 (:file "doubts") (:file "defexperiment")))
    (:module "src/experiment/trial" :serial t
-    :components ((:file "outcome") (:file "data") (:file "forms") (:file "sampling") (:file "trial")
-                 (:file "version") (:file "reaching") (:file "fingerprint")))
+    :components ((:file "outcome") (:file "data") (:file "trial") (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
-    :components ((:file "row") (:file "checking") (:file "lines") (:file "files")
-                 (:file "series-blocks") (:file "series-table") (:file "directory")
-                 (:file "origin") (:file "description") (:file "results") (:file "merging")
-                 (:file "shards")))
+    :components ((:file "rows") (:file "lines") (:file "series") (:file "directory")
+                 (:file "description") (:file "results") (:file "merging")))
    (:module "src/experiment/running" :serial t
-    :components ((:file "workers") (:file "progress") (:file "guarding")
-                 (:file "rounds") (:file "repeatable") (:file "running")))
+    :components ((:file "workers") (:file "repeatable") (:file "running")))
    (:module "src/experiment/report" :serial t
-    :components ((:file "scaling") (:file "estimates") (:file "summary") (:file "text-table")
-                 (:file "remarks") (:file "report")))
+    :components ((:file "estimates") (:file "text-table") (:file "report")))
    (:module "src/experiment/comparison" :serial t
-    :components ((:file "differences") (:file "contrasts") (:file "overall") (:file "figures")
-                 (:file "verdicts") (:file "comparison-table") (:file "levels") (:file "meaning")
-                 (:file "comparing") (:file "changes") (:file "comparing-versions")
-                 (:file "comparison-picture")))
+    :components ((:file "differences") (:file "contrasts") (:file "verdicts")
+                 (:file "meaning") (:file "comparing") (:file "comparison-picture")))
    (:module "src/experiment/pictures" :serial t
-    :components ((:file "panels") (:file "result-charts") (:file "pictures") (:file "ways-picture")))
+    :components ((:file "charts") (:file "pictures")))
    (:module "src/experiment/replay" :serial t
-    :components ((:file "aside") (:file "replaying") (:file "failures") (:file "trial-series")))
+    :components ((:file "replaying") (:file "failures")))
    (:module "src" :components ((:file "all"))))
   ;; The packages are locked once they are loaded.
   :perform (prepare-op (operation system)

@@ -255,7 +255,7 @@ describes a slot."
 
 (test escape-codes.are-known-to-one-file-of-the-prompt
   ;; The line that an experiment writes over must do without the prompt.
-  (is (equal '("src/experiment/running/progress.lisp" "cli/terminal/escapes.lisp")
+  (is (equal '("src/experiment/running/workers.lisp" "cli/terminal/escapes.lisp")
              (loop for path in (lisp-files "src/" "rpl/" "cli/" "worlds/")
                    for text = (base:read-file-into-string path)
                    when (or (search "#\\Escape" text :test #'char-equal)

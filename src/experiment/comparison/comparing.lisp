@@ -1,4 +1,4 @@
-;;;; comparing.lisp -- comparing conditions of an experiment, seed by seed.
+;;;; comparing.lisp -- comparing conditions, or two versions of the code, seed by seed.
 
 (in-package :ars-magna.experiment)
 
@@ -145,3 +145,165 @@ corrected for all tests together, those over all apart."
                    :sobol, let all that they sample vary together.)"
                   (nth place (results-factors results)) base))
     (comparison-of-conditions results pairs place names stream)))
+
+;;;; What has changed between two versions
+
+;;; The texts beside two tables say of what parts the fingerprints of their conditions are made. If
+;;; the text of the experiment itself is another, success may mean another thing in each: then the
+;;; ruler has changed, and not only what is measured with it. PAIRS are lists of a sample of the
+;;; newer table and one of the older.
+
+(defun changes-of-pair (pair after before)
+  "Return which parts differ between the conditions of PAIR, by the texts in the directories AFTER
+and BEFORE; :UNKNOWN if these do not say."
+  (let ((now (parts-described (sample-condition (first pair)) after))
+        (then (parts-described (sample-condition (second pair)) before)))
+    (if (and now then) (changed-parts then now) :unknown)))
+
+(defun changed-pairs (pairs)
+  (remove-if (lambda (pair)
+               (string= (sample-fingerprint (first pair)) (sample-fingerprint (second pair))))
+             pairs))
+
+(defun part-of-kind-p (kind part) (starts-with-subseq (format nil "~A " kind) part))
+
+(defun lines-only-in (lines others title)
+  "Return LINES that OTHERS lack, after TITLE, a few of them."
+  (let ((only (remove-if (lambda (line) (member line others :test #'string=)) lines)))
+    (append (loop for line in only
+                  repeat 5
+                  collect (format nil "~A: ~A" title (unbroken (cut line 88))))
+            (and (nthcdr 5 only) (list (format nil "~A: ..." title))))))
+
+(defun ruler-changes (after before)
+  (let ((now (form-described after)) (then (form-described before)))
+    (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it ~
+                       does, measures or counts as success may be another thing in each, so what ~
+                       differs below need not be due to the code.")
+          (append (lines-only-in then now "before") (lines-only-in now then "now")))))
+
+(defun parts-words (parts conditions)
+  (let ((others (remove-if (lambda (part) (part-of-kind-p "condition" part)) parts)))
+    (format nil "What differs between the tables, under ~D condition~:P: ~{~A~^, ~}."
+            conditions
+            (append others
+                    (and (/= (length others) (length parts))
+                         (list "the parameters, robots or values of conditions"))))))
+
+(defun leak-lines (pairs)
+  "Return lines that warn if trials of PAIRS, with equal fingerprints, have come out differently."
+  (let ((count (loop for (sample other) in pairs
+                     sum (loop for (i . j) in (common-trials sample other)
+                               count (not (same-row-p sample i other j))))))
+    (unless (zerop count)
+      (list (format nil "WARNING: and yet the rows of ~D trial~:P differ. Something that is in no ~
+                         fingerprint decides them, such as what trials leave to each other, a ~
+                         clock or a file, or rows have been changed. Neither table can be relied ~
+                         on." count)))))
+
+(defun changes-between (pairs after before)
+  "Return lines on what decides the trials of PAIRS in one table but not in the other, by the texts
+in the directories AFTER and BEFORE, which may be NIL."
+  (let* ((changed (changed-pairs pairs))
+         (changes (loop for pair in changed
+                        collect (if (and after before)
+                                    (changes-of-pair pair after before)
+                                    :unknown)))
+         (parts (remove-duplicates (apply #'append (remove :unknown changes))
+                                   :test #'string= :from-end t)))
+    (cond ((null changed)
+           (cons "Both tables are of the same code and configuration: the fingerprints are equal."
+                 (leak-lines pairs)))
+          ((null parts)
+           (list (format nil "What differs between the tables is not known: the fingerprints do, ~
+                              but no experiment.txt beside them says of what.")))
+          (t (append (and (some (lambda (part) (part-of-kind-p "experiment" part)) parts)
+                          (ruler-changes after before))
+                     (list (parts-words parts (length changed))))))))
+
+;;;; Comparing versions
+
+(defun results-given (operator name value)
+  "Return the results that VALUE, the argument NAME of OPERATOR, means, and what they are called."
+  (cond ((results-p value)
+         (values value (if (results-directory value)
+                           (native-name (results-directory value))
+                           (string-downcase name))))
+        ((typep value '(or string pathname))
+         (values (read-results value) (if (stringp value) value (native-name value))))
+        (t (reject-argument operator name value "the name of a directory, or results"))))
+
+(defun short-names (first second)
+  "Return the last parts of the names FIRST and SECOND if these tell them apart, else the names."
+  (flet ((last-part (name)
+           (let ((name (string-right-trim "/" name)))
+             (subseq name (1+ (or (position #\/ name :from-end t) -1))))))
+    (if (string= (last-part first) (last-part second))
+        (values first second)
+        (values (last-part first) (last-part second)))))
+
+(defun condition-pairs (first second)
+  "Return lists of samples of the results FIRST and SECOND that are of one condition; and the names
+of conditions that one of them lacks."
+  (flet ((called (sample results)
+           (find (sample-condition sample) (results-samples results)
+                 :key #'sample-condition :test #'string=)))
+    (values (loop for sample in (results-samples first)
+                  for other = (called sample second)
+                  when other collect (list sample other))
+            (mapcar #'sample-condition
+                    (append (remove-if (lambda (sample) (called sample second))
+                                       (results-samples first))
+                            (remove-if (lambda (sample) (called sample first))
+                                       (results-samples second)))))))
+
+(defun check-one-experiment (before after)
+  (let ((names (mapcar (lambda (results)
+                         (if (results-samples results)
+                             (sample-experiment (first (results-samples results)))
+                             (reject-use "There are no rows in a table to be compared.")))
+                       (list before after))))
+    (unless (apply #'string= names)
+      (reject-use "One table is of the experiment ~A and the other of ~A. Give two of one ~
+                   experiment."
+                  (first names) (second names)))
+    (first names)))
+
+(defun comparison-of-versions (before after before-name after-name names stream)
+  "Return the comparison of the results BEFORE and AFTER, which are called so, in what NAMES say,
+and print it to STREAM, if any."
+  (multiple-value-bind (first second) (short-names after-name before-name)
+    (multiple-value-bind (pairs lacking) (condition-pairs after before)
+      (let* ((experiment (check-one-experiment before after))
+             (contrasts (loop for (sample other) in pairs
+                              for contrast = (make-contrast (sample-condition sample) first second)
+                              collect (contrast-samples contrast after sample before other
+                                                        names))))
+        (end-comparison
+         (make-comparison
+          experiment (format nil "~A against ~A, before" after-name before-name)
+          :versions contrasts
+          :overall (and (worth-overall-p contrasts)
+                        (list (overall-contrast first second pairs names after before)))
+          :changes (changes-between pairs (results-directory after) (results-directory before))
+          :notes (and lacking
+                      (list (format nil "Only one of them has the condition~P ~{~A~^, ~}."
+                                    (length lacking) lacking))))
+         stream "~A and ~A have no trials of equal condition and seed." before-name after-name)))))
+
+(addition compare-results)
+(defun compare-results (before after &key measure (stream *standard-output*))
+  "Compare two tables of one experiment that two versions of the code have made: BEFORE and AFTER
+are directories, or results. Trials of equal condition and seed are compared, per condition and over
+all conditions, where each seed counts once. Differences are AFTER less BEFORE. It is said which
+conditions got better or worse, and how many trials are the same to the last bit: rows with equal
+digest, outcome and measures; and, by the texts beside the tables, what has changed in between, with
+a warning if that is the experiment itself. The other arguments, the value and the errors are those
+of COMPARE-CONDITIONS; DAMAGED-TABLE and MISUSE, too, as READ-RESULTS, and if the tables are of
+different experiments."
+  (check-stream 'compare-results stream)
+  (multiple-value-bind (old old-name) (results-given 'compare-results 'before before)
+    (multiple-value-bind (new new-name) (results-given 'compare-results 'after after)
+      (comparison-of-versions old new old-name new-name
+                              (compared-names 'compare-results (list new old) measure)
+                              stream))))

@@ -2,6 +2,52 @@
 
 (in-package :ars-magna.experiment)
 
+;;; Of means all numbers have the same last decimal, which has a negative number above the point. It
+;;; shows the width of the interval, or if that is nothing the difference, with two digits.
+
+(defun last-decimal (size)
+  "Return which decimal is the second digit of SIZE."
+  (- 1 (power-of-ten (rational size))))
+
+(defun decimals-known (difference)
+  "Return which decimal is the last that the numbers of DIFFERENCE, of means, are worth."
+  (let* ((low (paired-low difference)) (high (paired-high difference))
+         (width (if low (number-less high low) 0))
+         (reach (find-if-not #'zerop (list (paired-estimate difference)
+                                           (paired-first difference)))))
+    (cond ((plusp width)
+           (min (last-decimal width)
+                (max 6 (+ 5 (last-decimal (max (abs low) (abs high)))))))
+          (reach (max (last-decimal reach) (min 3 (+ 13 (last-decimal reach)))))
+          (t 3))))
+
+(defun power-text (number decimals)
+  "Return NUMBER with a power of ten, up to its last of DECIMALS."
+  (let* ((power (power-of-ten number))
+         (text (decimal-text (/ number (expt 10 power)) (max 0 (+ decimals power)))))
+    (format nil "~Ae~D" (without-zeros text) power)))
+
+(defun mean-text (value decimals)
+  "Return VALUE, a mean or a difference, in DECIMALS; with a power of ten if it is far from 1."
+  (let* ((unit (expt 10 (- decimals)))
+         (number (* unit (round (rational value) unit))))
+    (cond ((and (zerop number) (< 9 decimals)) "0")
+          ;; Beside very large numbers a small one is not nothing.
+          ((and (zerop number) (minusp decimals) (not (zerop value))) (figure-text value :digits 2))
+          ((or (zerop number) (<= -6 (power-of-ten number) 14))
+           (decimal-text number (max 0 decimals)))
+          (t (power-text number decimals)))))
+
+(defun number-writer (difference)
+  "Return a function that writes the numbers of DIFFERENCE, without units."
+  (cond ((eq :rate (paired-kind difference))
+         (lambda (value) (hundredths-text value (paired-trials difference))))
+        ((plusp (or (paired-rounding difference) 0)) #'number-text)
+        (t (let ((decimals (if (paired-first difference) (decimals-known difference) 0)))
+             (lambda (value) (mean-text value decimals))))))
+
+;;;; Verdicts
+
 ;;; Parts of sentences.
 
 (defun p-figure (p)
@@ -210,3 +256,77 @@ alone."
           (comparison-notes comparison)
           (loop for contrast in (comparison-contrasts comparison)
                 append (left-out-notes contrast))))
+
+;;;; PRINT-COMPARISON
+
+(defparameter *headings* '("measure" "seeds" "first" "second" "difference" "p" "p alone"))
+
+(defun table-row (difference)
+  (let ((write (number-writer difference)) (rate-p (eq :rate (paired-kind difference))))
+    (flet ((text (value) (if value (funcall write value) "-")))
+      (list (paired-measure difference) (integer-text (paired-trials difference))
+            (format nil "~A~:[~; %~]" (text (paired-first difference)) rate-p)
+            (format nil "~A~:[~; %~]" (text (paired-second difference)) rate-p)
+            (format nil "~A (~A to ~A)" (text (paired-estimate difference))
+                    (text (paired-low difference)) (text (paired-high difference)))
+            (bare-p (paired-adjusted-p difference)) (bare-p (paired-p difference))))))
+
+(defun contrast-heading (contrast)
+  (let ((table (let ((success (difference-called "success" contrast)))
+                 (and success (paired-table success)))))
+    (format nil "~@[~A: ~]~A (first) against ~A~:[~; (the same)~]~@[: ~{both ~D, only the first ~
+                 ~D, only the second ~D, neither ~D~}~]"
+            (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
+            (same-runs-p contrast) table)))
+
+(defun write-table (comparison stream)
+  (let* ((groups (loop for contrast in (all-contrasts comparison)
+                       collect (mapcar #'table-row (contrast-differences contrast))))
+         (columns (apply #'mapcar (lambda (heading &rest texts)
+                                    (make-text-column heading texts
+                                                      :whole-p t
+                                                      :anchor (if (string= "measure" heading)
+                                                                  :start
+                                                                  :end)))
+                         *headings* (apply #'append groups))))
+    (write-cells (mapcar #'list *headings*) columns stream)
+    (loop for contrast in (all-contrasts comparison)
+          for rows in groups
+          do (format stream "~A~%" (contrast-heading contrast))
+             (dolist (row rows) (write-cells (mapcar #'list row) columns stream)))))
+
+(defun method-words (comparison)
+  (format nil "Differences are first less second, seed by seed, each with its own 95 % interval: ~
+               of rates Newcombe's and McNemar's exact test, of means Student's and a permutation ~
+               test (of equal distributions: skewed numbers can differ in that while their ~
+               averages are equal). p: as one of ~D test~:P~@[, over all of ~D~], by Holm's ~
+               correction (alone: without it)."
+          (length (tested-differences (comparison-contrasts comparison)))
+          (and (comparison-overall comparison)
+               (length (tested-differences (comparison-overall comparison))))))
+
+(addition print-comparison)
+(defun print-comparison (comparison &optional (stream *standard-output*))
+  "Write COMPARISON to STREAM: a line that says what is compared, and what the experiment asks, if
+that is known; of versions what has changed between them; the verdicts (see COMPARISON-VERDICTS), a
+line each; what was left out, if anything; and a table, with a line for each pair of conditions, how
+many trials succeeded in both, one and neither of them, and below it a row for each measure: over
+how many seeds, both rates or means, the difference (of rates in points) with its 95 % interval, and
+p after and before Holm's correction for all tests. Return COMPARISON."
+  (check-argument print-comparison comparison (comparison-p comparison) "a comparison")
+  (write-wrapped (format nil "The experiment ~A, seed by seed~@[: ~A~]."
+                         (comparison-experiment comparison) (comparison-sides comparison))
+                 stream)
+  (let ((question (question-of (comparison-experiment comparison))))
+    (when question (write-wrapped question stream)))
+  (when (comparison-changes comparison) (terpri stream))
+  (dolist (text (comparison-changes comparison)) (write-wrapped text stream))
+  (terpri stream)
+  (dolist (text (comparison-verdicts comparison)) (write-wrapped text stream))
+  (format stream "~@[~%~{~A~%~}~]" (comparison-remarks comparison))
+  (when (tested-differences (all-contrasts comparison))
+    (terpri stream)
+    (write-table comparison stream)
+    (terpri stream)
+    (write-wrapped (method-words comparison) stream))
+  comparison)

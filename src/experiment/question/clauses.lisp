@@ -2,7 +2,90 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(doubt-nested-run))
+;;;; Designs: samples from ranges, in place of all combinations
+
+;;; In :VARY stands (KIND N range...) or (KIND N :SEED seed range...). A RANGE is (what low high),
+;;; or that with a word behind it: :INTEGER or :LOG.
+
+(defparameter *designs* '(:latin-hypercube :sobol :random) "The kinds of designs.")
+(defparameter *scales* '(:integer :log) "What may stand behind a range.")
+(defconstant +most-points+ 100000 "How many points a design may have.")
+
+(defparameter *design-usage*
+  "(:sobol n (what low high)...), or :latin-hypercube or :random, with N from 1 to 100000, perhaps ~
+   (:sobol n :seed integer ...), and :integer or :log behind a range")
+
+(defun design-part-p (part)
+  (member (first part) *designs*))
+
+(defun design-ranges (part)
+  (if (eq :seed (third part)) (cddddr part) (cddr part)))
+
+(defun design-seed (part)
+  (if (eq :seed (third part)) (fourth part) 0))
+
+(defun part-names (part)
+  (if (design-part-p part)
+      (mapcar #'first (design-ranges part))
+      (list (first part))))
+
+(defun range-p (form)
+  (and (proper-list-p form)
+       (or (= 3 (length form))
+           (and (= 4 (length form)) (member (fourth form) *scales*)))))
+
+;;; Values. They are rounded, so that conditions have short names.
+
+(defconstant +design-digits+ 6 "How many digits the numbers of designs have.")
+
+(defun check-bounds (definition range low high)
+  (let* ((scale (fourth range))
+         (expected (cond ((not (and (quantity-p low) (quantity-p high) (< low high)))
+                          "two numbers, from -1e15 to 1e15, the lower one first")
+                         ((and (eq :integer scale) (notevery #'integerp (list low high)))
+                          "two integers")
+                         ((and (eq :log scale) (not (plusp low))) "two numbers above 0"))))
+    (when expected
+      (reject-clause definition range
+                     (format nil "~A; not ~A and ~A" expected (safe-text low) (safe-text high))))))
+
+(defun rounded-to (value power)
+  "Return VALUE rounded to 10^POWER, a double-float."
+  (let ((step (expt 10 power)))
+    (float (* step (round (rational value) step)) 1d0)))
+
+(defun value-between (low high scale share)
+  "Return the number that has SHARE, from 0 to below 1, of what is between LOW and HIGH before it."
+  (ecase scale
+    (:integer (+ low (floor (* (rational share) (- (1+ high) low)))))
+    (:log (let* ((start (logarithm (float low 1d0)))
+                 (value (exponential (+ start (* share (- (logarithm (float high 1d0)) start))))))
+            (rounded-to value (- (power-of-ten (rational value)) (1- +design-digits+)))))
+    ((nil) (let ((width (- (rational high) (rational low))))
+             (rounded-to (+ (rational low) (* (rational share) width))
+                         (- (power-of-ten width) (1- +design-digits+)))))))
+
+(defun settings-at (point ranges bounds)
+  "Return lists (name value) for POINT, which has a share of each of RANGES between its BOUNDS."
+  (loop for share in point
+        for (name nil nil scale) in ranges
+        for (low high) in bounds
+        collect (list name (value-between low high scale share))))
+
+(defun design-choices (definition part bounds)
+  "Return lists of settings, one for each point of the design PART, whose ranges have BOUNDS, lists
+(low high). Points that come twice, as those of few integers do, count once."
+  (let ((ranges (design-ranges part)))
+    (loop for range in ranges
+          for (low high) in bounds
+          do (check-bounds definition range low high))
+    (remove-duplicates
+     (loop for point in (design-points (first part) (second part) (length ranges)
+                                       (design-seed part))
+           collect (settings-at point ranges bounds))
+     :test #'equal :from-end t)))
+
+;;;; All clauses
 
 (defparameter *clauses*
   '((:robots "(:robots name...), robots of one map")
@@ -162,56 +245,6 @@ true of; or about CLAUSE if there is none at all."
   (remove-if (lambda (name) (or (surrounding-p name) (parameter-called name)))
              (varied-names clauses)))
 
-(defun mentioned-p (name tree)
-  (cond ((consp tree) (loop while (consp tree)
-                            thereis (mentioned-p name (pop tree))))
-        (t (eq name tree))))
-
-(defun doubt-unused (clauses)
-  "Warn of variables that no form of CLAUSES mentions."
-  (dolist (name (varied-variables clauses))
-    (unless (or (special-p name)
-                (loop for key in '(:run :until :success :measure :each-tick)
-                      thereis (mentioned-p name (clause-called key clauses))))
-      (doubt-definition "~A is varied, but no form mentions it.~@[ Did you mean the parameter ~
-                         ~A?~]"
-                        name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
-
-(defun doubt-unnamed (key clauses)
-  "Warn of a call with a robot in the clause KEY of CLAUSES without a name before it."
-  (loop with robots = (clause-called :robots clauses)
-        for (name form) in (clause-called key clauses)
-        when (and (fboundp name) (symbolp form) (member form robots))
-          do (doubt-definition "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
-                                it first: (~(~S~) (NAME (~A ~A)))."
-                               name form name form key name form)))
-
-(defun doubt-nested-run (forms)
-  "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
-  (when (mentioned-p 'with-simulation forms)
-    (doubt-definition "a trial is a run of its own, and a with-simulation in it another one, which ~
-                       has the same seed in each trial, and of which measures see nothing. Leave ~
-                       with-simulation out: (run-plan ...) alone.")))
-
-;;; A plan's name.
-
-(defun quoted-name (form)
-  "Return the symbol that FORM, 'NAME or #'NAME, is of, or NIL."
-  (and (typep form '(cons (member quote function) (cons symbol null))) (second form)))
-
-(defun run-plan-text (name)
-  "Return in words how the clause :run lets a trial run the plan NAME."
-  (format nil "(:run (run-plan '~(~A~) ...)), with the plan's arguments: the name ~:*~(~A~) alone ~
-               runs nothing" name))
-
-(defun check-runs (definition clause)
-  "Signal MALFORMED-DEFINITION if CLAUSE, :run, has no more than the name of a plan."
-  (let ((name (and (null (cddr clause)) (quoted-name (second clause)))))
-    (when (and name (find-procedure name nil))
-      (reject-clause definition clause (run-plan-text name))))
-  (let ((advice (test-advice (first (last clause)))))
-    (when advice (doubt-definition "~A, :run: ~A" definition advice))))
-
 ;;; All of them.
 
 (defun check-columns (definition taken clauses key)
@@ -240,49 +273,6 @@ CLAUSES vary, and what the clause KEY names."
 (defun seconds-p (value)
   "True if VALUE is how many seconds something may take."
   (and (quantity-p value) (<= 1/1000 value +largest+)))
-
-(defun doubt-truth-of-plan (form)
-  "Warn if FORM, the last one of :run, is true if a plan's value is, as that of a failed one is."
-  (when (and (typep form '(cons symbol (cons (cons symbol) (cons (eql t) (or null (cons null))))))
-             (same-name-p 'if (first form))
-             (same-name-p 'run-plan (first (second form))))
-    (let ((*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 10000))
-      (doubt-definition ":run: a plan that fails has its failure as the value, which is true, so ~
-                         that ~S is T then. Write only ~S, whose second value says how it ended, ~
-                         or a clause (:success form)." (abridged form) (abridged (second form))))))
-
-(defun number-as-test-advice (form)
-  "Return in sentences that FORM, a test, gives a number; else NIL."
-  (when (or (realp form)
-            (and (consp form) (member (first form) '(length count + - * floor round abs))))
-    (let ((*print-case* :downcase) (*print-pretty* nil))
-      (format nil "~S is a number, which counts as true, also if it is 0. Compare it, as in ~
-                   (< 0 ~:*~S)." form))))
-
-(defun plan-as-test-advice (form)
-  "Return in sentences that FORM, a test, is true if a plan fails; else NIL."
-  (when (and (consp form) (symbolp (first form)) (same-name-p 'run-plan (first form)))
-    (format nil "a plan that fails has its failure as the value, which is true. Let the call of ~
-                 RUN-PLAN be the last form of :run: its second value says how it ended.")))
-
-(defun first-value-p (form)
-  "True if FORM gives the first value of :run, or of RUN-PLAN."
-  (flet ((call-p (form name) (and (typep form '(cons symbol)) (same-name-p name (first form)))))
-    (or (call-p form 'run-plan)
-        (and (or (call-p form 'first) (call-p form 'car))
-             (call-p (second form) 'trial-values)))))
-
-(defun state-as-test-advice (form)
-  "Return in sentences that FORM compares the first value of a plan with how plans end; else NIL."
-  (block advice
-    (map-comparisons (lambda (subject word comparison)
-                       (declare (ignore comparison))
-                       (when (and (first-value-p subject) (member word '(:succeeded :failed)))
-                         (return-from advice
-                           (format nil "RUN-PLAN returns ~(~S~) as its second value. Write ~
-                                        (eq (second (trial-values)) ~:*~(~S~))." word))))
-                     form)
-    nil))
 
 (defun check-clause (definition clause)
   (ecase (first clause)
@@ -317,27 +307,6 @@ CLAUSES vary, and what the clause KEY names."
                  (lambda (part) (and (proper-list-p part) (= 2 (length part))
                                      (symbolp (first part)) (first part))))
      (dolist (part (rest clause)) (doubt-quoted-measure definition part)))))
-
-(defun check-test (definition clause)
-  "Signal MALFORMED-DEFINITION unless CLAUSE has one form, and warn if that is no test."
-  (unless (= 2 (length clause)) (reject definition clause))
-  (let* ((test (second clause))
-         (doubt (or (test-doubt test)
-                    (test-advice test)
-                    (number-as-test-advice test)
-                    (state-as-test-advice test)
-                    (plan-as-test-advice test))))
-    (when doubt (doubt-definition "~A: ~(~S~): ~A" definition (first clause) doubt))))
-
-(defun doubt-quoted-measure (definition part)
-  "Warn if the form in PART, (name form), is quoted: the measure is that form then."
-  (let ((name (quoted-name (second part))))
-    (when (or (typep (second part) '(cons (eql quote) (cons cons null)))
-              (and name (fboundp name)))
-      (let ((*print-case* :downcase) (*print-pretty* nil))
-        (doubt-definition "~A: the measure ~(~A~) is quoted, and so no value. Write the form ~
-                           alone: ~:[~S~;(~S ...)~]."
-                          definition (first part) name (or name (second (second part))))))))
 
 (defun check-whole (definition name clauses)
   (check-clauses definition clauses)

@@ -2,6 +2,41 @@
 
 (in-package :ars-magna.experiment)
 
+;;; Large numbers are multiplied by a power of two, which changes no digit. Results are divided by
+;;; it. Beside them, what is some 1e250 times smaller counts as 0.
+
+(defun nearest-float (number)
+  "Return the double-float nearest to NUMBER; the same number, exact, if it is too large for one."
+  (if (finite-p number) (double number) number))
+
+(defun number-less (a b)
+  "Return A less B: a float if one of them is, unless it is too large for one."
+  (if (and (rationalp a) (rationalp b))
+      (- a b)
+      (nearest-float (- (rational a) (rational b)))))
+
+(defun scale-for (numbers)
+  "Return by which power of two to multiply NUMBERS so that none is above 5e14 either way."
+  (let ((largest (reduce #'max numbers :key #'abs :initial-value 0)))
+    (if (<= largest (/ +largest-quantity+ 2))
+        1
+        (expt 2 (- 48 (integer-length (ceiling (rational largest))))))))
+
+(defun scaled (number scale)
+  "Return NUMBER times SCALE; 0 if that is too small for a float."
+  (if (= 1 scale)
+      number
+      (let ((product (* (rational number) scale)))
+        (if (< (abs product) #.(expt 2 -900)) 0 (double product)))))
+
+(defun unscaled (number scale)
+  "Return NUMBER divided by SCALE; NIL of NIL."
+  (if (or (null number) (= 1 scale))
+      number
+      (nearest-float (/ (rational number) scale))))
+
+;;;; Estimates
+
 ;;; What was measured is a rate if it was always true or false. If there are numbers in it, it is
 ;;; their mean: what else there is besides is left out, and counted. Else it is texts. This goes by
 ;;; all conditions together, so that the same is said of each. :NONE was not measured.
@@ -104,3 +139,94 @@ that has one of this, too, in a column beside its own. Return KIND."
                (estimate-by :mean name numbers confidence (- (length values) (length numbers)))))
       (:texts (make-estimate name kind (length values)
                              :texts (tally (cl:map 'list #'value-text values)))))))
+
+;;;; Summaries of conditions
+
+;;; An error in a trial's own code counts as no success. Where trials were added until intervals
+;;; were narrow, all intervals of a condition have the confidence of the look that it stopped at.
+
+(addition summary-p)
+(define-record summary
+  "What came of the trials of one condition, as SUMMARIZE-RESULTS says it."
+  (condition "" string "what the condition is called, a string" :addition)
+  (texts '() list "the values of what varies, strings as they stand in the table" :addition)
+  (trials 0 integer "how many trials there are" :addition)
+  (failures 0 integer "how many trials failed" :addition)
+  (limits 0 integer "how many trials came to the limit of ticks" :addition)
+  (errors 0 integer "how many trials broke off with an error" :addition)
+  (timeouts 0 integer "how many trials took too long by the clock")
+  (confidence .95d0 double-float "which confidence the intervals have, .95 as a rule" :addition)
+  (success nil estimate "the estimate of how often trials succeed" :addition)
+  (ticks nil estimate "the estimate of how many ticks those trials take that succeed" :addition)
+  (measures '() list "a list of the estimates of what was measured, in the table's order" :addition)
+  (reasons '() list
+           "an alist from the reasons of failure to how often each was, commonest first" :addition))
+
+(defmethod print-object ((summary summary) stream)
+  (print-unreadable-object (summary stream)
+    (format stream "~A, ~D trials" (summary-condition summary) (summary-trials summary))))
+
+(defun count-outcomes (outcome sample)
+  (count outcome (sample-outcomes sample) :test #'string=))
+
+(defun values-where (test sample values)
+  "Return a vector of those of VALUES, a vector, whose trials in SAMPLE have an outcome that passes
+TEST."
+  (let ((outcomes (sample-outcomes sample)))
+    (coerce (loop for value across values
+                  for outcome across outcomes
+                  when (funcall test outcome) collect value)
+            'vector)))
+
+(defun failed-p (outcome) (string= "failure" outcome))
+
+(defun look-after (trials)
+  "Return which look is the one after TRIALS of each condition, or NIL."
+  (loop for look from 1
+        for count = (count-at-look look)
+        while (<= count trials)
+        when (= count trials) return look))
+
+(defun confidence-for (results sample)
+  (let ((look (and (results-until results) (look-after (length (sample-trials sample))))))
+    (if look (confidence-at-look look) .95d0)))
+
+(defun summarize-sample (sample names kinds confidence)
+  (let ((trials (length (sample-trials sample))))
+    (make-summary
+     :condition (sample-condition sample) :texts (sample-texts sample)
+     :trials trials
+     :failures (count-outcomes "failure" sample) :limits (count-outcomes "limit" sample)
+     :errors (count-outcomes "error" sample) :timeouts (count-outcomes "timeout" sample)
+     :confidence confidence
+     :success (estimate-by :rate "success" (cl:map 'vector #'success-p (sample-outcomes sample))
+                           confidence)
+     :ticks (estimate-by :median "ticks" (values-where #'success-p sample (sample-ticks sample))
+                         confidence)
+     :measures (loop for name in names
+                     for kind in kinds
+                     for column in (sample-measures sample)
+                     collect (estimate-of-values name kind column confidence))
+     :reasons (tally (values-where #'failed-p sample (sample-reasons sample))))))
+
+(addition summarize-results)
+(defun summarize-results (results)
+  "Return what came of an experiment, of which RUN-EXPERIMENT, READ-RESULTS or MERGE-RESULTS has
+returned RESULTS: a list of summaries, one for each condition, in the table's order. Success is a
+rate of all trials, with Wilson's interval; what broke off with an error did not succeed. Ticks are
+the median of the trials that succeeded, with its interval by ranks. What was measured is a rate if
+it was always true or false; the mean, with Student's interval, if there are numbers in it, without
+what else there is besides; else texts, with how often there are such. What was :NONE, or not
+measured as an error came before, does not count. Intervals have a confidence of 95 %; if trials
+were added until they were narrow, that of the look at which a condition stopped, so that the
+intervals of a condition at all its looks together err in 5 of 100 runs at most. Each condition has
+that confidence by itself; that none of a table's intervals errs has less."
+  (check-argument summarize-results results (results-p results) "results")
+  (let* ((samples (results-samples results))
+         (names (results-measures results))
+         (kinds (loop for place from 0 below (length names)
+                      collect (kind-of-values (loop for sample in samples
+                                                    collect (nth place
+                                                                 (sample-measures sample)))))))
+    (loop for sample in samples
+          collect (summarize-sample sample names kinds (confidence-for results sample)))))

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(shard-directory directories-with-rows count-rows trials-in-shard-p missing-shards
+          check-same-code))
+
 (defun copy-description (directories target)
   "Let TARGET have the text of what decides a table that one of DIRECTORIES has, the first one."
   (let ((file (find-if #'existing-path (mapcar #'description-file directories)))
@@ -57,3 +60,100 @@ directories has series of a condition, TO has none of it."
        (copy-description sources target))
      target)
     (read-results target)))
+
+;;;; Shards
+
+;;; Shard I of N keeps its table in a directory shard-I-of-N below that of the whole, where all of
+;;; them are put together. What there is of any of them counts as there.
+
+(defun shard-directory (directory index count)
+  "Return the name of the directory of the shard INDEX of COUNT below DIRECTORY."
+  (native-name (file-in (directory-called directory)
+                        (format nil "shard-~D-of-~D/" index count))))
+
+(defun directories-with-rows (directory)
+  "Return the names of DIRECTORY and the directories of shards below it, those that have rows."
+  (let* ((path (directory-called directory))
+         (shards (remove-if-not (lambda (path)
+                                  (starts-with-subseq "shard-"
+                                                      (car (last (pathname-directory path)))))
+                                (uiop:subdirectories path))))
+    (loop for directory in (cons path (sort (mapcar #'native-name shards) #'string<))
+          for file = (existing-path (rows-file (directory-called directory)))
+          when (and file (plusp (count-whole-lines file)))
+            collect (native-name directory))))
+
+(defun count-whole-lines (file)
+  (let ((count 0))
+    (map-lines (lambda (line start number)
+                 (declare (ignore line start))
+                 (setf count number))
+               file)
+    count))
+
+(defun count-rows (directory)
+  "Return how many rows there are in DIRECTORY and the shards below it, those of one trial once for
+each table that has it."
+  (loop for directory in (directories-with-rows directory)
+        sum (1- (count-whole-lines (rows-file (directory-called directory))))))
+
+;;; What is there, and what is missing.
+
+(defun trials-in-shard-p (shard trials)
+  "True if there are any of TRIALS trials, from 1, in SHARD, a cons (index . count)."
+  (<= 1 (if (zerop (car shard)) (cdr shard) (car shard)) trials))
+
+(defun map-rows-there (function experiment directory)
+  "Call FUNCTION with the condition, the number of the trial and the fingerprint of each row in
+DIRECTORY and the shards below it that is of EXPERIMENT, the name of the directory it is in, and
+whether its series is there. Tables with other columns have none."
+  (let* ((columns (columns experiment)) (seed (seed-column columns)))
+    (dolist (name (directories-with-rows directory))
+      (let* ((file (rows-file (directory-called name)))
+             (own-p (equal columns (header-of file)))
+             (series (and own-p (series-there experiment (directory-called name)))))
+        (when own-p
+          (do-rows (texts file)
+            (let ((condition (condition-of-texts experiment texts)))
+              (when condition
+                (funcall function condition (parse-integer (nth (1+ seed) texts))
+                         (second texts) name (series-complete-p series texts))))))))))
+
+(defun own-fingerprint-p (condition fingerprint)
+  (string= fingerprint (condition-fingerprint condition)))
+
+(defun presence-below (experiment directory)
+  "Return which trials of EXPERIMENT have rows, and series, in DIRECTORY and the shards below it."
+  (let ((presence (make-presence)))
+    (map-rows-there (lambda (condition trial fingerprint directory complete-p)
+                      (declare (ignore directory))
+                      (when (and complete-p (own-fingerprint-p condition fingerprint))
+                        (note-present condition trial presence)))
+                    experiment directory)
+    presence))
+
+(defun missing-shards (experiment trials count directory)
+  "Return the numbers, from 0, of those of COUNT shards of TRIALS trials of each condition of
+EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
+  (prepare-experiment experiment)
+  (let ((presence (presence-below experiment directory))
+        (missing (make-array count :element-type 'bit)))
+    (loop for trial from 1 to trials
+          do (unless (every (lambda (condition) (present-p condition trial presence))
+                            (experiment-conditions experiment))
+               (setf (aref missing (mod trial count)) 1)))
+    (loop for shard below count
+          when (plusp (aref missing shard)) collect shard)))
+
+(defun check-same-code (experiment directory)
+  "Signal MISUSE if there are rows in DIRECTORY or the shards below it that EXPERIMENT, as it is
+now, could not be gone on with, and DAMAGED-TABLE if they have other columns."
+  (let ((parts (loop for condition in (experiment-conditions experiment)
+                     collect (prepare-condition experiment condition))))
+    (dolist (name (directories-with-rows directory))
+      (check-beginning (rows-file (directory-called name)) (columns experiment)))
+    (map-rows-there (lambda (condition trial fingerprint name complete-p)
+                      (declare (ignore trial complete-p))
+                      (unless (own-fingerprint-p condition fingerprint)
+                        (reject-foreign experiment condition parts (directory-called name))))
+                    experiment directory)))

@@ -4,6 +4,200 @@
 
 (export '(settle-fingerprints prepare-condition))
 
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defparameter *deciding-folders*
+    '("src/host/" "src/basics/" "src/definitions/" "src/copying/" "src/geometry/"
+      "src/nisp/" "src/world/" "src/time/" "src/robot/" "src/command/" "src/run/"
+      "rpl/fluents/" "rpl/tasks/" "rpl/language/" "rpl/constructs/" "rpl/robot/")
+    "The folders of the simulator whose code decides what becomes of a run.")
+
+  (defun digest-of-folders (root)
+    "Return one number for all code in *DECIDING-FOLDERS* under ROOT."
+    (ldb (byte 64 0)
+         (loop for folder in *deciding-folders*
+               sum (loop for file in (directory (merge-pathnames "*.lisp"
+                                                                 (merge-pathnames folder root)))
+                         sum (file-digest file))))))
+
+;; All these files are compiled before this one, and it is compiled again when one of them is.
+(defparameter *simulator-digest*
+  (macrolet ((digest ()
+               (digest-of-folders
+                (merge-pathnames "../../../" (or *compile-file-truename* *load-truename*)))))
+    (digest))
+  "A number for the simulator's own code.")
+
+(defparameter *simulator-version*
+  (macrolet ((version () (asdf:component-version (asdf:find-system "ars-magna"))))
+    (version))
+  "The version that the system's definition gives.")
+
+;;;; Which code of users a function can reach
+
+;;; From a function one reaches what its compiled code refers to; from a symbol the function, macro
+;;; and value that it names, and whatever definitions are called so; from a plan the words of its
+;;; text. What belongs to the simulator and to Lisp is known by its locked package and left alone.
+;;; What is looked up in other ways, by a name put together from pieces, or as a function in a table
+;;; or structure, is not reached.
+
+(defstruct (reach (:constructor make-reach ()) (:copier nil))
+  "What has been reached: definitions, lists (kind name number); the files that it is from; special
+variables; such lists for what variables hold weakly."
+  (seen (make-hash-table :test 'eq) :read-only t)
+  (parts '() :type list)
+  (files '() :type list)
+  (variables '() :type list)
+  (weak-parts (make-hash-table :test 'equal) :read-only t))
+
+(defun note-part (kind name number reach)
+  (pushnew (list kind name number) (reach-parts reach) :test #'equal))
+
+(defun note-file (file written reach)
+  "Note that something reached is from FILE, which was loaded as WRITTEN at that time, if known."
+  (let ((known (find file (reach-files reach) :key #'first :test #'string=)))
+    (cond ((null known) (push (list file written) (reach-files reach)))
+          (written (setf (second known) written)))))
+
+;;; What was typed has no file. Of a function nothing is left then but what it does. So each counts
+;;; as itself: typed anew, it is another, and in another Lisp, too.
+
+(defvar *typed-functions* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "Numbers of functions that were typed.")
+
+(defun typed-number (function)
+  (or (gethash function *typed-functions*)
+      (setf (gethash function *typed-functions*) (unheard-of-number))))
+
+;;; Visiting.
+
+(defun first-visit-p (object reach)
+  (not (shiftf (gethash object (reach-seen reach)) t)))
+
+(defun visit-function (function name reach)
+  "Visit FUNCTION, called NAME, or NIL if it is only a part of another."
+  (when (first-visit-p function reach)
+    (cond ((typep function 'generic-function)
+           (dolist (method (code-references function)) (visit-function method name reach)))
+          (t (when name (note-origin function name reach))
+             (dolist (object (code-references function)) (visit object reach))))))
+
+(defun note-origin (function name reach)
+  (multiple-value-bind (file written) (function-file function)
+    (if file
+        (note-file file written reach)
+        (note-part :typed (safe-text name) (typed-number function) reach))))
+
+(defun note-function (function name reach)
+  "Note FUNCTION, which is called NAME, if its file does not say all: it was not defined so, but put
+there, as by a trial, or it has closed over something."
+  (let ((own-name (nth-value 2 (function-lambda-expression function)))
+        (values (closed-over function)))
+    (unless (or (typep function 'generic-function)
+                (and (eq name own-name) (null values)))
+      (note-part :function (qualified name) (data-number values) reach))))
+
+(defun note-weak (object symbol reach)
+  "Note what OBJECT, which is in the value of the variable SYMBOL, holds if it is weak."
+  (when (and (weak-p object) (first-visit-p object reach))
+    (dolist (number (weak-numbers object (lambda (atom) (note-weak atom symbol reach))))
+      (setf (gethash (list :variable (qualified symbol) number) (reach-weak-parts reach)) t))))
+
+(defun visit-variable (symbol reach)
+  "Visit the variable SYMBOL and what is in its value, which is a part if it is data. NIL and an
+empty table count as no data, since they often stand where a table or structure is filled later."
+  (unless (eq :global (variable-kind symbol)) (push symbol (reach-variables reach)))
+  (let ((value (global-value symbol)))
+    (flet ((visit-atom (atom)
+             (if (typep atom '(or symbol function))
+                 (visit atom reach)
+                 (note-weak atom symbol reach))))
+      (cond ((functionp value) (visit-function value symbol reach))
+            ((no-data-p value) (note-weak value symbol reach))
+            (t (let ((number (call-walking value #'visit-atom)))
+                 (when number (note-part :variable (qualified symbol) number reach))))))))
+
+;; What an experiment varies, and how often it is tried, decides no trial.
+(defun visit-definition (entry reach)
+  "Visit what ENTRY, of a registry, says, if that is a user's."
+  (let ((object (entry-object entry)))
+    (when (and (not (experiment-p object)) (users-p entry) (first-visit-p entry reach))
+      (note-part (type-of object) (qualified (entry-name entry)) (or (entry-digest entry) 0) reach)
+      (let ((file (source-file (entry-source entry))))
+        (when file (note-file file nil reach)))
+      (if (procedure-p object)
+          (visit (procedure-source object) reach)
+          (visit-slots object reach)))))
+
+(defun visit-slots (object reach)
+  (dolist (slot (class-slot-names (class-of object)))
+    (let ((value (slot-value object slot)))
+      (cond ((functionp value) (visit-function value nil reach))
+            ((consp value) (visit-holders value reach))))))
+
+(defun visit-holders (list reach)
+  "Visit the functions in LIST, and those that structures in it hold, as methods do."
+  (when (proper-list-p list)
+    (dolist (element list)
+      (cond ((functionp element) (visit-function element nil reach))
+            ((and (typep element 'structure-object) (first-visit-p element reach))
+             (dolist (slot (class-slot-names (class-of element)))
+               (let ((value (slot-value element slot)))
+                 (when (functionp value) (visit-function value nil reach)))))))))
+
+(defun qualified (symbol)
+  (format nil "~(~@[~A:~]~A~)" (and (symbol-package symbol) (package-name (symbol-package symbol)))
+          (symbol-name symbol)))
+
+(defun visit-name (symbol reach)
+  (let ((entries (entries-meant symbol)))
+    (dolist (entry entries) (visit-definition entry reach))
+    (cond ((special-operator-p symbol))
+          ((macro-function symbol) (visit-function (macro-function symbol) symbol reach))
+          ((and (fboundp symbol) (notany #'procedure-p (mapcar #'entry-object entries)))
+           (note-function (fdefinition symbol) symbol reach)
+           (visit-function (fdefinition symbol) symbol reach)))
+    (dolist (method (methods-on-class symbol)) (visit-function (method-code method) symbol reach))
+    (loop for (file written) in (files-besides-functions symbol)
+          do (note-file file written reach))
+    ;; Some variables are set and never declared.
+    (when (and (null entries)
+               (member (variable-kind symbol) '(nil :special :global))
+               (ignore-errors (global-value symbol) t))
+      (visit-variable symbol reach))))
+
+(defun visit-symbol (symbol reach)
+  (when (and (first-visit-p symbol reach) (users-symbol-p symbol))
+    (visit-name symbol reach)))
+
+(defun visit-list (list reach)
+  (unless (gethash list (reach-seen reach))
+    (loop while (and (consp list) (first-visit-p list reach))
+          do (visit (pop list) reach))
+    (visit list reach)))
+
+(defun visit-vector (vector reach)
+  (when (first-visit-p vector reach)
+    (loop for element across vector do (visit element reach))))
+
+(defun visit-setter (name reach)
+  "Visit the function called NAME, as (setf symbol)."
+  (when (and (symbolp (second name)) (users-symbol-p (second name)) (fboundp name))
+    (visit-function (fdefinition name) name reach)))
+
+(defun visit (object reach)
+  "Note in REACH all that OBJECT leads to."
+  (typecase object
+    (null)
+    (symbol (visit-symbol object reach))
+    (function (visit-function object nil reach))
+    (simple-vector (visit-vector object reach))
+    (cons (if (and (eq 'setf (first object)) (proper-list-p object) (= 2 (length object))
+                   (symbolp (second object)))
+              (visit-setter object reach)
+              (visit-list object reach)))))
+
+;;;; The number
+
 ;;; The parts of a fingerprint are lists (kind name number): the experiment's own text, the values
 ;;; of the condition, the simulator, what the journal of such a run would have, and what the forms
 ;;; can reach. Rows whose fingerprints are equal come from the same function of the seed, as far as

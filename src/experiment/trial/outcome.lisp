@@ -1,6 +1,8 @@
-;;;; outcome.lisp -- what came of a trial, and how it went, from what its forms returned.
+;;;; outcome.lisp -- what came of a trial, by what its forms return and record.
 
 (in-package :ars-magna.experiment)
+
+(export '(call-until-error))
 
 ;;; An outcome is "success", "failure", "limit" (no more ticks were left), "error" (the trial's
 ;;; own code broke off) or "timeout" (it took too long by the clock). A failure has a reason, a word
@@ -77,3 +79,167 @@ did; else an empty one."
   "Enter into RESULT that there was an error of which TEXT tells, unless there was one before."
   (when (string= "" (result-error result))
     (setf (result-error result) (plain-text text))))
+
+;;;; Calling the forms of an experiment
+
+(defun call-form (function condition)
+  "Call FUNCTION, of a form of the experiment, with the values that CONDITION has for variables."
+  (apply (the function function) (condition-arguments condition)))
+
+(defun truth-of (clause function condition)
+  "Return what FUNCTION, of the form of CLAUSE, returns. Signals MISUSE if that is a fluent, or how
+a plan has failed."
+  (let ((value (call-form function condition)))
+    (when (fluent-p value)
+      (reject-use "The value of ~(~S~) is the fluent ~A itself, which is true whatever its value ~
+                   is. Write (fluent-value ...)." clause (fluent-text value)))
+    (when (typep value 'plan-failure)
+      (reject-use "The value of ~(~S~) is the failure of a plan, which is true. RUN-PLAN returns ~
+                   how a plan ended as its second value: (eq (second (trial-values)) :succeeded)."
+                  clause))
+    value))
+
+(defun text-of-measure (clause name function condition)
+  "Return the text of what FUNCTION, called NAME in CLAUSE, returns. Signals WRONG-ARGUMENT if a
+table cannot have it."
+  (let ((value (call-form function condition)))
+    (unless (value-p value)
+      (reject-argument clause name value "a number, symbol, string or list of them"))
+    (value-text value)))
+
+(defvar *aside-p* nil
+  "True while somebody looks at a trial that stands still: what goes wrong is not the trial's.")
+
+(defun call-until-error (function)
+  "Call FUNCTION, which is not to end this Lisp. Return the condition with which it broke off, or
+NIL."
+  (flet ((leave (condition)
+           (unless *aside-p*
+             (when (and *break-on-user-error* (not (typep condition 'storage-condition)))
+               (invoke-debugger condition))
+             (return-from call-until-error condition))))
+    (let ((*aside-p* nil))
+      (handler-bind (((or error storage-condition) #'leave))
+        (call-refusing-exits function)))
+    nil))
+
+(defun trouble-text (function)
+  "Call FUNCTION. Return what is to be said if it breaks off, or NIL."
+  (let ((trouble (catch 'broken-off
+                   (restart-case (call-until-error function)
+                     (abort () :report "End this trial." "aborted")))))
+    (when (typep trouble 'condition) (regain-room trouble))
+    (if (typep trouble 'condition)
+        (call-plainly (lambda () (text-of-condition trouble)))
+        trouble)))
+
+;;;; What :each-tick records
+
+;;; A sample is taken before the first tick and right after each tick, before :run or a plan's
+;;; caller goes on. The gate, which lets one tick pass at a time, leaves a question that is answered
+;;; once the tick is over, plans included. An observer would not do: it is called before plans act,
+;;; and where there is one, a plan that waits in vain might still be helped, so it is no deadlock.
+
+(defstruct (sampler (:constructor make-sampler (experiment result)) (:copier nil))
+  "What takes the samples of a trial."
+  (experiment nil :type experiment :read-only t)
+  (result nil :type result :read-only t)
+  ;; Lists (tick text...), the newest first.
+  (samples '() :type list)
+  ;; What CL:RANDOM rolls meanwhile.
+  (dice (seeded-lisps-dice 0) :read-only t)
+  ;; What is to be said of the first error, or NIL.
+  (trouble nil :type (or null string)))
+
+(defvar *sampler* nil "The sampler of the trial under way in this thread, or NIL.")
+
+;;; One sample.
+
+(defun call-with-other-dice (function tick world)
+  "Call FUNCTION. What the dice of WORLD roll in it depends on what they were and on TICK. They are
+then as before."
+  (let* ((all (world-dice-set world))
+         (states (loop for dice across all collect (dice-state dice))))
+    (loop for dice across all
+          for state in states
+          do (setf (dice-state dice) (dice-state (make-dice (logxor state tick) "each tick"))))
+    (unwind-protect (funcall function)
+      (loop for dice across all
+            for state in states
+            do (setf (dice-state dice) state)))))
+
+(defun call-rolling-apart (function sampler tick world)
+  "Call FUNCTION, which is to roll neither the dice of WORLD nor those of the trial's programs."
+  ;; The seed alone is that of the trial's programs.
+  (reseed-lisps-dice (+ (result-seed (sampler-result sampler)) (ash (1+ tick) 32))
+                     (sampler-dice sampler))
+  (rolling ((sampler-dice sampler))
+    (call-with-other-dice function tick world)))
+
+(defun sampled-text (sampler name function tick)
+  "Return the text of what FUNCTION, called NAME, returns at TICK. If it breaks off, return an empty
+one; of the first time SAMPLER keeps the error."
+  (let* ((text "")
+         (condition (result-condition (sampler-result sampler)))
+         (trouble (trouble-text
+                   (lambda ()
+                     (setf text (text-of-measure "each-tick" name function condition))))))
+    (when (and trouble (null (sampler-trouble sampler)))
+      (setf (sampler-trouble sampler)
+            (format nil "Error in :each-tick ~(~A~) at tick ~D: ~A" name tick trouble)))
+    text))
+
+;; A form may be left, as by THROW. Then the rest of its sample is empty.
+(defun take-sample (sampler simulation)
+  (let* ((functions (experiment-series (sampler-experiment sampler)))
+         (tick (simulation-tick simulation))
+         (texts (make-list (length functions) :initial-element "")))
+    (push (cons tick texts) (sampler-samples sampler))
+    (call-rolling-apart (lambda ()
+                          (loop for (name function) in functions
+                                for place on texts
+                                do (setf (first place)
+                                         (sampled-text sampler name function tick))))
+                        sampler tick (simulation-world simulation))))
+
+(defun drop-later-samples (sampler tick)
+  "Let SAMPLER forget samples of ticks after TICK: those that the trial has been rewound over."
+  (loop while (and (sampler-samples sampler)
+                   (> (first (first (sampler-samples sampler))) tick))
+        do (pop (sampler-samples sampler))))
+
+(defun sample-once (sampler simulation)
+  "Let SAMPLER have a sample of SIMULATION, unless it has one of this tick already or the tick is
+not over."
+  (let ((tick (simulation-tick simulation)))
+    (when (zerop (timeline-phase (simulation-timeline simulation)))
+      (drop-later-samples sampler tick)
+      (unless (eql tick (first (first (sampler-samples sampler))))
+        (take-sample sampler simulation)))))
+
+;;; All of them.
+
+(defun sampling-gate (sampler gate)
+  "Return a gate that lets one tick pass at a time, as far as GATE does, between samples."
+  (lambda (simulation)
+    (sample-once sampler simulation)
+    (let ((count (funcall gate simulation))
+          (custody (timeline-custody (simulation-timeline simulation))))
+      (atomic-push (lambda () (sample-once sampler simulation)) (custody-questions custody))
+      (min 1 count))))
+
+(defun call-sampling (function experiment result)
+  "Call FUNCTION, which runs the trial of RESULT in the current simulation. What EXPERIMENT wants is
+recorded at each tick, for NOTE-SERIES."
+  (let ((*sampler* (and (experiment-series experiment) (make-sampler experiment result)))
+        (simulation (current-simulation)))
+    (when *sampler*
+      (setf (simulation-gate simulation) (sampling-gate *sampler* (simulation-gate simulation))))
+    (funcall function)))
+
+(defun note-series (result)
+  "Enter into RESULT what has been recorded of its trial, and the first error, if none came before."
+  (when *sampler*
+    (sample-once *sampler* (current-simulation))
+    (setf (result-series result) (reverse (sampler-samples *sampler*)))
+    (when (sampler-trouble *sampler*) (add-error result (sampler-trouble *sampler*)))))

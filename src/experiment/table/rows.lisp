@@ -1,8 +1,61 @@
-;;;; checking.lisp -- what a row of a table and its header must be, whoever has written them.
+;;;; rows.lisp -- rows of a table: what they say of a trial, and what they must be.
 
 (in-package :ars-magna.experiment)
 
 (addition damaged-table)
+
+(defun digest-text (digest)
+  (let ((text (make-string 16)))
+    (dotimes (place 16 text)
+      (setf (char text place)
+            (char "0123456789ABCDEF" (ldb (byte 4 (* 4 (- 15 place))) digest))))))
+
+(defun result-digest-text (result)
+  (let ((digest (result-digest result)))
+    (if digest (digest-text digest) "")))
+
+(defun trial-texts (experiment result)
+  "Return the texts that say of which trial of EXPERIMENT RESULT is: each line begins with them."
+  (let ((condition (result-condition result)))
+    (append (list (column-name (experiment-name experiment))
+                  (condition-fingerprint condition)
+                  (condition-name condition))
+            (condition-texts condition)
+            (list (integer-text (result-seed result))
+                  (integer-text (result-trial result))))))
+
+(defun result-texts (experiment result)
+  "Return the texts of the row for RESULT, of a trial of EXPERIMENT, in the order of its columns."
+  (append (trial-texts experiment result)
+          (list (result-outcome result)
+                (result-reason result)
+                (format nil "~@[~D~]" (result-ticks result)))
+          (or (result-measures result)
+              (make-list (length (experiment-measures experiment)) :initial-element ""))
+          (list (result-digest-text result)
+                (result-error result))))
+
+;;; What was recorded from tick to tick.
+
+(defun series-text (experiment result)
+  "Return the lines of the table of series for RESULT, of a trial of EXPERIMENT; empty if it has
+none."
+  (let* ((line (csv-line (trial-texts experiment result)))
+         (beginning (substitute #\, #\Newline line :start (1- (length line)))))
+    (with-output-to-string (out)
+      (loop for (tick . texts) in (result-series result)
+            do (write-string beginning out)
+               (write-string (csv-line (cons (integer-text tick) texts)) out)))))
+
+(defun texts-with-mark (texts experiment series)
+  "Return TEXTS, of a row of EXPERIMENT, and if that records anything the check sum of SERIES, the
+trial's lines."
+  (if (experiment-series experiment)
+      (append texts (list (format nil "~8,'0X" (text-checksum series))))
+      texts))
+
+;;;; What a row and a header must be, whoever has written them
+
 (define-condition damaged-table (ars-magna-error)
   ((file :initarg :file :reader damaged-table-file)
    (line :initarg :line :initform nil :reader damaged-table-line)
@@ -130,3 +183,33 @@ with COLUMNS. Signals DAMAGED-TABLE."
     (unless (hexadecimal-p (second texts))
       (reject-row file number "This is no row: ~A is no fingerprint." (plain-text (second texts))))
     texts))
+
+;;;; Files
+
+(defun file-in (directory name)
+  (merge-pathnames (native-path name) directory))
+
+(defun rows-file (directory) (file-in directory "rows.csv"))
+(defun series-file (directory) (file-in directory "series.csv"))
+(defun machine-file (directory) (file-in directory "machine.csv"))
+(defun description-file (directory) (file-in directory "experiment.txt"))
+
+(defun lock-file (directory) (file-in directory ".lock"))
+
+(defun check-plain (file)
+  "Signal DAMAGED-TABLE if what is called FILE, if anything, is no file of bytes."
+  (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that there is not")
+                       ((and (probe-file file) (not (plain-file-p file)))
+                        "it is a directory, pipe, socket or device"))))
+    (when trouble
+      (reject-table file nil "~A. Remove it, or give another directory." trouble))))
+
+(defun check-files-plain (directory)
+  "Signal DAMAGED-TABLE if what is called like a file of DIRECTORY is no file of bytes."
+  (mapc #'check-plain (list (rows-file directory) (series-file directory) (machine-file directory)
+                            (description-file directory))))
+
+(defun directory-called (name)
+  "Return the absolute path of the directory NAME, a string or pathname."
+  (uiop:ensure-directory-pathname
+   (merge-pathnames (path-called name :directory t) (base-directory))))

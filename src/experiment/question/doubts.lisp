@@ -1,0 +1,121 @@
+;;;; doubts.lisp -- what is told of clauses of DEFEXPERIMENT that say what was hardly meant.
+
+(in-package :ars-magna.experiment)
+
+(export '(doubt-nested-run))
+
+(defun mentioned-p (name tree)
+  (cond ((consp tree) (loop while (consp tree)
+                            thereis (mentioned-p name (pop tree))))
+        (t (eq name tree))))
+
+(defun doubt-unused (clauses)
+  "Warn of variables that no form of CLAUSES mentions."
+  (dolist (name (varied-variables clauses))
+    (unless (or (special-p name)
+                (loop for key in '(:run :until :success :measure :each-tick)
+                      thereis (mentioned-p name (clause-called key clauses))))
+      (doubt-definition "~A is varied, but no form mentions it.~@[ Did you mean the parameter ~
+                         ~A?~]"
+                        name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
+
+(defun doubt-unnamed (key clauses)
+  "Warn of a call with a robot in the clause KEY of CLAUSES without a name before it."
+  (loop with robots = (clause-called :robots clauses)
+        for (name form) in (clause-called key clauses)
+        when (and (fboundp name) (symbolp form) (member form robots))
+          do (doubt-definition "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
+                                it first: (~(~S~) (NAME (~A ~A)))."
+                               name form name form key name form)))
+
+(defun doubt-nested-run (forms)
+  "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
+  (when (mentioned-p 'with-simulation forms)
+    (doubt-definition "a trial is a run of its own, and a with-simulation in it another one, which ~
+                       has the same seed in each trial, and of which measures see nothing. Leave ~
+                       with-simulation out: (run-plan ...) alone.")))
+
+;;; A plan's name.
+
+(defun quoted-name (form)
+  "Return the symbol that FORM, 'NAME or #'NAME, is of, or NIL."
+  (and (typep form '(cons (member quote function) (cons symbol null))) (second form)))
+
+(defun run-plan-text (name)
+  "Return in words how the clause :run lets a trial run the plan NAME."
+  (format nil "(:run (run-plan '~(~A~) ...)), with the plan's arguments: the name ~:*~(~A~) alone ~
+               runs nothing" name))
+
+(defun check-runs (definition clause)
+  "Signal MALFORMED-DEFINITION if CLAUSE, :run, has no more than the name of a plan."
+  (let ((name (and (null (cddr clause)) (quoted-name (second clause)))))
+    (when (and name (find-procedure name nil))
+      (reject-clause definition clause (run-plan-text name))))
+  (let ((advice (test-advice (first (last clause)))))
+    (when advice (doubt-definition "~A, :run: ~A" definition advice))))
+
+;;; Tests.
+
+(defun doubt-truth-of-plan (form)
+  "Warn if FORM, the last one of :run, is true if a plan's value is, as that of a failed one is."
+  (when (and (typep form '(cons symbol (cons (cons symbol) (cons (eql t) (or null (cons null))))))
+             (same-name-p 'if (first form))
+             (same-name-p 'run-plan (first (second form))))
+    (let ((*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 10000))
+      (doubt-definition ":run: a plan that fails has its failure as the value, which is true, so ~
+                         that ~S is T then. Write only ~S, whose second value says how it ended, ~
+                         or a clause (:success form)." (abridged form) (abridged (second form))))))
+
+(defun number-as-test-advice (form)
+  "Return in sentences that FORM, a test, gives a number; else NIL."
+  (when (or (realp form)
+            (and (consp form) (member (first form) '(length count + - * floor round abs))))
+    (let ((*print-case* :downcase) (*print-pretty* nil))
+      (format nil "~S is a number, which counts as true, also if it is 0. Compare it, as in ~
+                   (< 0 ~:*~S)." form))))
+
+(defun plan-as-test-advice (form)
+  "Return in sentences that FORM, a test, is true if a plan fails; else NIL."
+  (when (and (consp form) (symbolp (first form)) (same-name-p 'run-plan (first form)))
+    (format nil "a plan that fails has its failure as the value, which is true. Let the call of ~
+                 RUN-PLAN be the last form of :run: its second value says how it ended.")))
+
+(defun first-value-p (form)
+  "True if FORM gives the first value of :run, or of RUN-PLAN."
+  (flet ((call-p (form name) (and (typep form '(cons symbol)) (same-name-p name (first form)))))
+    (or (call-p form 'run-plan)
+        (and (or (call-p form 'first) (call-p form 'car))
+             (call-p (second form) 'trial-values)))))
+
+(defun state-as-test-advice (form)
+  "Return in sentences that FORM compares the first value of a plan with how plans end; else NIL."
+  (block advice
+    (map-comparisons (lambda (subject word comparison)
+                       (declare (ignore comparison))
+                       (when (and (first-value-p subject) (member word '(:succeeded :failed)))
+                         (return-from advice
+                           (format nil "RUN-PLAN returns ~(~S~) as its second value. Write ~
+                                        (eq (second (trial-values)) ~:*~(~S~))." word))))
+                     form)
+    nil))
+
+(defun check-test (definition clause)
+  "Signal MALFORMED-DEFINITION unless CLAUSE has one form, and warn if that is no test."
+  (unless (= 2 (length clause)) (reject definition clause))
+  (let* ((test (second clause))
+         (doubt (or (test-doubt test)
+                    (test-advice test)
+                    (number-as-test-advice test)
+                    (state-as-test-advice test)
+                    (plan-as-test-advice test))))
+    (when doubt (doubt-definition "~A: ~(~S~): ~A" definition (first clause) doubt))))
+
+(defun doubt-quoted-measure (definition part)
+  "Warn if the form in PART, (name form), is quoted: the measure is that form then."
+  (let ((name (quoted-name (second part))))
+    (when (or (typep (second part) '(cons (eql quote) (cons cons null)))
+              (and name (fboundp name)))
+      (let ((*print-case* :downcase) (*print-pretty* nil))
+        (doubt-definition "~A: the measure ~(~A~) is quoted, and so no value. Write the form ~
+                           alone: ~:[~S~;(~S ...)~]."
+                          definition (first part) name (or name (second (second part))))))))
