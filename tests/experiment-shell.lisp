@@ -172,7 +172,7 @@ output, and what to the error output."
          (progress (ars-magna.experiment::make-progress nil nil 10 2))
          (*error-output* (make-string-output-stream)))
     (setf (svref (ars-magna.experiment::progress-under-way progress) 2)
-          (list condition 7 (- (ars-magna.experiment::moment)
+          (list condition 7 (- (ars-magna.host:real-microseconds)
                                (* seconds internal-time-units-per-second))))
     (cli::call-stoppable (lambda ()
                            (let ((ars-magna.experiment::*progress* progress))

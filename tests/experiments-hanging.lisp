@@ -64,7 +64,7 @@
         (condition (first (experiment:experiment-conditions
                            (experiment:find-experiment 'question)))))
     (flet ((told (done seconds-before seconds)
-             (let ((now (experiment::moment)))
+             (let ((now (host:real-microseconds)))
                (setf (experiment::progress-done progress) done
                      (slot-value progress 'experiment::begun)
                      (- now (* 1000000 (+ seconds-before seconds)))

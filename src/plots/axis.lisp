@@ -162,14 +162,12 @@ fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixe
                :upward-p (null across))))
 
 (defun marks-height (axis)
-  "Return how much room the marks of AXIS take below it, in pixels."
   (+ 8 (if (axis-upward-p axis)
            (marks-width axis)
            (reduce #'max (axis-marks axis) :key (lambda (mark) (lines-height (rest mark)))
                                            :initial-value 0))))
 
 (defun draw-marks-across (canvas axis y)
-  "Draw the marks of AXIS, which runs across at Y, and what they say."
   (loop for (value . lines) in (axis-marks axis)
         for x = (place value axis)
         do (with-ink (+line-ink+)

@@ -12,11 +12,11 @@
 WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
                   "a number that is not infinite, or NIL if there is none")
-  (and value (if (denormalized-p value) (rational value) (rationalize value))))
-
-;; Of these SBCL's RATIONALIZE returns numbers that are other floats.
-(defun denormalized-p (value)
-  (and (floatp value) (< (float-precision value) (float-digits value))))
+  ;; Of denormalized floats SBCL's RATIONALIZE returns numbers that are other floats.
+  (and value
+       (if (and (floatp value) (< (float-precision value) (float-digits value)))
+           (rational value)
+           (rationalize value))))
 
 (defun power-of-ten (value)
   "Return the greatest integer N for which 10^N is at most the size of VALUE, not 0."
@@ -79,11 +79,9 @@ WRONG-ARGUMENT."
   "By how much of a step a float may miss a round number that is meant.")
 
 (defun multiple-below (step value)
-  "Return the last multiple of STEP up to VALUE."
   (* step (floor (+ (/ value step) +slack+))))
 
 (defun multiple-above (step value)
-  "Return the first multiple of STEP from VALUE on."
   (* step (ceiling (- (/ value step) +slack+))))
 
 (defun multiples (step low high)

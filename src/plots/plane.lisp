@@ -37,7 +37,6 @@ one of no width if all are empty. CONNECT: lines belong to the samples."
                                       sum (+ +entry-gap+ (lines-height (or lines '(""))))))))))
 
 (defun draw-sample (canvas index x y connect)
-  "Draw how the series INDEX looks from X, around Y."
   (when connect
     (with-look (index 1.8)
       (draw-line canvas draw-gcontext* x y (+ x +sample-width+) y)))
@@ -93,7 +92,6 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
 ;;; Drawing it.
 
 (defun draw-upward (canvas plane)
-  "Draw the axis upward, with a faint line across at each mark."
   (loop with left = (plane-left plane)
         for (value . lines) in (axis-marks (plane-upward plane))
         for y = (place value (plane-upward plane))
@@ -107,7 +105,6 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
                :anchor :middle :color +faint-ink+))
 
 (defun draw-across (canvas page)
-  "Draw the axis of PAGE across, with what is said of it below."
   (let ((across (page-across page)) (bottom (page-bottom page)))
     (draw-marks-across canvas across bottom)
     (write-lines canvas (/ (+ (page-left page) (page-right page)) 2)
@@ -125,7 +122,6 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
     (draw-legend canvas (plane-legend plane) right top)))
 
 (defun page-svg (page draw)
-  "Return PAGE, with what the function DRAW draws on a canvas, as an SVG document, a string."
   (with-output-to-string (stream)
     (with-svg (canvas stream :font +text-font+)
       (with-canvas (canvas)

@@ -56,7 +56,6 @@ LEAST pixels high. The page becomes wider than WIDTH if it must."
                                       +margin+))))))
 
 (defun write-beside (canvas x row lines anchor)
-  "Write LINES at X beside ROW, around its middle."
   (write-lines canvas x (+ 12 (- (row-middle row) (/ (lines-height lines) 2))) lines
                :anchor anchor))
 
@@ -79,7 +78,6 @@ LEAST pixels high. The page becomes wider than WIDTH if it must."
     (unless (table-rows table) (draw-no-data canvas table))))
 
 (defun table-svg (table draw-row)
-  "Return TABLE as an SVG document. DRAW-ROW is called with a canvas, each row and its number."
   (page-svg table (lambda (canvas) (draw-table canvas table draw-row))))
 
 ;;;; Differences with intervals, against zero
@@ -161,9 +159,6 @@ an interval."
     (list (name-text label) (remove nil (map 'list #'exact numbers))
           (exact middle) (exact low) (exact high))))
 
-(defun group-values (group)
-  (append (remove nil (cddr group)) (second group)))
-
 (defun group-entry (group middle-label)
   (destructuring-bind (label numbers middle low high) group
     (list label
@@ -207,7 +202,9 @@ arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
   (check-argument measure-chart rows (listp rows) "a list of rows")
   (let* ((groups (mapcar #'checked-group rows))
          (table (plan-table (mapcar (lambda (group) (group-entry group middle-label)) groups)
-                            (loop for group in groups append (group-values group))
+                            (loop for group in groups
+                                  append (remove nil (cddr group))
+                                  append (second group))
                             :title title :subtitle subtitle :x-label x-label :width width
                             :least (+ +column-height+ 20) :log-x log-x)))
     (table-svg table

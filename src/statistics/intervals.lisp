@@ -165,12 +165,6 @@ six. Signals WRONG-ARGUMENT unless they are from -1e15 to 1e15, and CONFIDENCE b
 (defparameter *most-groups* 500
   "In how many groups at most a sample is left out bit by bit: enough to tell how skewed it is.")
 
-(defun statistic-function (statistic)
-  (case statistic
-    (:mean #'mean-of)
-    (:median #'median-of)
-    (t (and (functionp statistic) statistic))))
-
 (defun checked-statistic (function)
   "Return a function that calls FUNCTION and signals WRONG-ARGUMENT unless that returns a number."
   (lambda (sample)
@@ -181,7 +175,6 @@ six. Signals WRONG-ARGUMENT unless they are from -1e15 to 1e15, and CONFIDENCE b
       (double value))))
 
 (defun draw-again (sample drawn dice)
-  "Fill DRAWN with numbers of SAMPLE, each as likely as another."
   (declare (type doubles sample drawn) (type dice dice) #.*hot*)
   (let ((size (length sample)))
     (dotimes (i (length drawn) drawn)
@@ -190,14 +183,12 @@ six. Signals WRONG-ARGUMENT unless they are from -1e15 to 1e15, and CONFIDENCE b
                                                     (* (roll dice) size)))))))))
 
 (defun resampled (sample function resamples dice)
-  "Return what FUNCTION says of RESAMPLES samples drawn from SAMPLE, sorted."
   (let ((drawn (make-array (length sample) :element-type 'double-float))
         (values (make-array resamples :element-type 'double-float)))
     (dotimes (i resamples (sorted values))
       (setf (aref values i) (funcall function (draw-again sample drawn dice))))))
 
 (defun sample-without (sample group groups)
-  "Return SAMPLE without each GROUPS-th of its numbers, from index GROUP."
   (declare (type doubles sample) (type fixnum group groups))
   (coerce (loop for x across sample for i of-type fixnum from 0
                 unless (= group (mod i groups)) collect x)
@@ -259,7 +250,10 @@ both are NIL. Signals WRONG-ARGUMENT unless NUMBERS and what STATISTIC returns a
 1e15, RESAMPLES from 100 to 1e7, and CONFIDENCE between 0 and 1."
   (let ((z (normal-reach (check-share bootstrap-interval confidence)))
         (sample (sample 'bootstrap-interval 'numbers numbers))
-        (function (statistic-function statistic)))
+        (function (case statistic
+                    (:mean #'mean-of)
+                    (:median #'median-of)
+                    (t (and (functionp statistic) statistic)))))
     (check-argument bootstrap-interval statistic function
                     ":mean, :median or a function of a vector of numbers")
     (check-resampling bootstrap-interval resamples seed)

@@ -106,7 +106,6 @@ more."
 ;;; The system's SORT takes ten times as long, which a bootstrap of the median would feel.
 
 (defun merge-runs (from to start middle end)
-  "Merge the sorted runs of FROM from START to MIDDLE to END into TO."
   (declare (type doubles from to) (type fixnum start middle end) #.*hot*)
   (let ((i start) (j middle))
     (declare (type fixnum i j))

@@ -36,7 +36,6 @@ trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e
     (/ odds (+ 1 odds))))
 
 (defun tilted-mean (sizes tilt)
-  "Return the mean of the sum of SIZES with signs that are drawn with TILT."
   (declare (type doubles sizes) (type double-float tilt))
   (loop for size across sizes
         sum (* size (- 1 (* 2 (minus-share (* size tilt))))) of-type double-float))
@@ -55,7 +54,6 @@ trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e
   (- x (logarithm (* 2 (- 1 (minus-share x))))))
 
 (defun tilted-sum (sizes shares dice)
-  "Return the sum of SIZES, each negative with its probability among SHARES."
   (declare (type doubles sizes shares) (type dice dice) #.*hot*)
   (loop with sum of-type double-float = 0d0
         for size across sizes

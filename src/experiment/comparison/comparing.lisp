@@ -5,7 +5,6 @@
 ;;; What is compared.
 
 (defun names-in-all (results)
-  "Return the names of what can be compared in all RESULTS, in order."
   (let ((measures (remove-if-not (lambda (name)
                                    (every (lambda (other)
                                             (member name (results-measures other)
@@ -168,7 +167,6 @@ and BEFORE; :UNKNOWN if these do not say."
 (defun part-of-kind-p (kind part) (starts-with-subseq (format nil "~A " kind) part))
 
 (defun lines-only-in (lines others title)
-  "Return LINES that OTHERS lack, after TITLE, a few of them."
   (let ((only (remove-if (lambda (line) (member line others :test #'string=)) lines)))
     (append (loop for line in only
                   repeat 5
@@ -270,8 +268,6 @@ of conditions that one of them lacks."
     (first names)))
 
 (defun comparison-of-versions (before after before-name after-name names stream)
-  "Return the comparison of the results BEFORE and AFTER, which are called so, in what NAMES say,
-and print it to STREAM, if any."
   (multiple-value-bind (first second) (short-names after-name before-name)
     (multiple-value-bind (pairs lacking) (condition-pairs after before)
       (let* ((experiment (check-one-experiment before after))

@@ -16,7 +16,6 @@
               (contrast-second contrast))))
 
 (defun picture-row (contrast measure comparison)
-  "Return a row of the picture for the difference of CONTRAST in MEASURE, or NIL."
   (let ((difference (difference-called measure contrast)))
     (flet ((scaled (value)
              (and value (if (eq :rate (paired-kind difference)) (* 100 value) value))))
@@ -50,7 +49,6 @@
                 (length tested))))))
 
 (defun seeds-words (comparison measure)
-  "Return over how many seeds MEASURE is compared in the picture of COMPARISON; NIL if it is not."
   (let ((trials (mapcar #'paired-trials (shown-differences (all-contrasts comparison) measure))))
     (and trials
          (format nil "~A seeds each~:[~;, those where both succeeded~]" (range-text trials)

@@ -134,7 +134,6 @@ indexes."
 
 ;; What is the same to the last bit needs no test, and is none among several.
 (defun same-runs-p (contrast)
-  "True if all pairs of trials of CONTRAST are the same runs."
   (and (plusp (contrast-trials contrast))
        (= (contrast-same contrast) (contrast-trials contrast))))
 
@@ -226,8 +225,6 @@ trials of SEEDS."
                                             values))))))
 
 (defun overall-contrast (first second pairs names results &optional (other-results results))
-  "Return the contrast of what is called FIRST and SECOND over all PAIRS, lists of samples of
-RESULTS and OTHER-RESULTS, in what NAMES say."
   (let ((contrast (make-contrast "over all" first second))
         (seeds (complete-seeds pairs)))
     (setf (contrast-trials contrast) (hash-table-count seeds)
@@ -239,5 +236,4 @@ RESULTS and OTHER-RESULTS, in what NAMES say."
     contrast))
 
 (defun worth-overall-p (contrasts)
-  "True if CONTRASTS are several, and not all the same runs."
   (and (rest contrasts) (notevery #'same-runs-p contrasts)))

@@ -59,7 +59,6 @@ of booleans, are true."
     (list both first second neither)))
 
 (defun rate-difference (measure firsts seconds)
-  "Return how often MEASURE is so, by FIRSTS and SECONDS, lists of booleans."
   (destructuring-bind (both first second neither) (pair-table firsts seconds)
     (let ((trials (+ both first second neither)))
       (if (zerop trials)

@@ -91,11 +91,9 @@ the first of LEVEL; of any other if that is NIL."
 ;;; of these. A level that only one condition has means that one.
 
 (defun word-of (designator)
-  "Return DESIGNATOR, of a condition or level, as a word."
   (if (typep designator '(or symbol string)) (string designator) (value-text designator)))
 
 (defun either (things exactly partly)
-  "Return those of THINGS for which EXACTLY is true, or if there are none PARTLY."
   (or (remove-if-not exactly things) (remove-if-not partly things)))
 
 (defun all-levels (results)
@@ -114,7 +112,6 @@ the first of LEVEL; of any other if that is NIL."
           (t (find designator samples)))))
 
 (defun level-word-p (word factor level)
-  "True if WORD means the value LEVEL of FACTOR."
   (or (string-equal word level) (string-equal word (full-level-name factor level))))
 
 (defun levels-meant (results designator)
@@ -200,7 +197,6 @@ and its place; NIL if these are none. Signals MISUSE if they could be those of s
          (values (contest-pairs results (first contests)) (first (first contests))))))
 
 (defun pairs-of-conditions (results first second)
-  "Return the pairs of the samples that FIRST and SECOND mean. Signals MISUSE."
   (let* ((sample (the-meaning results first))
          (others (if (eq :all second)
                      (remove sample (results-samples results))

@@ -93,7 +93,6 @@
                 (funcall write (paired-second difference))))))
 
 (defun left-out-words (difference)
-  "Return how many pairs DIFFERENCE does not count, and why; NIL if none."
   (let ((count (paired-left-out difference)))
     (when (plusp count)
       (format nil "~D left out, without a ~:[number~;value~] in both" count
@@ -196,7 +195,6 @@ the same runs, else NIL."
             collect (verdict difference contrast))))
 
 (defun versions-verdict (comparison)
-  "Return in words how many conditions got better and worse, and how many rows are the same."
   (let* ((contrasts (comparison-contrasts comparison))
          (found (mapcar #'success-verdict contrasts))
          (trials (reduce #'+ contrasts :key #'contrast-trials))
@@ -239,7 +237,6 @@ alone."
     (and words (format nil "~@[~A: ~]~{~A~^ and ~}" (contrast-where contrast) words))))
 
 (defun left-out-notes (contrast)
-  "Return sentences on which trials of CONTRAST are not compared, or broke off."
   (let ((alone (counts-words contrast (contrast-alone-first contrast)
                              (contrast-alone-second contrast)))
         (errors (counts-words contrast (contrast-errors-first contrast)

@@ -36,7 +36,6 @@ of, if that is one factor."
                     (loop for place in places collect (text-at place sample)))))
 
 (defun series-title (places factors)
-  "Return the name of the one factor at PLACES of FACTORS, or NIL if that is not one."
   (and places (null (rest places)) (nth (first places) factors)))
 
 (defun series-name (sample places factors)
@@ -124,14 +123,11 @@ trials that broke off with an error, if there are any."
         (estimate-value estimate) (estimate-low estimate) (estimate-high estimate)))
 
 (defun chart-series (panel place estimate-of)
-  "Return the series of PANEL for LINE-CHART, along the factor PLACE. ESTIMATE-OF returns the
-estimate for a sample."
   (loop for (name . samples) in (panel-series panel)
         collect (cons name (loop for sample in samples
                                  collect (point-of sample place (funcall estimate-of sample))))))
 
 (defun estimates-charts (results summaries name y-label words reader)
-  "Return pictures, called NAME, of the estimates that READER finds in SUMMARIES, those of RESULTS."
   (let* ((place (factor-across results)) (factors (results-factors results))
          (table (pairlis (results-samples results) summaries))
          (kind (estimate-kind (funcall reader (first summaries)))))
@@ -165,7 +161,6 @@ estimate for a sample."
 (defconstant +most-rows+ 30 "How many rows a picture has at most.")
 
 (defun pictures-of-rows (name rows chart)
-  "Return pictures called NAME of ROWS, as many as they fill, which the function CHART draws."
   (loop with chunks = (in-chunks rows +most-rows+)
         for chunk in chunks
         for number from 1
@@ -239,8 +234,6 @@ estimate for a sample."
           (limit-of results)))
 
 (defun survival-picture (results panel horizon errors)
-  "Return the picture of survival in PANEL of RESULTS, until HORIZON; ERRORS is what there is to say
-of trials that broke off."
   (let ((band-p (<= (length (panel-series panel)) +most-bands+)))
     (list
      "survival" (panel-where panel)

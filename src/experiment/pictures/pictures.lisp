@@ -20,7 +20,6 @@
     (subseq name 0 (min 100 (length name)))))
 
 (defun new-name (name where names)
-  "Return the name for the picture called NAME, of WHERE, which is none of NAMES."
   (let ((name (file-word (format nil "~A~@[-~A~]" name where))))
     (if (member name names :test #'string=)
         (loop for number from 2
@@ -29,7 +28,6 @@
         name)))
 
 (defun save-pictures (pictures directory kind)
-  "Save PICTURES in DIRECTORY, as files of KIND. Return their truenames."
   (let ((names '()))
     (loop for (title where chart) in pictures
           for name = (new-name title where names)
@@ -82,14 +80,12 @@ show. Signals WRONG-ARGUMENT, and MISUSE without that program or if there is no 
         (ways-along trails trial (result-outcome result))))))
 
 (defun ways-of-trials (experiment condition trials)
-  "Run the TRIALS, a list of numbers, of CONDITION of EXPERIMENT again. Return the ways of all."
   (prepare-trials experiment condition)
   (call-in-silence (lambda ()
                      (loop for trial in trials
                            append (ways-of-trial experiment condition trial)))))
 
 (defun start-of-trial (experiment condition trial)
-  "Return a snapshot of the world in which TRIAL begins."
   (call-in-silence (lambda ()
                      (call-in-trial (lambda ()
                                       (take-snapshot (simulation-world (current-simulation))))

@@ -50,7 +50,6 @@
                      (format nil "~A; not ~A and ~A" expected (safe-text low) (safe-text high))))))
 
 (defun rounded-to (value power)
-  "Return VALUE rounded to 10^POWER, a double-float."
   (let ((step (expt 10 power)))
     (float (* step (round (rational value) step)) 1d0)))
 
@@ -66,7 +65,6 @@
                          (- (power-of-ten width) (1- +design-digits+)))))))
 
 (defun settings-at (point ranges bounds)
-  "Return lists (name value) for POINT, which has a share of each of RANGES between its BOUNDS."
   (loop for share in point
         for (name nil nil scale) in ranges
         for (low high) in bounds
@@ -113,7 +111,6 @@
   (reject-clause definition clause expected))
 
 (defun clause-key (definition clause)
-  "Return the keyword of CLAUSE. Signals MALFORMED-DEFINITION."
   (unless (and (proper-list-p clause) (assoc (first clause) *clauses*))
     (let* ((keys (mapcar #'first *clauses*))
            (word (and (consp clause) (symbolp (first clause)) (first clause)))
@@ -126,7 +123,6 @@
   (first clause))
 
 (defun check-clauses (definition clauses)
-  "Signal MALFORMED-DEFINITION unless CLAUSES are known, and each there once."
   (loop for (clause . others) on clauses
         for key = (clause-key definition clause)
         when (find key others :key (lambda (other) (and (consp other) (first other))))
@@ -145,7 +141,6 @@ true of; or about CLAUSE if there is none at all."
     (unless (funcall test element) (reject-clause definition element expected))))
 
 (defun check-names (definition clause names)
-  "Signal MALFORMED-DEFINITION if a name is in NAMES twice."
   (loop for (name . others) on names
         when (member name others)
           do (reject-clause definition clause
@@ -168,7 +163,6 @@ true of; or about CLAUSE if there is none at all."
   (special-variable-p name nil))
 
 (defun can-vary-p (name)
-  "True if NAME is a parameter, or can be a variable of an experiment's forms."
   (and name (symbolp name) (not (keywordp name))
        (or (parameter-called name)
            (null (variable-kind name))
@@ -183,7 +177,6 @@ true of; or about CLAUSE if there is none at all."
                            (safe-text (first part)) (and (first part) (symbolp (first part)))))))
 
 (defun check-factor (definition part)
-  "Signal MALFORMED-DEFINITION unless PART is (what form...) or (what :in form)."
   (unless (and (proper-list-p part) (rest part))
     (reject-clause definition part (usage-of :vary)))
   (when (and (eq :in (second part)) (/= 3 (length part)))
@@ -214,10 +207,13 @@ true of; or about CLAUSE if there is none at all."
                      (format nil "~D ranges at most; :latin-hypercube and :random take more"
                              +most-dimensions+)))))
 
+(deftype named-form ()
+  "A list (name form)."
+  '(cons (and symbol (not null)) (cons t null)))
+
 (defun check-case (definition case)
   (unless (and (proper-list-p case) (symbolp (first case)) (first case) (rest case)
-               (every (lambda (part) (and (proper-list-p part) (= 2 (length part))))
-                      (rest case)))
+               (every (lambda (part) (typep part '(cons t (cons t null)))) (rest case)))
     (reject-clause definition case "a condition (name (what form)...)"))
   (check-legible definition case (first case))
   (check-names definition case (mapcar #'first (rest case)))
@@ -231,17 +227,14 @@ true of; or about CLAUSE if there is none at all."
                        (format nil "values for ~{~(~A~)~^, ~}, as in ~(~A~)" names
                                (first (first cases))))))))
 
-(defun vary-parts (clauses) (clause-called :vary clauses))
-(defun case-parts (clauses) (clause-called :conditions clauses))
-
 (defun varied-names (clauses)
-  (remove-duplicates (append (loop for case in (case-parts clauses)
-                                   append (mapcar #'first (rest case)))
-                             (loop for part in (vary-parts clauses) append (part-names part)))
-                     :from-end t))
+  (remove-duplicates
+   (append (loop for case in (clause-called :conditions clauses)
+                 append (mapcar #'first (rest case)))
+           (loop for part in (clause-called :vary clauses) append (part-names part)))
+   :from-end t))
 
 (defun varied-variables (clauses)
-  "Return what CLAUSES vary and is a variable of the forms."
   (remove-if (lambda (name) (or (surrounding-p name) (parameter-called name)))
              (varied-names clauses)))
 
@@ -261,8 +254,7 @@ CLAUSES vary, and what the clause KEY names."
     (dolist (part (clause-called key clauses)) (check (first part) part))))
 
 (defun check-column-names (definition clauses)
-  "Signal MALFORMED-DEFINITION if two columns of a table of CLAUSES would be called the same."
-  (let ((before (append *columns-before* (and (case-parts clauses) '("case")))))
+  (let ((before (append *columns-before* (and (clause-called :conditions clauses) '("case")))))
     (check-columns definition (append before *columns-between* *columns-after*) clauses :measure)
     (check-columns definition (append before *series-columns*) clauses :each-tick)))
 
@@ -271,7 +263,6 @@ CLAUSES vary, and what the clause KEY names."
     (reject definition clause)))
 
 (defun seconds-p (value)
-  "True if VALUE is how many seconds something may take."
   (and (quantity-p value) (<= 1/1000 value +largest+)))
 
 (defun check-clause (definition clause)
@@ -279,8 +270,7 @@ CLAUSES vary, and what the clause KEY names."
     (:robots (check-each definition clause (lambda (name) (and name (typep name 'symbol)))))
     (:parameters
      (check-each definition clause
-                 (lambda (part) (and (proper-list-p part) (= 2 (length part))
-                                     (symbolp (first part)) (parameter-called (first part))))
+                 (lambda (part) (and (typep part 'named-form) (parameter-called (first part))))
                  "(parameter form), with a parameter of the simulation such as max-speed*")
      (check-names definition clause (mapcar #'first (rest clause))))
     (:clean (unless (member (rest clause) '(() (t) (nil)) :test #'equal)
@@ -303,9 +293,7 @@ CLAUSES vary, and what the clause KEY names."
     (:thinking (unless (= 2 (length clause)) (reject definition clause)))
     ((:until :success) (check-test definition clause))
     ((:measure :each-tick)
-     (check-each definition clause
-                 (lambda (part) (and (proper-list-p part) (= 2 (length part))
-                                     (symbolp (first part)) (first part))))
+     (check-each definition clause (lambda (part) (typep part 'named-form)))
      (dolist (part (rest clause)) (doubt-quoted-measure definition part)))))
 
 (defun check-whole (definition name clauses)
@@ -318,9 +306,9 @@ CLAUSES vary, and what the clause KEY names."
   (when (and (clause-called :thinking clauses) (member :thinking (varied-names clauses)))
     (reject-clause definition (find :thinking clauses :key #'first)
                    "no such clause where :thinking varies"))
-  (dolist (part (vary-parts clauses))
+  (dolist (part (clause-called :vary clauses))
     (when (find-if (lambda (case) (intersection (part-names part) (mapcar #'first (rest case))))
-                   (case-parts clauses))
+                   (clause-called :conditions clauses))
       (reject-clause definition part "something that the :conditions do not vary already")))
   (check-column-names definition clauses)
   (doubt-unnamed :measure clauses)

@@ -19,21 +19,17 @@ list needs no quote."
         (t `(list ,@(loop for form in (rest part) collect (value-form (first part) form))))))
 
 (defun factors-form (clauses)
-  `(list ,@(loop for part in (vary-parts clauses)
+  `(list ,@(loop for part in (clause-called :vary clauses)
                  collect `(list ',part ,(values-form part)))))
 
 (defun cases-form (clauses)
   (flet ((setting-form (part) `(list ',part ,(value-form (first part) (second part)))))
-    `(list ,@(loop for (name . parts) in (case-parts clauses)
+    `(list ,@(loop for (name . parts) in (clause-called :conditions clauses)
                    collect `(list ',name (list ,@(mapcar #'setting-form parts)))))))
 
 (defun settings-form (clauses)
   `(list ,@(loop for part in (clause-called :parameters clauses)
                  collect `(list ',part ,(second part)))))
-
-(defun robot-names (clauses)
-  "Return the names of robots that CLAUSES give once for all conditions."
-  (clause-called :robots clauses))
 
 (defun function-form (clauses forms)
   "Return a function of the variables that CLAUSES vary, which evaluates FORMS; NIL if there are
@@ -42,11 +38,10 @@ none."
     (and forms
          `(lambda ,variables
             (declare (ignorable ,@(remove-if #'special-p variables))
-                     (special ,@(remove-if-not #'variable-name-p (robot-names clauses))))
+                     (special ,@(remove-if-not #'variable-name-p (clause-called :robots clauses))))
             ,@forms))))
 
 (defun named-functions-form (key clauses)
-  "Return the form of a list of lists (name function) for what the clause KEY of CLAUSES names."
   `(list ,@(loop for (name form) in (clause-called key clauses)
                  collect `(list ',name ,(function-form clauses (list form))))))
 
@@ -55,7 +50,6 @@ none."
     (and given (or (null rest) (first rest)))))
 
 (defun thinking-form (clauses)
-  "Return the form of the thinking mode that CLAUSES give once for all conditions."
   (multiple-value-bind (rest given) (clause-called :thinking clauses)
     (if given (value-form :thinking (first rest)) :free)))
 
@@ -69,7 +63,7 @@ none."
 (defun definition-form (name documentation clauses form)
   `(define-experiment ',name
      :documentation ,documentation
-     :robots ',(robot-names clauses)
+     :robots ',(clause-called :robots clauses)
      :parameters ,(settings-form clauses)
      :clean ,(clean-p clauses)
      :thinking ,(thinking-form clauses)
@@ -198,8 +192,6 @@ what is kept. Signals MALFORMED-DEFINITION. Return NAME."
   (check-values-differ definition part (mapcar #'value-text values)))
 
 (defun check-sampled (definition part choices)
-  "Signal MALFORMED-DEFINITION unless what the ranges of the design PART are of can have the values
-in CHOICES."
   (dolist (choice choices)
     (loop for (nil value) in choice
           for range in (design-ranges part)

@@ -10,7 +10,6 @@
         (t (eq name tree))))
 
 (defun doubt-unused (clauses)
-  "Warn of variables that no form of CLAUSES mentions."
   (dolist (name (varied-variables clauses))
     (unless (or (special-p name)
                 (loop for key in '(:run :until :success :measure :each-tick)
@@ -42,7 +41,6 @@
   (and (typep form '(cons (member quote function) (cons symbol null))) (second form)))
 
 (defun run-plan-text (name)
-  "Return in words how the clause :run lets a trial run the plan NAME."
   (format nil "(:run (run-plan '~(~A~) ...)), with the plan's arguments: the name ~:*~(~A~) alone ~
                runs nothing" name))
 
@@ -67,7 +65,6 @@
                          or a clause (:success form)." (abridged form) (abridged (second form))))))
 
 (defun number-as-test-advice (form)
-  "Return in sentences that FORM, a test, gives a number; else NIL."
   (when (or (realp form)
             (and (consp form) (member (first form) '(length count + - * floor round abs))))
     (let ((*print-case* :downcase) (*print-pretty* nil))
@@ -75,7 +72,6 @@
                    (< 0 ~:*~S)." form))))
 
 (defun plan-as-test-advice (form)
-  "Return in sentences that FORM, a test, is true if a plan fails; else NIL."
   (when (and (consp form) (symbolp (first form)) (same-name-p 'run-plan (first form)))
     (format nil "a plan that fails has its failure as the value, which is true. Let the call of ~
                  RUN-PLAN be the last form of :run: its second value says how it ended.")))

@@ -9,14 +9,10 @@
 
 ;;; Reader and printer.
 
-(defun call-in-peace (function package)
+(defun call-plainly (function &optional (package *package*))
   "Call FUNCTION with the reader and the printer as they are in each trial, in PACKAGE."
   (let ((*package* package) (*readtable* (global-value '*readtable*)) (*read-base* 10))
     (call-printing-plainly function)))
-
-(defun call-plainly (function)
-  "Call FUNCTION with the reader and the printer as they are in each trial."
-  (call-in-peace function *package*))
 
 ;;; Values.
 
@@ -77,7 +73,6 @@ and is the same in each run."
   (and (tree-p value) (plain-part-p value)))
 
 (defun integer-text (integer)
-  "Return INTEGER in decimal digits, whatever the printer is set to."
   (format nil "~D" integer))
 
 (defun number-text (number)
@@ -89,7 +84,6 @@ and is the same in each run."
 ;; What reads tables, reads JSON as well; in Lisp's own way of writing lists nobody else finds the
 ;; parts.
 (defun json-text (value)
-  "Return VALUE, which is in a list, as JSON has it."
   (typecase value
     (boolean (if value "true" "false"))
     (number (number-text value))
@@ -98,7 +92,6 @@ and is the same in each run."
     (t (quoted-text (bare-text value)))))
 
 (defun quoted-text (text)
-  "Return TEXT between quotes, as JSON has it."
   (with-output-to-string (out) (write-json-string (plain-text text) out)))
 
 (defun plain-value-text (value)
@@ -130,14 +123,12 @@ and is the same in each run."
          (and (realp value) value))))
 
 (defun text-before-p (a b)
-  "True if the text A comes before B in a table: numbers by size, and before words."
   (let ((number (number-in a)) (other (number-in b)))
     (cond ((and number other (/= number other)) (< number other))
           ((eq (null number) (null other)) (string< a b))
           (t number))))
 
 (defun texts-before-p (a b)
-  "True if the list of texts A comes before B, which is as long."
   (loop for (text . nil) on a
         for (other . nil) on b
         do (cond ((text-before-p text other) (return t))

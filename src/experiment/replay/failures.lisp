@@ -78,11 +78,9 @@ count, too. REPLAY-TRIAL opens one. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT
 ;;; Printing.
 
 (defun word-text (text)
-  "Return TEXT as one word of a line of the prompt."
   (if (find #\Space text) (format nil "\"~A\"" text) text))
 
 (defun example-text (flaw sample)
-  "Return the line of the prompt that opens the first trial of FLAW, of SAMPLE."
   (format nil "trial ~A ~A ~D" (word-text (sample-experiment sample))
           (word-text (sample-condition sample)) (first (first flaw))))
 

@@ -95,7 +95,6 @@ result where the trial has ended, before its simulation is gone. Return the resu
         do (wait-a-while never (min left 0.02))))
 
 (defun show-if-possible ()
-  "Open the display of the first robot of the current simulation, if something that can is loaded."
   (when *display-opener*
     (handler-case (open-display (first (simulation-robots (current-simulation))))
       (error (condition) (warning-set (text-of-condition condition))))))
@@ -147,7 +146,6 @@ there is none."
                 (native-name (directory-called directory)))))
 
 (defun code-difference (condition parts directory)
-  "Return in words what of PARTS, of CONDITION, is not what the rows in DIRECTORY were made with."
   (format nil "its code or configuration is another~@[; changed since: ~{~A~^, ~}~]"
           (changes-since condition parts (directory-called directory))))
 

@@ -115,11 +115,7 @@ that has one of this, too, in a column beside its own. Return KIND."
   (multiple-value-bind (low high) (median-interval numbers :confidence confidence)
     (values (median numbers) low high)))
 
-(defun kind-heading (kind)
-  (second (assoc kind *statistics*)))
-
 (defun estimate-by (kind name values confidence &optional (left-out 0))
-  "Return the estimate of KIND of VALUES, of which LEFT-OUT more were no such values."
   (multiple-value-bind (value low high)
       (if (zerop (length values))
           (values nil nil nil)

@@ -45,7 +45,6 @@ the index of a trial, and returns a text, or NIL if nothing did."
 (defconstant +most-told+ 5 "How many reasons and errors are told.")
 
 (defun where-text (occurrence)
-  "Return under which conditions OCCURRENCE was, most often first."
   (tally-text (stable-sort (reverse (occurrence-where occurrence)) #'> :key #'cdr) 3))
 
 (defun write-occurrences (title occurrences several-p stream)
@@ -185,7 +184,6 @@ they are too large or small for that."
             collect (format nil "~A~:[~; (~A to ~A)~]" value (estimate-low estimate) low high)))))
 
 (defun with-counts (texts estimates)
-  "Return TEXTS of equal length, with of how many trials each of ESTIMATES is."
   (let ((width (reduce #'max texts :key #'length)))
     (loop for text in texts
           for estimate in estimates
@@ -193,7 +191,7 @@ they are too large or small for that."
 
 (defun estimates-column (estimates trials name)
   (let ((heading (format nil "~A~@[~A~]" (cut name 60)
-                         (kind-heading (estimate-kind (first estimates))))))
+                         (second (assoc (estimate-kind (first estimates)) *statistics*)))))
     (case (estimate-kind (first estimates))
       (:nothing (make-text-column heading (mapcar (constantly "-") estimates)))
       (:texts (make-text-column heading (loop for estimate in estimates
@@ -279,7 +277,6 @@ is none of them."
                     (value-columns summaries) stream))
 
 (defun write-tables (results summaries stream)
-  "Write the tables of SUMMARIES, of RESULTS: first of what the experiment has, and then the rest."
   (let* ((former (former-summaries results summaries))
          (present (remove-if (lambda (summary) (member summary former)) summaries)))
     (write-heading results present former stream)

@@ -67,7 +67,6 @@ are left as they are if WHOLE-P."
       (format nil "~VA" (text-column-width column) text)))
 
 (defun write-cells (cells columns stream)
-  "Write CELLS, one of each of COLUMNS, side by side."
   (loop for number from 0 below (reduce #'max cells :key #'length)
         do (format stream "~A~%"
                    (string-right-trim " " (format nil "~{  ~A~}"
@@ -91,7 +90,6 @@ other as are needed, each with KEY."
 ;;; Numbers and counts in a cell.
 
 (defun hundredths-text (share trials)
-  "Return SHARE, seen in TRIALS, in hundredths."
   (decimal-text (* 100 share)
               (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
 

@@ -8,7 +8,6 @@
 (defvar *directory-given-p* t "True if the rows are kept in a directory that the user has given.")
 
 (defun way-to-begin-again ()
-  "Return what to do once the cause of a refusal is mended."
   (if *directory-given-p* "begin in another directory" "run the experiment again"))
 
 (defun differing-column (columns texts others)
@@ -20,7 +19,6 @@ there."
         unless (string= text other) return (list column other text)))
 
 (defun run-by-worker (experiment condition trial)
-  "Return what comes of TRIAL of CONDITION of EXPERIMENT in a thread of its own, as before."
   (let ((result nil) (stopped-p nil))
     (flet ((run (worker)
              (declare (ignore worker))
@@ -57,7 +55,7 @@ TEXTS-WITH-MARK."
 (defun check-samples (experiment rows seconds)
   "Signal MISUSE if one of ROWS, of different conditions of EXPERIMENT, comes out otherwise now. At
 least one is tried, and others as long as less than SECONDS have passed."
-  (loop with begun = (moment)
+  (loop with begun = (real-microseconds)
         for texts in rows
         do (check-repeatable experiment texts)
         until (> (seconds-since begun) seconds)))
@@ -69,7 +67,6 @@ least one is tried, and others as long as less than SECONDS have passed."
   (set-exclusive-or before now :test #'equal))
 
 (defun bound-in-trials-p (name condition)
-  "True if each trial of CONDITION binds the variable whose qualified name is NAME."
   (find name (condition-variables condition)
         :key (lambda (variable) (qualified (first variable))) :test #'string=))
 
@@ -92,7 +89,6 @@ what it has closed over; or NIL."
                           a variable, which each trial binds." (without-package function)))))))
 
 (defun check-unchanged (experiment parts directory)
-  "Signal MISUSE if the fingerprints of EXPERIMENT, of PARTS, are no longer what they were."
   (loop for condition in (experiment-conditions experiment)
         for before in parts
         for weak = (condition-weak-parts condition)
@@ -106,8 +102,6 @@ what it has closed over; or NIL."
                                   directory)))
 
 (defun reject-changed (before now condition directory)
-  "Signal MISUSE: the parts BEFORE of what decides the rows of CONDITION in DIRECTORY are NOW
-others."
   (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
                ~A~] may be of either. ~@[~A ~]~@(~A~)."
               (remove-duplicates (mapcar #'part-name (parts-changed before now)) :test #'string=)

@@ -55,7 +55,6 @@ Signals MISUSE for rows of other code."
   (- 1d0 (sequential-level look :level .05d0)))
 
 (defun count-successes (experiment trials directory)
-  "Return a table of how many of the first TRIALS of each condition of EXPERIMENT succeeded."
   (let* ((columns (columns experiment)) (seed (seed-column columns))
          (counts (make-hash-table :test 'eq)))
     (do-rows (texts (rows-file directory))
@@ -79,7 +78,6 @@ Signals MISUSE for rows of other code."
 ;;; Rounds.
 
 (defun run-round (experiment conditions last presence shard store workers time-limit stream)
-  "Run the trials up to LAST of CONDITIONS that are not there."
   (let* ((queue (make-queue conditions last presence (or shard '(0 . 1)) time-limit))
          (missing (count-missing queue))
          (workers (min workers missing))
@@ -115,9 +113,7 @@ Signals MISUSE for rows of other code."
                         (write-series-in-order (list file) rows file))))))
 
 (defun run-in (experiment directory trials until shard workers time-limit stream)
-  "Run the trials of EXPERIMENT that DIRECTORY has no rows of, and put the table in order."
-  (let ((parts (loop for condition in (experiment-conditions experiment)
-                     collect (prepare-condition experiment condition))))
+  (let ((parts (prepare-experiment experiment)))
     (when (existing-path (rows-file directory)) (check-not-refused directory))
     (multiple-value-bind (presence samples) (rows-there experiment parts directory)
       (check-samples experiment samples *seconds-for-checks*)
@@ -125,7 +121,7 @@ Signals MISUSE for rows of other code."
       (save-description experiment parts trials until directory)
       (call-with-store
        (lambda (store)
-         (let ((begun (moment)))
+         (let ((begun (real-microseconds)))
            (if until
                (run-until-narrow experiment until trials directory store workers time-limit
                                  stream)

@@ -62,12 +62,9 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
 
 ;;; On a terminal there is one line that changes; elsewhere a line now and then.
 
-(defun moment ()
-  "Return this moment, for SECONDS-SINCE."
-  (real-microseconds))
-
 (defun seconds-since (moment)
-  (/ (- (moment) moment) 1d6))
+  "Return how many seconds ago MOMENT was, as REAL-MICROSECONDS told it."
+  (/ (- (real-microseconds) moment) 1d6))
 
 (defstruct (progress (:constructor make-progress
                                (stream terminal-p total workers
@@ -80,8 +77,8 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
   (done 0 :type atomic-count)
   ;; By worker: what it is at, a list (condition trial moment seed), or NIL.
   (under-way #() :type simple-vector :read-only t)
-  (begun (moment) :type integer)
-  (told (moment) :type integer))
+  (begun (real-microseconds) :type integer)
+  (told (real-microseconds) :type integer))
 
 (defun duration-text (seconds)
   (cond ((< seconds 100) (format nil "~D s" (round seconds)))
@@ -92,7 +89,6 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
   (if (< rate 10) (format nil "~,1F" rate) (format nil "~D" (round rate))))
 
 (defun progress-text (progress)
-  "Return how far PROGRESS has come: trials, rate, and how long it will take."
   (let* ((done (progress-done progress)) (total (progress-total progress))
          (seconds (seconds-since (progress-begun progress)))
          (rate (if (plusp seconds) (/ done seconds) 0d0)))
@@ -104,7 +100,6 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
 (defconstant +longer+ 5 "How many times as long as those before it a trial must take to be named.")
 
 (defun trials-under-way (progress)
-  "Return what the workers of PROGRESS are at, lists (condition trial moment seed), oldest first."
   (sort (remove nil (coerce (progress-under-way progress) 'list)) #'< :key #'third))
 
 (defun usual-seconds (progress)
@@ -141,7 +136,7 @@ longest, if that is long; or NIL."
                (or last
                    (> (seconds-since (progress-told progress))
                       (if (progress-terminal-p progress) 0.5 10))))
-      (setf (progress-told progress) (moment))
+      (setf (progress-told progress) (real-microseconds))
       (if (progress-terminal-p progress)
           (format stream "~C~A~@[; ~A~]~C[K~:[~;~%~]" #\Return (progress-text progress)
                   (longest-under-way progress) #\Escape last)
@@ -261,7 +256,7 @@ STOPPING-P returns true."
 
 (defun run-and-keep (experiment condition trial queue store progress worker)
   "Run TRIAL of CONDITION, which is of QUEUE, keep what comes of it in STORE, and tell PROGRESS."
-  (let ((begun (moment)))
+  (let ((begun (real-microseconds)))
     (setf (svref (progress-under-way progress) worker)
           (list condition trial begun (trial-seed experiment trial)))
     (let ((result (run-guarded experiment condition trial (lambda () (queue-closed-p queue))

@@ -44,7 +44,6 @@ is no git, or DIRECTORY is in no tree of it."
     (and entry (source-file (entry-source entry)))))
 
 (defun origin-lines (experiment)
-  "Return what a table of EXPERIMENT that is written now is made with, a list of lines."
   (let* ((file (experiment-file experiment))
          ;; The program may have been carried to where there are no sources.
          (system (asdf:registered-system "ars-magna"))
@@ -110,7 +109,6 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
   (ignore-errors (file-text (description-file directory))))
 
 (defun whole-description-p (text)
-  "True if TEXT, of a file, is as it was written."
   (let ((place (and text (search *check-title* text :from-end t))))
     (and place
          (string= (check-line (subseq text 0 place)) (subseq text place)))))
@@ -145,7 +143,6 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
     (write-checked-text text (description-file directory))))
 
 (defun write-checked-text (text file)
-  "Let FILE have TEXT, and its check sum."
   (write-file-anew (lambda (stream)
                      (write-string text stream)
                      (write-string (check-line text) stream))
@@ -188,7 +185,6 @@ are none."
           collect (string-trim " " line))))
 
 (defun form-described (directory)
-  "Return the lines of the experiment's own text in the text in DIRECTORY."
   (loop for line in (member-if (lambda (line)
                                  (and (starts-with-subseq "(" line) (search "defexperiment" line)))
                                (description-lines directory))

@@ -150,7 +150,6 @@ fingerprint and one value of each thing that varies."
                         other condition fingerprint)))))))
 
 (defun reject-groups (condition fingerprint other texts)
-  "Signal MISUSE: rows of CONDITION have FINGERPRINT and TEXTS, others OTHER, a list of both."
   (if (string= fingerprint (first other))
       (reject-use "Rows of the condition ~A differ in what varies: ~{~A~^, ~} and ~{~A~^, ~}. Some ~
                    have been changed."

@@ -6,15 +6,12 @@
           check-same-code))
 
 (defun copy-description (directories target)
-  "Let TARGET have the text of what decides a table that one of DIRECTORIES has, the first one."
   (let ((file (find-if #'existing-path (mapcar #'description-file directories)))
         (own (description-file target)))
     (when (and file (not (equal file own)))
       (call-writing (lambda () (check-unprotected own) (uiop:copy-file file own)) own))))
 
 (defun join-series (directories target rows)
-  "Put the series in DIRECTORIES, if any has some, into one table in TARGET, for the trials in the
-table ROWS."
   (let ((files (remove-if-not #'existing-path (mapcar #'series-file directories))))
     (when files (write-series-in-order files rows (series-file target)))))
 
@@ -123,7 +120,6 @@ whether its series is there. Tables with other columns have none."
   (string= fingerprint (condition-fingerprint condition)))
 
 (defun presence-below (experiment directory)
-  "Return which trials of EXPERIMENT have rows, and series, in DIRECTORY and the shards below it."
   (let ((presence (make-presence)))
     (map-rows-there (lambda (condition trial fingerprint directory complete-p)
                       (declare (ignore directory))
@@ -148,8 +144,7 @@ EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
 (defun check-same-code (experiment directory)
   "Signal MISUSE if there are rows in DIRECTORY or the shards below it that EXPERIMENT, as it is
 now, could not be gone on with, and DAMAGED-TABLE if they have other columns."
-  (let ((parts (loop for condition in (experiment-conditions experiment)
-                     collect (prepare-condition experiment condition))))
+  (let ((parts (prepare-experiment experiment)))
     (dolist (name (directories-with-rows directory))
       (check-beginning (rows-file (directory-called name)) (columns experiment)))
     (map-rows-there (lambda (condition trial fingerprint name complete-p)

@@ -95,7 +95,6 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (or (gethash text shared) (setf (gethash text shared) text)))
 
 (defun new-sample (texts seed measures)
-  "Return an empty sample for the row TEXTS, whose column SEED is that of the seed."
   (let ((sample (make-sample (first texts) (second texts) (third texts) (subseq texts 3 seed))))
     (setf (sample-measures sample) (loop repeat measures collect (column)))
     sample))
@@ -105,7 +104,6 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (and (string/= text "") (ldb (byte 60 0) (parse-integer text :radix 16))))
 
 (defun note-row (sample texts measures shared)
-  "Enter the row whose TEXTS from the seed on are these into SAMPLE."
   (destructuring-bind (seed trial outcome reason ticks &rest rest) texts
     (vector-push-extend (parse-integer seed) (sample-seeds sample))
     (vector-push-extend (parse-integer trial) (sample-trials sample))
@@ -150,7 +148,6 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
     results))
 
 (defun results-in (file)
-  "Return the results in the table FILE. Signals DAMAGED-TABLE."
   (or (results-in-order file)
       (call-with-temporary-directory
        (lambda (directory)

@@ -4,15 +4,8 @@
 
 (addition damaged-table)
 
-(defun digest-text (digest)
-  (let ((text (make-string 16)))
-    (dotimes (place 16 text)
-      (setf (char text place)
-            (char "0123456789ABCDEF" (ldb (byte 4 (* 4 (- 15 place))) digest))))))
-
 (defun result-digest-text (result)
-  (let ((digest (result-digest result)))
-    (if digest (digest-text digest) "")))
+  (format nil "~@[~16,'0X~]" (result-digest result)))
 
 (defun trial-texts (experiment result)
   "Return the texts that say of which trial of EXPERIMENT RESULT is: each line begins with them."
@@ -25,7 +18,6 @@
                   (integer-text (result-trial result))))))
 
 (defun result-texts (experiment result)
-  "Return the texts of the row for RESULT, of a trial of EXPERIMENT, in the order of its columns."
   (append (trial-texts experiment result)
           (list (result-outcome result)
                 (result-reason result)

@@ -25,7 +25,6 @@ begin and end, and on which line."
   (groups (make-hash-table :test 'equal) :read-only t))
 
 (defun series-group (key index)
-  "Return the table of blocks by trial of KEY, which is made if there is none."
   (or (gethash key (series-index-groups index))
       (setf (gethash key (series-index-groups index)) (make-hash-table))))
 
@@ -55,7 +54,6 @@ begin and end, and on which line."
     count))
 
 (defun cell-start (line number)
-  "Return where the cell NUMBER, from 0 but not 0, begins in LINE."
   (map-commas (lambda (place) (when (zerop (decf number)) (return-from cell-start (1+ place))))
               line 0))
 
@@ -83,7 +81,6 @@ lines."
   (block nil :type (or null series-block)))
 
 (defun continues-block-p (scan line)
-  "True if LINE is the next one of the block of SCAN."
   (let ((block (scan-block scan)) (beginning (scan-beginning scan)))
     (and block
          (begins-with-p beginning line)
@@ -98,7 +95,6 @@ lines."
           do (reject-row file number "~A cannot be the ~A of a trial." (plain-text text) column)))
 
 (defun begin-block (scan line start number)
-  "Let SCAN have a block that begins with LINE, at START, the line NUMBER."
   (let* ((index (scan-index scan)) (columns (series-index-columns index))
          (texts (cells-of-line line columns (scan-file scan) number))
          (seed (seed-column columns)))
@@ -152,7 +148,6 @@ the row says nothing of how it ended, as its time was up or it ended its thread.
   (find-if (lambda (block) (and (zerop (block-first block)) (= count (block-count block)))) blocks))
 
 (defun block-of-row (index texts)
-  "Return the block in INDEX with all lines of the trial whose row is TEXTS, or NIL."
   (whole-block (blocks-of index texts)
                (count-expected texts (seed-column (series-index-columns index)))))
 
@@ -214,8 +209,6 @@ DAMAGED-TABLE."
               (native-name (uiop:pathname-directory-pathname rows))))
 
 (defun chosen-block (index texts line-of)
-  "Return the block in INDEX with the lines of the trial whose row is TEXTS, or NIL. Signals
-DAMAGED-TABLE if there are others that differ."
   (let ((whole (block-of-row index texts)))
     (when whole
       (dolist (block (blocks-of index texts) whole)

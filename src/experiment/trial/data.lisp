@@ -50,7 +50,6 @@ PATH are the compound parts that it is in, by how deep they are."
   (mark-word (text-word text) walk))
 
 (defun mark-atom (atom walk)
-  "Enter ATOM, which has no parts, into WALK."
   (typecase atom
     (fixnum (mark-word 1 walk) (mark-word atom walk))
     (double-float (mark-word 2 walk) (mark-word (double-to-bits atom) walk))
@@ -67,7 +66,6 @@ PATH are the compound parts that it is in, by how deep they are."
     (throw 'too-large nil)))
 
 (defun walk-value (value depth walk)
-  "Enter VALUE, at DEPTH, into WALK, with all that is in it."
   (if (and (typep value 'compound) (not (stringp value)) (not (bit-vector-p value)))
       (walk-compound value depth walk)
       (mark-atom value walk)))
@@ -131,7 +129,7 @@ PATH are the compound parts that it is in, by how deep they are."
 it is too large."
   (let ((walk (make-walk (make-digest) atom)))
     (catch 'too-large
-      (call-in-peace (lambda () (walk-value value 0 walk)) (find-package :keyword))
+      (call-plainly (lambda () (walk-value value 0 walk)) (find-package :keyword))
       (digest-value (walk-digest walk)))))
 
 (defun data-number (value)
@@ -160,10 +158,10 @@ CALL-WALKING."
         (and target (list (call-walking target atom))))
       (let ((walk (make-walk (make-digest) atom)))
         (catch 'too-large
-          (call-in-peace (lambda ()
-                           (entry-numbers object 0 walk
-                                          (lambda (key) (lasting-key-p key object))))
-                         (find-package :keyword))))))
+          (call-plainly (lambda ()
+                          (entry-numbers object 0 walk
+                                         (lambda (key) (lasting-key-p key object))))
+                        (find-package :keyword))))))
 
 (defun no-data-p (value)
   "True if VALUE is NIL or an empty hash table, as often stands where data are to be kept later; or

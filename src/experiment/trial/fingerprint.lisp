@@ -64,10 +64,6 @@ variables; such lists for what variables hold weakly."
 (defvar *typed-functions* (make-hash-table :test 'eq :weakness :key :synchronized t)
   "Numbers of functions that were typed.")
 
-(defun typed-number (function)
-  (or (gethash function *typed-functions*)
-      (setf (gethash function *typed-functions*) (unheard-of-number))))
-
 ;;; Visiting.
 
 (defun first-visit-p (object reach)
@@ -85,7 +81,10 @@ variables; such lists for what variables hold weakly."
   (multiple-value-bind (file written) (function-file function)
     (if file
         (note-file file written reach)
-        (note-part :typed (safe-text name) (typed-number function) reach))))
+        (note-part :typed (safe-text name)
+                   (or (gethash function *typed-functions*)
+                       (setf (gethash function *typed-functions*) (unheard-of-number)))
+                   reach))))
 
 (defun note-function (function name reach)
   "Note FUNCTION, which is called NAME, if its file does not say all: it was not defined so, but put
@@ -118,7 +117,6 @@ empty table count as no data, since they often stand where a table or structure 
 
 ;; What an experiment varies, and how often it is tried, decides no trial.
 (defun visit-definition (entry reach)
-  "Visit what ENTRY, of a registry, says, if that is a user's."
   (let ((object (entry-object entry)))
     (when (and (not (experiment-p object)) (users-p entry) (first-visit-p entry reach))
       (note-part (type-of object) (qualified (entry-name entry)) (or (entry-digest entry) 0) reach)
@@ -175,22 +173,17 @@ empty table count as no data, since they often stand where a table or structure 
           do (visit (pop list) reach))
     (visit list reach)))
 
-(defun visit-vector (vector reach)
-  (when (first-visit-p vector reach)
-    (loop for element across vector do (visit element reach))))
-
 (defun visit-setter (name reach)
-  "Visit the function called NAME, as (setf symbol)."
   (when (and (symbolp (second name)) (users-symbol-p (second name)) (fboundp name))
     (visit-function (fdefinition name) name reach)))
 
 (defun visit (object reach)
-  "Note in REACH all that OBJECT leads to."
   (typecase object
     (null)
     (symbol (visit-symbol object reach))
     (function (visit-function object nil reach))
-    (simple-vector (visit-vector object reach))
+    (simple-vector (when (first-visit-p object reach)
+                     (loop for element across object do (visit element reach))))
     (cons (if (and (eq 'setf (first object)) (proper-list-p object) (= 2 (length object))
                    (symbolp (second object)))
               (visit-setter object reach)
@@ -227,7 +220,6 @@ it has been changed since."
           (t 0))))
 
 (defun file-parts (files)
-  "Return a part for each name among FILES, lists (file written)."
   (let ((parts '()))
     (loop for (file written) in files
           for part = (find (short-name file) parts :key #'second :test #'string=)
@@ -252,11 +244,6 @@ it has been changed since."
   "Return the definitions that the run of a trial of CONDITION begins with; see src/run."
   (call-in-trial (lambda () (definitions-of (current-simulation))) experiment condition 1))
 
-(defun entries-of (definitions)
-  (loop for definition in definitions
-        for entry = (definition-entry definition)
-        when entry collect entry))
-
 (defun definitions-without-entry (definitions)
   "Return those of DEFINITIONS that nothing else stands for: manipulations, what is undefined."
   (remove-if (lambda (definition)
@@ -265,7 +252,8 @@ it has been changed since."
 
 (defun reach-of (experiment condition definitions)
   (let ((reach (make-reach)))
-    (dolist (entry (entries-of definitions)) (visit-definition entry reach))
+    (dolist (entry (remove nil (mapcar #'definition-entry definitions)))
+      (visit-definition entry reach))
     (dolist (function (list* (experiment-run experiment) (experiment-until experiment)
                              (experiment-success experiment)
                              (mapcar #'second (append (experiment-measures experiment)
@@ -307,17 +295,15 @@ reach."
               collect (list symbol (global-value symbol)))
         (condition-weak-parts condition) (reach-weak-parts reach)))
 
-(defun look-up-fingerprint (experiment condition)
+(defun prepare-condition (experiment condition)
   "Give CONDITION of EXPERIMENT its fingerprint, and what else its trials need. Return the parts of
 the fingerprint."
-  (multiple-value-bind (parts reach) (fingerprint-parts experiment condition)
-    (note-reach condition reach)
-    (setf (condition-fingerprint condition) (fingerprint-of parts))
-    parts))
-
-(defun prepare-condition (experiment condition)
-  "Do as LOOK-UP-FINGERPRINT, whatever reader and printer are set to."
-  (call-plainly (lambda () (look-up-fingerprint experiment condition))))
+  (call-plainly
+   (lambda ()
+     (multiple-value-bind (parts reach) (fingerprint-parts experiment condition)
+       (note-reach condition reach)
+       (setf (condition-fingerprint condition) (fingerprint-of parts))
+       parts))))
 
 (defun prepare-trials (experiment condition)
   "Give CONDITION of EXPERIMENT what its trials need, but no fingerprint: its files may have been
@@ -328,10 +314,10 @@ changed."
                  (reach-of experiment condition (definitions-in-trial experiment condition))))))
 
 (defun prepare-experiment (experiment)
-  "Give the conditions of EXPERIMENT their fingerprints. Signals MISUSE if a file is not as it was
-loaded, and what the making of its worlds signals."
-  (dolist (condition (experiment-conditions experiment) experiment)
-    (prepare-condition experiment condition)))
+  "Give the conditions of EXPERIMENT their fingerprints. Return the parts of each. Signals MISUSE if
+a file is not as it was loaded, and what the making of its worlds signals."
+  (loop for condition in (experiment-conditions experiment)
+        collect (prepare-condition experiment condition)))
 
 (defun settle-fingerprints ()
   "Let what the experiments' files say now be what their fingerprints say from now on, whatever

@@ -26,28 +26,23 @@
 (defparameter *plan-states* '(:succeeded :failed :evaporated :deadlock :limit :stopped)
   "What RUN-PLAN returns as its second value.")
 
-(defun reason-of-failure (failure)
-  (value-text (or (and (typep failure 'plan-failure) (failure-class failure))
-                  (type-of failure))))
-
 (defun success-p (outcome) (string= outcome "success"))
 
 (defun plan-outcome (result state)
-  "Return outcome and reason of a plan that RUN-PLAN said has RESULT and STATE."
   (case state
     (:succeeded (values "success" ""))
-    (:failed (values "failure" (reason-of-failure result)))
+    (:failed (values "failure"
+                     (value-text (or (and (typep result 'plan-failure) (failure-class result))
+                                     (type-of result)))))
     (:limit (values "limit" ""))
     (t (values "failure" (value-text state)))))
 
 (defun task-outcome (task)
-  "Return outcome and reason of TASK, a plan that was begun, as it is when its trial ends."
   (if (task-over-p task)
       (plan-outcome (task-result task) (task-state task))
       (values "failure" "unfinished")))
 
 (defun outcome-of-values (&optional result reason &rest others)
-  "Return outcome and reason of a trial whose form :run returned RESULT, REASON and OTHERS."
   (declare (ignore others))
   (cond ((member reason *plan-states*) (plan-outcome result reason))
         ((task-p result) (task-outcome result))
@@ -83,7 +78,6 @@ did; else an empty one."
 ;;;; Calling the forms of an experiment
 
 (defun call-form (function condition)
-  "Call FUNCTION, of a form of the experiment, with the values that CONDITION has for variables."
   (apply (the function function) (condition-arguments condition)))
 
 (defun truth-of (clause function condition)

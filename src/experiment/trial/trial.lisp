@@ -47,7 +47,7 @@ it was looked up: what a trial sets, no other sees."
 gate to be asked besides that of the limit. With JOURNAL the simulation keeps one."
   (let ((seed (trial-seed experiment trial))
         (limit (experiment-limit experiment)))
-    (call-in-peace
+    (call-plainly
      (lambda ()
        (call-with-parameter-values
         (copy-seq (condition-parameters condition))
@@ -124,7 +124,6 @@ took for a success and :success does not is one that was only believed."
         (result-digest result) (state-digest)))
 
 (defun note-error (result text)
-  "Let RESULT be that of a trial that broke off, as TEXT says."
   (setf (result-outcome result) "error"
         (result-reason result) ""
         (result-measures result) '()
@@ -175,7 +174,6 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
                          (task-label task) (failure-text (task-result task)))))))
 
 (defun conduct (experiment result)
-  "Do in the current simulation what EXPERIMENT says, and enter into RESULT what comes of it."
   (let* ((condition (result-condition result))
          (*trial-values* '())
          (failed '())
@@ -191,7 +189,6 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
       (measure experiment result))))
 
 (defun measure (experiment result)
-  "Enter into RESULT what EXPERIMENT measures; of what breaks off, an empty text and the error."
   (setf (result-measures result)
         (loop with condition = (result-condition result)
               for (name function) in (experiment-measures experiment)
@@ -208,8 +205,6 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
     (when trouble (note-error result trouble))))
 
 (defun conduct-to-end (experiment result)
-  "Do in the current simulation what EXPERIMENT says; enter into RESULT what comes of it, also if it
-breaks off, and how far it has come."
   (call-sampling (lambda ()
                    (call-noting-errors (lambda () (conduct experiment result)) result)
                    (note-end result))
