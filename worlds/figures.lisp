@@ -37,11 +37,6 @@ map.")
 
 ;;; The page.
 
-(defun page-lines (page)
-  (with-open-file (in page :external-format :utf-8)
-    (loop for line = (read-line in nil)
-             while line collect line)))
-
 (defun comment-line (what)
   (format nil "<!-- ~(~A~) -->" what))
 
@@ -182,8 +177,9 @@ the short way."
 and save their pictures."
   (save-quick-figures)
   (let* ((page (in-worlds "README.md"))
-         (lines (with-table-lines (page-lines page) 'choosing-by-rollouts
-                            (choosing-lines (run-experiment 'choosing-by-rollouts)))))
+         (lines (with-table-lines (uiop:read-file-lines page :external-format :utf-8)
+                  'choosing-by-rollouts
+                  (choosing-lines (run-experiment 'choosing-by-rollouts)))))
     (loop for (experiment . names) in *pictures-kept*
              do (let ((results (run-experiment experiment)))
                   (setf lines (with-table lines experiment

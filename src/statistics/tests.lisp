@@ -178,15 +178,6 @@ from -1e15 to 1e15, and RESAMPLES from 100 to 1e7."
 
 ;;;; Several tests
 
-(defun fill-holm (shares ranked)
-  "Set the elements of the vector SHARES to what they are worth among the others; RANKED are its
-indexes, from the least share on."
-  (loop with worth = 0d0
-        for index in ranked
-        for left downfrom (length shares)
-        do (setf worth (max worth (min 1d0 (* left (aref shares index))))
-                 (aref shares index) worth)))
-
 (addition holm-adjusted)
 (defun holm-adjusted (p-values)
   "Return a list of P-VALUES, a list or vector, each as it counts among so many tests: if all whose
@@ -196,8 +187,12 @@ result is equal. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1.
   (check-argument holm-adjusted p-values (elements-p p-values #'probability-p)
                   "a list or vector of numbers from 0 to 1")
   (let ((shares (map 'doubles #'meant p-values)))
-    (fill-holm shares (stable-sort (loop for i below (length shares) collect i) #'<
-                                   :key (lambda (i) (aref shares i))))
+    (loop with worth = 0d0
+          for index in (stable-sort (loop for i below (length shares) collect i) #'<
+                                    :key (lambda (i) (aref shares i)))
+          for left downfrom (length shares)
+          do (setf worth (max worth (min 1d0 (* left (aref shares index))))
+                   (aref shares index) worth))
     (coerce shares 'list)))
 
 ;;;; Looking at results while they come in

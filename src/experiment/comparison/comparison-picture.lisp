@@ -28,10 +28,7 @@
                         (format nil "p ~A" (p-text (paired-adjusted-p difference))))))))))
 
 (defun rate-compared-p (measure comparison)
-  (some (lambda (contrast)
-          (let ((difference (difference-called measure contrast)))
-            (and difference (eq :rate (paired-kind difference)))))
-        (all-contrasts comparison)))
+  (find :rate (shown-differences (all-contrasts comparison) measure) :key #'paired-kind))
 
 (defun range-text (numbers)
   (let ((least (reduce #'min numbers)) (most (reduce #'max numbers)))
@@ -91,8 +88,7 @@ without that program."
   (check-argument save-comparison-picture comparison (comparison-p comparison) "a comparison")
   (check-argument save-comparison-picture measure (typep measure '(or symbol string))
                   "the name of a measure")
-  (unless (some (lambda (contrast) (difference-called measure contrast))
-                (all-contrasts comparison))
+  (unless (shown-differences (all-contrasts comparison) measure)
     (reject-name "measure" (string measure)
                  (remove-duplicates
                   (loop for contrast in (all-contrasts comparison)

@@ -47,51 +47,50 @@ the index of a trial, and returns a text, or NIL if nothing did."
 (defun where-text (occurrence)
   (tally-text (stable-sort (reverse (occurrence-where occurrence)) #'> :key #'cdr) 3))
 
-(defun write-occurrences (title occurrences several-p stream)
-  "Write OCCURRENCES below TITLE, under which conditions each was if there are SEVERAL-P, and how to
-see one of each."
-  (when occurrences
-    (let ((width (length (integer-text (occurrence-count (first occurrences))))))
+(defun write-occurrences (title results text-of stream)
+  "Write below TITLE what OCCURRENCES finds in RESULTS, under which conditions each was if there are
+several, and how to see one of each."
+  (let ((all (occurrences results text-of)) (several-p (rest (results-samples results))))
+    (when all
       (format stream "~%~A~%" title)
-      (dolist (one (subseq occurrences 0 (min +most-told+ (length occurrences))))
-        (write-wrapped (format nil "~A~@[: ~A~]" (occurrence-text one)
-                               (and several-p (where-text one)))
-                       stream :first (format nil "  ~V@A  " width (occurrence-count one)))
-        (write-wrapped (replay-text one) stream
-                       :first (format nil "  ~VA  " width "")))
-      (when (nthcdr +most-told+ occurrences)
+      (loop with width = (length (integer-text (occurrence-count (first all))))
+            for one in all
+            repeat +most-told+
+            do (write-wrapped (format nil "~A~@[: ~A~]" (occurrence-text one)
+                                      (and several-p (where-text one)))
+                              stream :first (format nil "  ~V@A  " width (occurrence-count one)))
+               (write-wrapped (replay-text one) stream :first (format nil "  ~VA  " width "")))
+      (when (nthcdr +most-told+ all)
         (format stream "  and ~D of other kinds~%"
-                (reduce #'+ (nthcdr +most-told+ occurrences) :key #'occurrence-count))))))
+                (reduce #'+ (nthcdr +most-told+ all) :key #'occurrence-count))))))
 
 (defun write-reasons (results stream)
   (write-occurrences
-   "Why trials failed, and how to see one:"
-   (occurrences results
-                (lambda (sample index)
-                  (let ((outcome (aref (sample-outcomes sample) index))
-                        (reason (aref (sample-reasons sample) index)))
-                    (cond ((string= "limit" outcome) "limit of ticks")
-                          ((string= "timeout" outcome) "limit of time")
-                          ((not (failed-p outcome)) nil)
-                          ((string= "" reason) "no reason given")
-                          ((string= "only-believed" reason)
-                           "only-believed (a success by the values of :run, but not by :success)")
-                          (t reason)))))
-   (rest (results-samples results)) stream))
+   "Why trials failed, and how to see one:" results
+   (lambda (sample index)
+     (let ((outcome (aref (sample-outcomes sample) index))
+           (reason (aref (sample-reasons sample) index)))
+       (cond ((string= "limit" outcome) "limit of ticks")
+             ((string= "timeout" outcome) "limit of time")
+             ((not (failed-p outcome)) nil)
+             ((string= "" reason) "no reason given")
+             ((string= "only-believed" reason)
+              "only-believed (a success by the values of :run, but not by :success)")
+             (t reason))))
+   stream))
 
 (defun write-errors (results stream)
-  (flet ((errors (broken-off-p)
-           (occurrences results
-                        (lambda (sample index)
-                          (let ((text (aref (sample-errors sample) index))
-                                (outcome (aref (sample-outcomes sample) index)))
-                            (and (string/= "" text)
-                                 (eq broken-off-p (string= "error" outcome))
-                                 text))))))
-    (write-occurrences "Errors by which trials broke off, and how to see one:" (errors t)
-                       (rest (results-samples results)) stream)
-    (write-occurrences "Errors that trials outlived, and how to see one:" (errors nil)
-                       (rest (results-samples results)) stream)))
+  (loop for (broken-off-p title)
+          in '((t "Errors by which trials broke off, and how to see one:")
+               (nil "Errors that trials outlived, and how to see one:"))
+        do (write-occurrences title results
+                              (lambda (sample index)
+                                (let ((text (aref (sample-errors sample) index))
+                                      (outcome (aref (sample-outcomes sample) index)))
+                                  (and (string/= "" text)
+                                       (eq broken-off-p (string= "error" outcome))
+                                       text)))
+                              stream)))
 
 ;;; Which intervals.
 

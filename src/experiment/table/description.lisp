@@ -131,10 +131,9 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
   "Return how wide the text in DIRECTORY says intervals were to be, or NIL."
   (let* ((command (find-if (lambda (line) (starts-with-subseq "  ./cli/ars-magna experiment" line))
                            (description-lines directory)))
-         (place (and command (search "--until " command))))
-    (and place
-         (number-in (subseq command (+ place (length "--until "))
-                            (position #\Space command :start (+ place (length "--until "))))))))
+         (place (and command (search "--until " command)))
+         (start (and place (+ place (length "--until ")))))
+    (and start (number-in (subseq command start (position #\Space command :start start))))))
 
 (defun save-description (experiment parts trials until directory)
   (let ((text (with-output-to-string (stream)

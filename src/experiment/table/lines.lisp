@@ -104,12 +104,10 @@ their groups."
 
 (defun group-before-p (a b)
   "True if the rows of the group A come before those of B: by experiment, and then by what varies."
-  (destructuring-bind (experiment fingerprint condition &rest texts) (group-key a)
-    (destructuring-bind (other-experiment other-fingerprint other-condition &rest others)
-        (group-key b)
-      (texts-before-p (append (list experiment) texts (list condition fingerprint))
-                      (append (list other-experiment) others
-                              (list other-condition other-fingerprint))))))
+  (flet ((texts (group)
+           (destructuring-bind (experiment fingerprint condition &rest texts) (group-key group)
+             (append (list experiment) texts (list condition fingerprint)))))
+    (texts-before-p (texts a) (texts b))))
 
 (defun rank-groups (groups order)
   "Give GROUPS their ranks: those of the conditions in ORDER, a list of names, by that, and then the
