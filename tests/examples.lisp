@@ -31,18 +31,6 @@
     (unwind-protect (base:with-own-definitions () (funcall function))
       (mapc #'delete-package (set-difference (list-all-packages) packages)))))
 
-(test examples.of-lisp-are-so
-  (dolist (page (pages-of-examples))
-    (let ((blocks (lisp-blocks (project-file page))))
-      (call-forgetting-packages
-       (lambda ()
-         (is (<= 0 (reduce #'+ (mapcar #'run-block blocks))) page))))))
-
-;;; Sessions, each of which begins anew.
-
-(defparameter *pages-of-sessions* '("cli/lines/README.md")
-  "The pages whose blocks of text are sessions with DOT, in a world without noise.")
-
 (defun call-where-files-go (function)
   "Call FUNCTION where files may be written, and are then forgotten."
   (uiop:with-temporary-file (:pathname place)
@@ -50,6 +38,23 @@
       (ensure-directories-exist directory)
       (unwind-protect (uiop:with-current-directory (directory) (funcall function))
         (uiop:delete-directory-tree directory :validate t)))))
+
+(test examples.of-lisp-are-so
+  (dolist (page (pages-of-examples))
+    (let ((blocks (lisp-blocks (project-file page))))
+      (call-where-files-go
+       (lambda ()
+         (call-forgetting-packages
+          (lambda ()
+            (call-with-suites-of-its-own
+             (lambda ()
+               (is (<= 0 (reduce #'+ (mapcar #'run-block blocks))) page))
+             :my-house))))))))
+
+;;; Sessions, each of which begins anew.
+
+(defparameter *pages-of-sessions* '("cli/lines/README.md")
+  "The pages whose blocks of text are sessions with DOT, in a world without noise.")
 
 (defun check-session (lines page)
   "Check that what has been typed in LINES, of PAGE, is answered as they say."
