@@ -32,7 +32,7 @@
     (is (find "lisp" blocks :key #'page-block-kind :test #'equal))
     (is (find-if (lambda (block)
                    (and (session-block-p block)
-                        (equal "A first session" (page-block-heading block))))
+                        (equal "A session at the prompt" (page-block-heading block))))
                  blocks)))
   (is (equal '(("(a ; b" "   c)") ("#t") ("'(d)"))
              (forms-in '("; x" "(a ; b" "   c)   ; y" "" "#t" "'(d) ; z")))))
