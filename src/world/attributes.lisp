@@ -82,14 +82,15 @@
                      (format nil "a ~(~A~) attribute, as the simulator computes with ~(~S~)"
                              (attribute-kind old) (attribute-name old))))))
 
-(defgeneric attribute-redefined (old new)
-  (:documentation "Called when the attribute NEW has taken the place of OLD, which may be NIL.")
-  (:method (old new) (declare (ignore old new)) nil))
+;;; What programs ask of a thing, or give it, many a time: of most names it is known what they may
+;;; be slips for. What is asked for may also be a slip for what a thing has that nobody declared.
+
+(define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
+  "For names that are not declared, the name that each may be a slip for, or NIL.")
 
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
-  "Define or redefine the attribute NAME; what DEFATTRIBUTE expands to. Return NAME.
-See reading 120."
+  "Define or redefine the attribute NAME; what DEFATTRIBUTE expands to. Return NAME (reading 120)."
   (let ((definition (title "defattribute" name))
         (old (attribute-of name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
@@ -112,7 +113,8 @@ See reading 120."
                      :base (double base) :max-mult (double max-mult)
                      :noticed (check-probability definition :noticed noticed)
                      :supporters (mapcar #'attribute-key supported-by)))
-    (attribute-redefined old (attribute-of name))
+    (clrhash *likenesses*)
+    (when old (attribute-redefined (attribute-of name)))
     name))
 
 (defun doubt-attribute-options (definition domain options)
@@ -182,8 +184,7 @@ are from -1e15 to 1e15."
   (and (number-pair-p value) (<= (first value) (second value))))
 
 (defun value-limits (value)
-  "Return the least and the greatest number that VALUE, a number or a list of two, stands for; NIL
-for anything else."
+  "Return the least and greatest number that VALUE, a number or two in a list, means; else NIL."
   (cond ((realp value) (values value value))
         ((number-pair-p value) (values (first value) (second value)))))
 
@@ -202,8 +203,7 @@ for anything else."
   (and attribute (member nil (attribute-domain attribute)) t))
 
 (defun asks-range-p (attribute value)
-  "True if VALUE, asked for of ATTRIBUTE, or NIL, has the shape of a range and means one, not any
-of two values."
+  "True if VALUE, asked for of ATTRIBUTE, or NIL, is a range, and does not mean any of two values."
   (and (number-pair-p value) (not (discrete-p attribute))))
 
 (define-facts (attribute attribute)

@@ -64,11 +64,6 @@ which expected EXPECTED there."
 (defvar *path* '()
   "The positions that lead from the definition at hand to the clause that is being carried out.")
 
-(defun clause-again (path)
-  "Return the clause at PATH of the definition at hand as it stands in its file now."
-  (reduce (lambda (form position) (nth position form)) path
-          :initial-value (definition-again *definition*)))
-
 (defun call-with-clause (function clause path)
   "Call FUNCTION with CLAUSE, the one at PATH of the definition at hand. A user who chooses so
 leaves it out (then return NIL), or has FUNCTION called with another: read again, or typed. A whole
@@ -80,7 +75,9 @@ definition that is typed takes the place of the one at hand."
     (read-again ()
       :test in-file-p
       :report "Read the clause again from its file."
-      (call-with-clause function (clause-again path) path))
+      (call-with-clause function (reduce (lambda (form position) (nth position form)) path
+                                         :initial-value (definition-again *definition*))
+                        path))
     (use-value (other)
       :report "Use another clause."
       :interactive (lambda () (read-value "A clause to use"))

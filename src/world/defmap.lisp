@@ -12,7 +12,6 @@
 (defvar *code* '() "The compiled code of the map that is being defined.")
 
 (defun code-form (code)
-  "Return a form that makes the list of CODE, lists (key form)."
   `(list ,@(loop for (key form) in (remove-duplicates code :key #'first :test #'equal)
                  collect `(list ',key (lambda () ,form)))))
 
@@ -22,7 +21,6 @@
     (if compiled (funcall compiled) (eval form))))
 
 (defun descriptor-value (name descriptor)
-  "Return DESCRIPTOR, of the thing called NAME, with the values of the code in it."
   (loop for (key value) in descriptor
         collect (list key (if (code-p key value)
                               (code-value name value (draw-function-form name value))
@@ -31,7 +29,6 @@
 ;;; Checking.
 
 (defun check-head (definition clause head)
-  "Signal unless HEAD is a name or (name [:prototype form] [:kickers (name...)])."
   (let ((head (if (consp head) head (list head))))
     (unless (and (proper-list-p head) (first head) (symbolp (first head)))
       (reject-clause definition clause "a name, or (name :prototype thing)"))
@@ -109,15 +106,12 @@ MALFORMED-DEFINITION if contents are wrong."
   :things (destructuring-bind (x y) position
             (list (recipe-of-thing (map-title map) clause head descriptor contents x y))))
 
-;;; Building.
-
 ;;; Clauses are carried out, one after another, when the form is evaluated: what is wrong with one
 ;;; is MALFORMED-DEFINITION, with restarts for it. When it is expanded they are only looked through
 ;;; for code, and for mistakes to warn of in a file that is compiled.
 
 (defun find-places (map path)
-  "Find the places of MAP anew and keep it in the file PATH, if that is one and all code of place
-types worked. Return MAP."
+  "Find the places of MAP anew, and keep it in PATH, if any, if the code of all types worked."
   (let ((whole (nth-value 1 (classify-places map))))
     (when (and path whole) (write-cache map path (cache-key map)))
     map))
@@ -173,8 +167,7 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
   (if (stringp (first clauses)) (rest clauses) clauses))
 
 (defun fill-map (map clauses)
-  "Let MAP have the walls and things that CLAUSES, with the map's documentation or without, stand
-for."
+  "Let MAP have the walls and things that CLAUSES, perhaps behind a text, stand for."
   (flet ((parts (clause)
            (let ((parts (parts-of-clause map clause)))
              (warn-of-walls map clause (remove-if #'recipe-p parts))
@@ -204,7 +197,6 @@ CODE-FORM makes it. PACKAGE is the one that the author writes in. Return the map
 ;;; The form.
 
 (defun check-frame (definition frame)
-  "Signal MALFORMED-DEFINITION unless FRAME can be the frame of a map: (size x y yaw)."
   (unless (and (proper-list-p frame)
                (= 4 (length frame))
                (every #'within-reason-p frame)
@@ -213,7 +205,6 @@ CODE-FORM makes it. PACKAGE is the one that the author writes in. Return the map
                    "(:frame (size x y yaw)): four numbers from -1e9 to 1e9, the first positive")))
 
 (defun check-size (definition name size)
-  "Signal MALFORMED-DEFINITION unless SIZE of the map NAME is (width height option...)."
   (check-name definition name "map")
   (unless (and (proper-list-p size) (<= 2 (length size))
                (typep (first size) '(integer 1 32767)) (typep (second size) '(integer 1 32767)))

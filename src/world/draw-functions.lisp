@@ -16,7 +16,6 @@
   "True where values of attributes come from code; false where they are data, as of a journal.")
 
 (defun call-with-data (function &rest arguments)
-  "Call FUNCTION with ARGUMENTS, which are data."
   (let ((*said-by-code-p* nil)) (apply function arguments)))
 
 (defun names-function-p (value)
@@ -38,16 +37,11 @@
           (if (and value (symbolp value) (not (keywordp value))) value "draw-it")
           +draw-arguments+ (consp value)))
 
-(defun name-meant (function)
-  "Return the symbol that names FUNCTION, if it has such a name, or else FUNCTION: so that what is
-drawn goes by the newest definition, and can be saved."
-  (let ((name (nth-value 2 (function-lambda-expression function))))
-    (if (and (names-function-p name) (eq function (fdefinition name))) name function)))
-
 (defun draw-function-said (value)
-  "Return what to keep for VALUE of :draw-function. A name that code says may be called from now
-on."
-  (let ((value (if (functionp value) (name-meant value) value)))
+  "Return what to keep for VALUE of :draw-function. A name that code says may be called."
+  ;; By its name what is drawn goes by the newest definition, and can be saved.
+  (let* ((name (and (functionp value) (nth-value 2 (function-lambda-expression value))))
+         (value (if (and (names-function-p name) (eq value (fdefinition name))) name value)))
     (when (and value (symbolp value) *said-by-code-p*) (setf (get value 'said-by-code-p) t))
     value))
 
@@ -68,7 +62,6 @@ none, a second value says why, and what to do."
 ;;; In definitions a descriptor is not evaluated, but for this: (lambda ...), #'name and name.
 
 (defun call-of-p (name form)
-  "True if FORM is a list that begins with a symbol called NAME."
   (and (proper-list-p form) (symbolp (first form)) (same-name-p (first form) name)))
 
 (defun name-for-lambda (thing-name form)
@@ -94,7 +87,6 @@ something, so that it is not the only one of its text, or cannot draw."
            name)))
 
 (defun draw-function-form (thing-name value)
-  "Return a form for VALUE of :draw-function in a definition of the thing THING-NAME."
   (let ((meant (if (and (call-of-p 'function value) (= 2 (length value))) (second value) value)))
     (cond ((call-of-p 'lambda meant)
            `(draw-function-called ',(name-for-lambda thing-name meant)

@@ -37,12 +37,6 @@
 
 ;;; Kickers.
 
-(defun begin-group (group copier)
-  "Return the copy of GROUP, with members yet to be seated."
-  (let ((copy (copy-slots group copier)))
-    (setf (group-row copy) (settled (copy-seq (group-row group)) copier))
-    copy))
-
 (defun attachment-copier (copier)
   "Return a function of an attachment and of a copy of its thing that returns a copy of the former
 for the latter, seated in the copy of its group."
@@ -89,7 +83,6 @@ is in, and what is in it, is yet to be copied."
 
 (declaim (inline by-itself-p))
 (defun by-itself-p (thing)
-  "True if THING is in nothing, and nothing is in it."
   (declare (type thing thing))
   (and (symbolp (thing-location thing))
        (null (thing-contents thing))))
@@ -104,7 +97,6 @@ is in, and what is in it, is yet to be copied."
       (setf (thing-contents twin) (mapcar #'twin (thing-contents thing))))))
 
 (defun copy-stock (stock things copier)
-  "Return a copy of STOCK that has THINGS, copies of its own."
   (let ((copy (make-stock)))
     (setf (stock-things copy) (settled things copier)
           (stock-count copy) (stock-count stock)
@@ -114,7 +106,6 @@ is in, and what is in it, is yet to be copied."
     (settled copy copier)))
 
 (defun copy-each-thing (old new count world copier)
-  "Put copies for WORLD of the first COUNT things in the vector OLD into NEW."
   (declare #.*hot* (type simple-vector old new) (type cell-index count))
   (let ((copied (attachment-copier copier)) (others '()))
     (dotimes (rank count)
@@ -144,6 +135,8 @@ is in, and what is in it, is yet to be copied."
   (if (not (eq world (copier-option fork :world)))
       world
       (let ((copy (copy-slots world fork)))
-        (dolist (group (world-kicker-groups world)) (begin-group group fork))
+        ;; Their members are yet to be seated.
+        (dolist (group (world-kicker-groups world))
+          (setf (group-row (copy-slots group fork)) (settled (copy-seq (group-row group)) fork)))
         (copy-things world copy fork)
         copy)))

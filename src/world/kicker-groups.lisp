@@ -286,8 +286,6 @@ See reading 170."
                                        +dice-purposes+))
   world)
 
-;;; What can be done about one that fails again and again.
-
 ;; An origin that has nobody to blame is of a group that was read ahead.
 (defmethod recurring-code ((origin origin))
   (recurring-code (origin-attachment origin)))

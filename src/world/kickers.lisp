@@ -210,14 +210,11 @@ the kicker as attached, if any."
           `(call-put-kicker ,thing ',name
                             ,@(kicker-functions definition variable options body))))))
 
-;;; What is said of kickers that can never run.
-
 ;;; All threads that run worlds share kickers. The slots CHECKED-P and TEST-OUTCOME change in one
 ;;; direction only, by single writes, so a race can at most repeat a warning.
 
 (defun code-names-p (name package)
-  "True if the code of a function whose name is in PACKAGE, or of another kicker, has NAME, that of
-a kicker, in it."
+  "True if the code of another kicker, or of a function named in PACKAGE, has NAME in it."
   (flet ((names-it-p (function) (member name (code-references function))))
     (or (loop for kicker in (all-kickers)
                 thereis (and (not (eq name (kicker-name kicker)))
@@ -241,8 +238,7 @@ from another file than the map, or named there more than once."
         (code-names-p name (symbol-package name)))))
 
 (defun doubt-unused-kicker (entry world)
-  "Say if the kicker of ENTRY is new, no program seems to use it, and nothing in WORLD has it, nor
-will by any map."
+  "Say if the kicker of ENTRY is new, and no program, thing or map seems to use it."
   (let ((kicker (entry-object entry)))
     (unless (or (shiftf (kicker-checked-p kicker) t)
                 (perhaps-used-p entry world)
@@ -266,8 +262,7 @@ will by any map."
                          (kicker-name kicker) key)))))
 
 (defun doubt-idle-kickers (world)
-  "Say, when a run in WORLD ends, which kickers were most likely meant to do something in it, and
-cannot."
+  "Say, when a run in WORLD ends, which kickers most likely could not do what they were for."
   (dolist (entry (registry-entries *kickers*))
     (doubt-unused-kicker entry world)
     (doubt-untrue-kicker (entry-object entry) world)))

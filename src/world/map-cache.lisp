@@ -72,10 +72,6 @@ Signals an error if PATH is write-protected."
 
 ;;; Reading.
 
-(defun most-words (map)
-  "Return how many words a cache of MAP has at most: each cell is a wall, or a place, or both."
-  (+ +cache-header+ (* 4 (map-width map) (map-height map))))
-
 (defun read-words (path most)
   "Return the words of the file PATH, none if they are more than MOST; NIL if there is no file."
   (with-open-file (in path :element-type '(unsigned-byte 64) :if-does-not-exist nil)
@@ -86,7 +82,6 @@ Signals an error if PATH is write-protected."
         words))))
 
 (defun words-trouble (words key)
-  "Return what is wrong with WORDS as a cache with KEY, a string, or NIL if nothing is."
   (cond ((or (< (length words) +cache-header+) (/= (aref words 0) +cache-magic+)) "is damaged")
         ((/= (aref words 1) key) "is stale")
         ((or (/= (length words) (+ +cache-header+ (* 2 (+ (aref words 2) (aref words 3)))))
@@ -128,8 +123,7 @@ type with that. Signals an error if there is none; 0 is of none."
                (= +cache-magic+ (aref words 0)))))))
 
 (defun foreign-p (path)
-  "True if there is something at PATH, perhaps by way of a link, that is not a map's cache, whole
-or damaged, or that cannot be told."
+  "True if what is at PATH, perhaps a link, is no map's cache, damaged or not, or cannot be told."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (plain-file-p path) (begins-as-cache-p path))))))
 
@@ -140,7 +134,8 @@ or damaged, or that cannot be told."
 (defun restore-from-cache (map path key)
   "Fill MAP from the file PATH; true if that could be done."
   (handler-case
-      (let ((words (read-words path (most-words map))))
+      ;; Each cell is a wall, or a place, or both.
+      (let ((words (read-words path (+ +cache-header+ (* 4 (map-width map) (map-height map))))))
         (when words
           (let ((trouble (words-trouble words key)))
             (if trouble

@@ -26,7 +26,6 @@ the form for the option"))
   (funcall (clause-kind-function kind) option map clause))
 
 (defun kind-of-clause (map clause)
-  "Return the kind of CLAUSE of MAP. Signals MALFORMED-DEFINITION."
   (let ((kind (and (typep clause '(cons symbol)) (find-clause-kind (first clause) nil))))
     (cond ((null kind)
            (reject-clause (map-title map) clause
@@ -53,8 +52,7 @@ CONDITION says that it is wrong."
             (malformed-definition-expected condition))))
 
 (defun derived-parts (map clause kind depth)
-  "Return the parts of the clauses that CLAUSE of MAP, of KIND, stands for, at DEPTH inside others.
-A mistake in these is one in CLAUSE."
+  "Return the parts that CLAUSE of MAP, of KIND, comes to. A mistake in them is one in CLAUSE."
   (when (< 50 depth)
     (reject-clause (map-title map) clause "a clause that does not stand for itself, without end"))
   (pushnew (clause-kind-name kind) (map-clause-kinds map))
@@ -69,8 +67,7 @@ A mistake in these is one in CLAUSE."
           (reject-clause (map-title map) clause (wrong-derivation-text kind condition))))))
 
 (defun parts-of-clause (map clause &optional (depth 0))
-  "Return the parts that CLAUSE of MAP, at DEPTH inside others, stands for. Signals
-MALFORMED-DEFINITION."
+  "Return the parts that CLAUSE of MAP stands for. Signals MALFORMED-DEFINITION."
   (let ((kind (kind-of-clause map clause)))
     (check-clause map clause kind)
     (cond ((clause-kind-derived-p kind) (derived-parts map clause kind depth))

@@ -131,8 +131,7 @@ or if it is a symbol that has none, such as ROOM, or one that is no map, the map
          (the cell-index (+ x (the cell-index (* y width)))))))
 
 (defun point-index (map x y)
-  "Return the index of the cell of MAP that holds X, Y (double-floats), or NIL
-outside (reading 51)."
+  "Return the index of the cell of MAP with X, Y (double-floats), or NIL outside (reading 51)."
   (declare (type double-float x y))
   (let ((width (map-width map)))
     (and (<= 0d0 x) (<= 0d0 y) (< x (double width)) (< y (double (map-height map)))
@@ -217,8 +216,6 @@ and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
     (loop for y from top repeat height
           collect (loop for x from left repeat width collect (filled-at-p map x y)))))
 
-;;; The walk from cell to cell along a line.
-
 ;;; Driving, sight, scans and the display all walk here (a digital differential analyser), so a
 ;;; line meets the same cells for each. Distances along it are in lengths of its direction. All is
 ;;; inline, with VISIT a known function, so that nothing is called or allocated for a cell.
@@ -232,25 +229,21 @@ and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
   "How many columns or rows a grid has, or one has to cross."
   '(unsigned-byte 15))
 
-(declaim (inline cell-number))
+(declaim (inline cell-number border-spacing to-border walk-grid))
 (defun cell-number (coordinate)
   "Return the column or row of a grid that COORDINATE, in metres, is in."
   (the grid-size (truncate (the (double-float 0d0 32767d0) coordinate))))
 
-(declaim (inline border-spacing))
 (defun border-spacing (component)
   "Return how far it is from border to border of cells along a line with COMPONENT on this axis."
   (declare (type double-float component))
   (if (zerop component) +endless+ (abs (/ component))))
 
-(declaim (inline to-border))
 (defun to-border (start cell back)
-  "Return how far it is on one axis from START, which lies in CELL, to its border: the lower if
-BACK."
+  "Return how far it is on one axis from START in CELL to its border: the lower if BACK."
   (declare (type double-float start) (type grid-size cell))
   (if back (- start cell) (- (1+ cell) start)))
 
-(declaim (inline walk-grid))
 (defun walk-grid (visit width height x y dx dy reach &optional column-first)
   "Call VISIT with each cell that the line from (X,Y) in direction (DX,DY) meets after the first, by
 its index in a grid of WIDTH by HEIGHT that holds (X,Y), with the distance at which the line enters

@@ -62,8 +62,7 @@
     (values mask value)))
 
 (defun rules-table (rules)
-  "Return a table that gives, for each neighbourhood code, the number (from 1) of the first of
-RULES that matches it, or 0. All forms must be small."
+  "Return a table of the number, from 1, of the first of RULES, all small, that fits a code, or 0."
   (let ((table (make-octets 512)))
     (loop for rule in (reverse rules) for number downfrom (length rules)
           do (multiple-value-bind (mask value) (form-bits (rule-form rule))
@@ -112,8 +111,7 @@ be set. X and Y are the upper left corner of the cell in pixels" :writable :addi
   (position type (registry-objects *place-types*) :test #'eq))
 
 (defun place-type-index (map type)
-  "Return the number that stands for TYPE in MAP-PLACES of MAP, or NIL if MAP was built before
-TYPE was defined."
+  "Return the number of TYPE in MAP-PLACES of MAP, or NIL if MAP was built before it was defined."
   (position type (map-place-types map) :test #'eq))
 
 ;;; Places.
@@ -158,8 +156,6 @@ message (reading 72)."
                  (apply #'error-set (append origin (list " are not two angles at "
                                                          (place-cell place)))))
                (values basic (+ basic pi)))))))
-
-;;; DEF-PLACE-TYPE (manual 5.1.1).
 
 ;;; The form is checked when it is expanded, the values of its options when it is evaluated; then
 ;;; its code is tried on small maps.

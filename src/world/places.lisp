@@ -21,7 +21,6 @@
     (logior (ash (bit-at (1- y)) 2) (ash (bit-at y) 1) (bit-at (1+ y)))))
 
 (defun neighbourhood-codes (map)
-  "Return the neighbourhood codes of all cells of MAP, by index."
   (declare #.*hot*)
   (let* ((width (map-width map)) (height (map-height map)) (flags (map-flags map))
          (codes (make-array (* width height) :element-type '(unsigned-byte 16)))
@@ -39,8 +38,7 @@
 
 (declaim (inline classify-cell))
 (defun classify-cell (map number x y direction)
-  "Make the cell X, Y of MAP a place of the type NUMBER, unless it is one already, filled or
-outside (reading 71)."
+  "Make the cell X, Y of MAP, if free and no place yet, one of the type NUMBER (reading 71)."
   (declare (type (signed-byte 20) x y) (type (unsigned-byte 8) number))
   (when (and (< -1 x (map-width map)) (< -1 y (map-height map)))
     (let ((index (+ x (* y (map-width map)))))
@@ -87,7 +85,6 @@ outside (reading 71)."
                        (list operator (place-type-name type))))))
 
 (defun blame-type (type option expected)
-  "Signal MALFORMED-DEFINITION about OPTION of the definition of TYPE."
   (let* ((*definition* (definition-of type))
          (rest (member option (defining-form *definition*))))
     (reject-clause (title "def-place-type" (place-type-name type))
@@ -109,7 +106,6 @@ is exhausted storage, once the stack is unwound."
       (storage-condition (condition) (blame condition)))))
 
 (defun check-checked (type cell values)
-  "Signal unless VALUES, which the checker of TYPE returned for CELL, say where a place is."
   (destructuring-bind (dx dy direction) values
     (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16))
                  (within-reason-p direction))
@@ -176,8 +172,6 @@ with a warning. Return MAP, and true if no type was left out. See reading 70."
                                      (map-name map) (place-type-name type) condition))))
     (values map whole)))
 
-;;; Trying a type on small maps.
-
 ;;; A checker or :directions form that does not work would show only when a map is built, perhaps
 ;;; much later. So each is tried when it is defined: a checker on a sample of walls, the rules on
 ;;; maps made of their own match forms. What the code needs may be defined later in its file: a
@@ -218,16 +212,12 @@ with a warning. Return MAP, and true if no type was left out. See reading 70."
                      (and (< -1 row height) (< -1 column width)
                           (eq t (nth column (nth row (rule-form rule)))))))))))
 
-(defun try-on (type map)
-  "Classify MAP by TYPE alone, and ask for the directions of a place that was found."
-  (setf (map-place-types map) (vector nil type))
-  (classify-by-type map type 1 (neighbourhood-codes map))
-  (check-directions map type 1))
-
 (defun try-place-type (type)
-  "Signal MALFORMED-DEFINITION if the code of TYPE does not return what it should."
   (handler-case
-      (mapc (lambda (map) (try-on type map))
+      (mapc (lambda (map)
+              (setf (map-place-types map) (vector nil type))
+              (classify-by-type map type 1 (neighbourhood-codes map))
+              (check-directions map type 1))
             (if (place-type-checker type)
                 (list (small-map (length (first *sample*)) (length *sample*)
                                  (lambda (x y) (char= #\# (char (nth y *sample*) x)))))

@@ -8,14 +8,12 @@
 ;;; a thing in something is in exactly its contents; a cell's flags say what lies there.
 ;;; Everything that moves a thing goes through PLACE-THING.
 
-(declaim (inline thing-flags))
+(declaim (inline thing-flags refresh-cell-flags set-mark add-flags))
 (defun thing-flags (thing)
-  "Return the flags of a cell with THING on its floor."
   (logior +occupied+
           (if (thing-obsmove-p thing) +obsmove+ 0)
           (if (thing-obsview-p thing) +obsview+ 0)))
 
-(declaim (inline refresh-cell-flags set-mark))
 (defun refresh-cell-flags (world index)
   "Make the flags of a cell of WORLD agree with the things on its floor."
   (declare (type world world) (type cell-index index))
@@ -33,7 +31,6 @@
     (take-from-cell (thing-rank thing) index (world-stock world))
     (refresh-cell-flags world index)))
 
-(declaim (inline add-flags))
 (defun add-flags (rank index world)
   "Let the cell INDEX of WORLD have the flags that come of the thing with RANK."
   (let ((flags (world-flags world)))
@@ -205,20 +202,18 @@ Signals MISUSE for prototypes. Return nothing. See reading 168."
 ;;; a hand a thing is kicked onto the floor. Off the map is as in a wall.
 
 (defun enclosed-p (thing)
-  "True if THING is in anything closed, directly or not."
   (loop for location = (thing-location thing) then (thing-location location)
         until (eq location :floor)
         thereis (and location (location-closed-p location))
         while (thing-p location)))
 
-(declaim (inline kickable-p))
+(declaim (inline kickable-p open-at-p start-kick))
 (defun kickable-p (thing)
   "True if THING lies on the floor, or where nothing closed keeps it from getting there."
   (or (eq :floor (thing-location thing))
       (and (thing-location (thing-outermost thing))
            (not (enclosed-p thing)))))
 
-(declaim (inline open-at-p))
 (defun open-at-p (world x y)
   (declare (type double-float x y))
   (let ((index (point-index (world-map world) x y)))
@@ -236,9 +231,7 @@ Signals MISUSE for prototypes. Return nothing. See reading 168."
   (y 0d0 :type double-float))
 (declaim-final kick)
 
-(declaim (inline start-kick))
 (defun start-kick (kick thing)
-  "Let KICK begin where THING is. Return KICK."
   (declare (type kick kick) (type thing thing))
   (if (eq :floor (thing-location thing))
       (setf (kick-from-x kick) (thing-x thing)

@@ -40,13 +40,10 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
                  (merge-descriptors own (and prototype (thing-attributes prototype)))
                  (append (and prototype (mapcar #'thing-recipe (thing-contents prototype)))
                          contents)
-                 :kickers (mapcar #'known-kicker kickers)
+                 :kickers (loop for kicker in kickers
+                                for found = (find-kicker kicker)
+                                collect (if (kicker-p kicker) kicker (kicker-name found)))
                  :x (and x (double x)) :y (and y (double y)))))
-
-(defun known-kicker (kicker)
-  "Return KICKER, a kicker or the name of one, for a recipe. Signals UNKNOWN-NAME."
-  (let ((found (find-kicker kicker)))
-    (if (kicker-p kicker) kicker (kicker-name found))))
 
 (defun attach-by-recipe (thing kicker)
   "Put on THING the KICKER, which a recipe may know by name; say so if there no longer is one."
@@ -56,8 +53,7 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
         (warning-set thing " goes without the kicker " kicker ", which is no longer defined."))))
 
 (defun follow-recipe (recipe world)
-  "Return a new thing made by RECIPE, nowhere yet, in WORLD, or a prototype if WORLD is
-NIL (reading 63)."
+  "Return a new thing made by RECIPE, nowhere yet; without WORLD a prototype (reading 63)."
   (let* ((contents (loop for inside in (recipe-contents recipe)
                          collect (follow-recipe inside world)))
          (thing (%make-thing (recipe-name recipe) (if world (world-next-serial world) 0) world)))
@@ -95,8 +91,7 @@ NIL (reading 63)."
 ;;; Worlds.
 
 (defun empty-world (world)
-  "Leave WORLD without things and kickers, as its map is. What was in it is destroyed, and its
-robots are as they were made."
+  "Leave WORLD as its map is: all in it is destroyed, and its robots are as they were made."
   (let ((map (world-map world)))
     (do-things (thing world)
       (setf (thing-alive-p thing) nil (thing-location thing) nil (thing-contents thing) '())
@@ -123,27 +118,20 @@ tick 0, robots where they start. Timeline and watchers stay. Return WORLD."
 
 ;;; Making things on the fly (manual 5.3).
 
-(defun resolve-position (position)
-  "Return the world, :FLOOR and the coordinates for POSITION, a list (map x y)."
-  (destructuring-bind (map x y) position
-    (let ((world (current-world map)))
-      (check-inside 'new-thing (world-map world) x y)
-      (values world :floor x y))))
-
-(defun resolve-neighbour (thing)
-  (unless (and (thing-p thing) (thing-location thing))
-    (reject-argument 'new-thing "location" (list :with thing)
-                     "(:with thing), a thing that is somewhere"))
-  (values (thing-world thing) (thing-location thing) (thing-x thing) (thing-y thing)))
-
 (defun resolve-location (location)
-  "Return, as values, the world, location and coordinates that LOCATION, as NEW-THING takes it
-but evaluated, stands for."
+  "Return the world, location and coordinates that LOCATION, as MAKE-NEW-THING takes it, means."
   (cond ((null location) nil)
         ((and (proper-list-p location) (= 2 (length location)) (eq :with (first location)))
-         (resolve-neighbour (second location)))
+         (let ((thing (second location)))
+           (unless (and (thing-p thing) (thing-location thing))
+             (reject-argument 'new-thing "location" location
+                              "(:with thing), a thing that is somewhere"))
+           (values (thing-world thing) (thing-location thing) (thing-x thing) (thing-y thing))))
         ((and (proper-list-p location) (= 3 (length location)))
-         (resolve-position location))
+         (destructuring-bind (map x y) location
+           (let ((world (current-world map)))
+             (check-inside 'new-thing (world-map world) x y)
+             (values world :floor x y))))
         ((consp location)
          (reject-argument 'new-thing "location" location
                           "NIL, what holds things, (:with thing) or (map x y)"))
@@ -191,8 +179,7 @@ hand that holds something."
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 
 (defun destroyed-thing (serial world)
-  "Return what stands for the thing of WORLD that had the number SERIAL and was destroyed; NIL if
-there never was one."
+  "Return what stands for the destroyed thing of WORLD with the number SERIAL; NIL without one."
   (when (< 0 serial (world-next-serial world))
     (let ((thing (%make-thing 'destroyed serial world)))
       (setf (thing-alive-p thing) nil)

@@ -16,7 +16,6 @@ in MET, which they are added to, stand for."
            (setf (bit met tag) 1)))
 
 (defun check-cells (world)
-  "Signal CONTRADICTION unless WORLD has as many cells as its map, with things in them."
   (let* ((stock (world-stock world)) (size (length (stock-firsts stock)))
          (met (make-array (1+ (stock-count stock)) :element-type 'bit :initial-element 0)))
     (must-hold (= size (* (map-width (world-map world)) (map-height (world-map world)))
@@ -73,7 +72,6 @@ in MET, which they are added to, stand for."
     (incf (gethash thing met 0))))
 
 (defun check-lying (thing index world)
-  "Signal CONTRADICTION unless THING can lie in the cell INDEX of WORLD."
   (must-hold (and (map-index (world-map world) (thing-x thing) (thing-y thing))
                   (= index (thing-index thing)))
              "~A does not lie in its cell" thing)
@@ -92,7 +90,6 @@ in MET, which they are added to, stand for."
                       "cell ~D is not as the map and the things in it make it" index)))
 
 (defun holders-in (world)
-  "Return a list of all that holds things of WORLD, each once."
   (let ((holders (make-hash-table :test 'eq)))
     (do-things (thing world)
       (let ((location (thing-location thing)))

@@ -92,17 +92,13 @@
                             :initial-element (if (simple-vector-p vector) nil 0))
            vector))
 
-(defun grow-stock (stock)
-  "Make room in STOCK for twice as many things."
-  (let ((size (* 2 (length (stock-things stock)))))
-    (setf (stock-things stock) (resize (stock-things stock) size)
-          (stock-nexts stock) (resize (stock-nexts stock) size)
-          (stock-marks stock) (resize (stock-marks stock) size))))
-
 (defun add-to-stock (thing stock)
-  "Give THING the next rank in STOCK."
+  "Give THING the next rank in STOCK, which grows to twice its size if it is full."
   (let ((rank (stock-count stock)))
-    (when (= rank (length (stock-things stock))) (grow-stock stock))
+    (when (= rank (length (stock-things stock)))
+      (setf (stock-things stock) (resize (stock-things stock) (* 2 rank))
+            (stock-nexts stock) (resize (stock-nexts stock) (* 2 rank))
+            (stock-marks stock) (resize (stock-marks stock) (* 2 rank))))
     (incf (stock-count stock))
     (setf (thing-rank thing) rank
           (svref (stock-things stock) rank) thing)))

@@ -34,8 +34,7 @@
       (reject-parameter name form))))
 
 (defun define-substance (name parameter)
-  "Define or redefine the substance NAME with PARAMETER; what DEFSUBSTANCE expands to. Return
-NAME."
+  "Define or redefine the substance NAME; what DEFSUBSTANCE expands to. Return NAME."
   (unless (quantity-p parameter) (reject-parameter name parameter))
   (register *substances* name (make-substance name (double parameter)))
   name)

@@ -5,20 +5,12 @@
 (export '(note-strange-name warn-of-slips))
 
 (defun carried-p (key world)
-  "True if any thing of WORLD says something of the attribute KEY."
   (do-things (thing world)
     (when (assoc key (thing-attributes thing) :test #'eq)
       (return-from carried-p t))))
 
-;;; What programs ask of a thing, or give it, many a time: of most names it is known what they may
-;;; be slips for. What is asked for may also be a slip for what a thing has that nobody declared.
-
-(define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
-  "For names that are not declared, the name that each may be a slip for, or NIL.")
-
 (defun carried-name-like (key world)
-  "Return the name of an undeclared attribute, of a thing of WORLD, for which KEY may be a slip; or
-NIL."
+  "Return an undeclared attribute of a thing of WORLD that KEY may be a slip for, or NIL."
   (do-things (thing world)
     (loop for (other) in (thing-attributes thing)
           when (and (not (attribute-of other)) (resembles-p key other))
@@ -150,12 +142,8 @@ that the attribute cannot have. Warns as GET-ATTRIBUTE does."
       (change-attributes thing descriptor)))
   thing)
 
-(defun change-attribute-again (thing descriptor)
-  (call-with-data #'change-attribute thing descriptor))
-
-(define-operator 'change-attribute '(thing datum) #'change-attribute-again)
-
-;;; Slips of the pen.
+(define-operator 'change-attribute '(thing datum)
+  (lambda (thing descriptor) (call-with-data #'change-attribute thing descriptor)))
 
 ;;; Things may have attributes that no DEFATTRIBUTE declares, and specifications may ask for them.
 ;;; A name that looks like a declared one is remarked on where a thing is defined; one that no
@@ -169,8 +157,7 @@ that the attribute cannot have. Warns as GET-ATTRIBUTE does."
 the fly.")
 
 (defun option-called (name)
-  "Return what *OPTIONS-OF-THINGS* says of the option that NAME, an attribute's, is or is a slip
-for; or NIL."
+  "Return the entry of *OPTIONS-OF-THINGS* that NAME is or is a slip for, or NIL."
   (let ((key (attribute-key name)))
     (or (assoc key *options-of-things*)
         (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
@@ -188,8 +175,7 @@ may be slips for the declared name LIKE, or, if that is NIL, are options of thin
   (and (option-called name) (not (attribute-of (attribute-key name)))))
 
 (defun text-of-slip (thing-name slip &optional map-p)
-  "Return in words what the thing has that is no attribute, and how it is written, in a map if
-MAP-P."
+  "Return in words what the thing has that is no attribute, and how to write it."
   (destructuring-bind (name like &aux (option (option-called name))) slip
     (if like
         (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
@@ -199,15 +185,13 @@ MAP-P."
                 (string-downcase thing-name)))))
 
 (defun warn-of-slips (definition name descriptor &key clause)
-  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION, in its CLAUSE if it is a
-map's."
+  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION, or a map's CLAUSE."
   (dolist (slip (slips-in descriptor))
     (warn-of-definition "~A~@[ (~A)~]: ~A" definition
                         (clause-place (or clause (assoc (first slip) descriptor)))
                         (text-of-slip name slip clause))))
 
 (defun note-slips (name descriptor world)
-  "Warn, once, of what may be slips in DESCRIPTOR of the thing NAME, made on the fly in WORLD."
   (dolist (slip (slips-in descriptor))
     (warn-once (first slip) world (text-of-slip name slip))))
 
@@ -223,23 +207,16 @@ map's."
 
 ;;; An attribute that is declared anew may no longer have the values that things have.
 
-(defun value-trouble (key value)
-  "Return what is wrong with VALUE for the attribute KEY, a string, or NIL."
-  (handler-case (progn (check-attribute-value 'defattribute key value) nil)
-    (wrong-argument (condition) (princ-to-string condition))))
-
 (defun unfit-recipe (recipes key)
   "Return the first of RECIPES, or of those in them, whose things have a value that KEY cannot have;
 and what is wrong with it."
   (find-recipe (lambda (recipe)
-                 (value-trouble key (second (assoc key (recipe-attributes recipe) :test #'eq))))
+                 (let ((value (second (assoc key (recipe-attributes recipe) :test #'eq))))
+                   (handler-case (progn (check-attribute-value 'defattribute key value) nil)
+                     (wrong-argument (condition) (princ-to-string condition)))))
                recipes))
 
-(defmethod attribute-redefined :before (old new)
-  (declare (ignore old new))
-  (clrhash *likenesses*))
-
-(defmethod attribute-redefined ((old attribute) new)
+(defun attribute-redefined (new)
   (dolist (map (all-maps))
     (multiple-value-bind (recipe trouble)
         (unfit-recipe (map-things map) (attribute-name new))

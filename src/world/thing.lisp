@@ -22,12 +22,10 @@ in order of arrival. Can be set; the setter does not touch the things."))
   (:documentation "Return the world that LOCATION is in, or NIL."))
 
 (defgeneric location-closed-p (location)
-  (:documentation "True if nothing can be kicked, put or taken out of LOCATION: a closed thing or
-storage bin."))
+  (:documentation "True if nothing gets into or out of LOCATION: a closed thing or storage bin."))
 
 (defgeneric location-full-p (location)
-  (:documentation "True if nothing can be made in LOCATION because it holds as many things as it
-can, whatever their size.")
+  (:documentation "True if LOCATION holds as many things as it can, whatever their size.")
   (:method (location)
     (declare (ignore location))
     nil))
@@ -122,13 +120,9 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
   (and (symbolp value)
        (nearest-name value (remove-if-not #'symbolp (remove nil domain)))))
 
-(defun quoted-p (value)
-  (and (consp value) (eq 'quote (first value))))
-
 (defun check-attribute-value (operator key value)
-  "Signal WRONG-ARGUMENT unless a thing's attribute KEY can be VALUE. NIL, for unspecified or
-false, always can."
-  (when (quoted-p value)
+  "Signal WRONG-ARGUMENT unless the attribute KEY can be VALUE. NIL always can."
+  (when (typep value '(cons (eql quote)))
     (reject-argument operator key value "a value that is not quoted, as it is not evaluated"))
   (let ((attribute (attribute-of key)))
     (flet ((reject (expected) (reject-argument operator key value expected)))

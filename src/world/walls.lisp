@@ -21,8 +21,7 @@
           (aref (map-parameters map) index) parameter)))
 
 (defun draw-line (map x0 y0 x1 y1 substance from to)
-  "Fill the cells from X0, Y0 to X1, Y1 (Bresenham); the parameter goes from FROM to TO by
-steps (reading 57)."
+  "Fill the cells of a line (Bresenham); the parameter goes from FROM to TO (reading 57)."
   (let* ((dx (abs (- x1 x0))) (dy (- (abs (- y1 y0))))
          (step-x (signum (- x1 x0))) (step-y (signum (- y1 y0)))
          (steps (max dx (- dy) 1))
@@ -58,8 +57,7 @@ it (readings 55 and 56)."
                       (substance-number map type) (double parameter)))))
 
 (defun encloses-map-p (map cx cy radius)
-  "True if all of MAP is well inside the circle around CX, CY: then all that is left of it, pressed
-against the edges, is the edges."
+  "True if all of MAP is well inside the circle: then all that is left of it is the map's edges."
   (let ((dx (max (abs cx) (abs (- (map-width map) cx))))
         (dy (max (abs cy) (abs (- (map-height map) cy)))))
     (< (+ dx dy 2) radius)))

@@ -74,8 +74,7 @@ there is none; then each map's resident world counts.")
 ;;; Things.
 
 (defmacro do-things ((thing world) &body body)
-  "Run BODY with THING bound to each thing alive in WORLD, in order of creation. Things made
-meanwhile are left out."
+  "Run BODY with THING bound to each thing alive in WORLD, older ones first, but no new ones."
   `(call-with-things (lambda (,thing) ,@body) ,world))
 
 (defun call-with-things (function world)
@@ -102,7 +101,6 @@ meanwhile are left out."
 
 (declaim (inline thing-index))
 (defun thing-index (thing)
-  "Return the index of the cell that THING, on the floor, lies in."
   (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
 
 (defun remove-thing (thing world)
@@ -132,8 +130,6 @@ in order of arrival. NIL outside the map. Signals WRONG-ARGUMENT."
     (when index
       (do-cell (thing index world) (push thing things)))
     (nreverse things)))
-
-;;; Changes.
 
 ;;; Whoever runs a world changes it within its ticks: kickers, events, commands. What users do from
 ;;; anywhere else goes to the world's owner, its timeline, by one generic function: the layer above
@@ -184,8 +180,6 @@ what OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside
            (change-world (world-timeline ,world) ,world (lambda () (change-it))
                          ',operator (list ,@arguments))))))
 
-;;; Warnings.
-
 ;;; What is allowed, but most likely not what the user wanted, is said once: further warnings about
 ;;; the same name would only hide others. Saved runs know a world's slots by name: NOTED-NAMES has
 ;;; all that has been said, though it began with names of attributes.
@@ -223,8 +217,7 @@ true, or a function that returns true by then. Return true if it was queued."
     t))
 
 (defun doubt-angle (operator world angle)
-  "Say once for OPERATOR, a symbol or string, in WORLD if ANGLE, in radians, was perhaps meant in
-degrees."
+  "Say once for OPERATOR, a symbol or string, in WORLD if ANGLE, in radians, may be in degrees."
   (when (perhaps-degrees-p angle)
     (warn-once (list :angle operator) world
                (format nil "~(~A~): ~A" operator (degrees-advice angle)))))
