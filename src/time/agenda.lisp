@@ -118,13 +118,12 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 
 ;;; Queueing and cancelling.
 
-(declaim (inline activate))
+(declaim (inline activate deactivate queue-again))
 (defun activate (agenda event)
   (setf (event-pending-p event) t)
   (incf (agenda-pending agenda))
   (unless (zerop (event-priority event)) (incf (agenda-unequal agenda))))
 
-(declaim (inline deactivate))
 (defun deactivate (agenda event)
   (setf (event-pending-p event) nil)
   (decf (agenda-pending agenda))
@@ -132,7 +131,6 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 
 (defconstant +longest-delay+ (ash 1 59) "For how many ticks an event waits at most.")
 
-(declaim (inline queue-again))
 (defun queue-again (agenda event delay)
   "Queue EVENT, which is not pending, to run DELAY ticks from now (at least 1). See reading 79."
   (declare (type tick-count delay))
@@ -169,17 +167,13 @@ interrupted."
 
 ;;; Running.
 
-(defun run-event (agenda event)
-  (declare #.*hot* (type agenda agenda) (type event event))
-  (deactivate agenda event)
-  (let ((resource (event-resource event)))
-    (when resource (claim agenda nil resource)))
-  (funcall (event-function event) event))
-
 (defun run-if-pending (agenda event)
   (declare #.*hot* (type agenda agenda) (type event event))
   (setf (event-queued-p event) nil)
-  (when (event-pending-p event) (run-event agenda event)))
+  (when (event-pending-p event)
+    (deactivate agenda event)
+    (when (event-resource event) (claim agenda nil (event-resource event)))
+    (funcall (event-function event) event)))
 
 (defun run-in-order (agenda event)
   "Run EVENT and those that follow it, the rest also if one is left."
@@ -211,27 +205,18 @@ interrupted."
 
 ;;; Looking at it whole.
 
-(defun map-bucket (function last)
-  "Call FUNCTION with the pending events in the bucket that LAST is, in order."
-  (when last
-    (loop for event = (event-next last) then (event-next event)
-          do (when (event-pending-p event) (funcall function event))
-          until (eq event last))))
-
-(defun map-wheel (function wheel)
-  (declare (type wheel wheel))
-  (loop for bucket across wheel
-        do (when bucket (map-bucket function bucket))))
-
 (defun pending-events (agenda)
-  "Return a list of the events pending in AGENDA: by time, and at the same time by priority and then
-in the order of queueing."
+  "Return a list of the events pending in AGENDA: by time, then by priority, then as queued."
   (let ((events '()))
-    (flet ((note (event) (push event events)))
+    (flet ((note-bucket (last)
+             (when last
+               (loop for event = (event-next last) then (event-next event)
+                     do (when (event-pending-p event) (push event events))
+                     until (eq event last)))))
       (unless (zerop (agenda-pending agenda))
-        (map-wheel #'note (agenda-near agenda))
-        (when (agenda-far agenda) (map-wheel #'note (agenda-far agenda)))
-        (map-bucket #'note (agenda-beyond agenda))))
+        (map nil #'note-bucket (agenda-near agenda))
+        (map nil #'note-bucket (agenda-far agenda))
+        (note-bucket (agenda-beyond agenda))))
     (stable-sort (nreverse events)
                  (lambda (a b)
                    (or (< (event-time a) (event-time b))

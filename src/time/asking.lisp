@@ -39,7 +39,6 @@ world, and if FUNCTION is aborted."
   (or (own-thread-p) (not (typep condition 'time-limit))))
 
 (defun call-for-other (question)
-  "Call the function of QUESTION, and note in it what comes of that."
   (setf (question-trouble question) :aborted)
   (restart-case
       (handler-case
@@ -57,7 +56,6 @@ world, and if FUNCTION is aborted."
     (abort () :report "Tell who asked that it was aborted.")))
 
 (defun answer (question)
-  "Do what is asked in QUESTION, in the thread that has the world, for the one who waits."
   (unless (question-given-up-p question)
     (in-any-case
       (call-for-other question)
@@ -90,7 +88,6 @@ world, and if FUNCTION is aborted."
     (lambda () (let ((*seclusion* seclusion)) (funcall function)))))
 
 (defun ask-holder (custody function)
-  "Have the thread that has CUSTODY call FUNCTION. Return its values."
   (check-outside-ticks)
   (let ((question (make-question (keeping-seclusion function))))
     (atomic-push (lambda () (answer question)) (custody-questions custody))

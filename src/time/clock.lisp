@@ -35,13 +35,6 @@
       (held-p pacing)
       (funcall (pacing-idle-p pacing))))
 
-(defun rest-thread (custody pacing)
-  "Sleep for as long as there is nothing to do (reading 88)."
-  ;; The timeout covers tests that come true without anybody posting.
-  (sleep-until-woken custody 1 (lambda ()
-                                 (and (nothing-to-do-p pacing)
-                                      (not (pacing-stopping-p pacing))))))
-
 (defun keep-pace (custody pacing due)
   "Sleep until the time DUE, in seconds; return when the next tick is due."
   (let ((rate (pacing-rate pacing)))
@@ -77,7 +70,10 @@
         until (or (pacing-stopping-p pacing) (not (mine-p custody)))
         do (answer-questions custody)
            (cond ((nothing-to-do-p pacing)
-                  (rest-thread custody pacing)
+                  ;; The timeout covers tests that come true without anybody posting (reading 88).
+                  (sleep-until-woken custody 1 (lambda ()
+                                                 (and (nothing-to-do-p pacing)
+                                                      (not (pacing-stopping-p pacing)))))
                   (setf due (seconds-now)))
                  (t (setf due (keep-pace custody pacing due))
                     ;; It may have been paused while it waited.
@@ -103,19 +99,18 @@
 (defun run-thread (pacing ready start)
   "Signal READY as soon as whatever ends this thread finds it prepared; run PACING after START, if
 the custody has been handed over by then."
-  (let ((custody (pacing-custody pacing)))
-    (let ((*held* (list custody))
-          (*user-calls* (pacing-calls pacing)))
-      (in-any-case
-        (progn (signal-semaphore ready)
-               (wait-on-semaphore start)
-               (run-paced custody pacing))
-        (let-go custody pacing)))))
+  (let* ((custody (pacing-custody pacing))
+         (*held* (list custody))
+         (*user-calls* (pacing-calls pacing)))
+    (in-any-case
+      (progn (signal-semaphore ready)
+             (wait-on-semaphore start)
+             (run-paced custody pacing))
+      (let-go custody pacing))))
 
 ;;; Starting.
 
 (defun make-threads (pacing caller ready start)
-  "Make the thread of PACING, which waits for START, and the one that watches it."
   (let ((name (format nil "simulator of ~A" (timeline-name (pacing-timeline pacing)))))
     (setf (pacing-thread pacing)
           (start-thread (lambda ()
@@ -124,17 +119,9 @@ the custody has been handed over by then."
     (start-thread (lambda () (funcall caller (lambda () (watch-for-hogs pacing))))
                   (format nil "watcher of the ~A" name))))
 
-(defun publish-pacing (pacing)
-  "Let others find PACING, and hand the custody of its world, which this thread has, to its thread."
-  (let ((custody (pacing-custody pacing)))
-    (setf (timeline-pacing (pacing-timeline pacing)) pacing
-          (custody-pacing custody) pacing)
-    (hand-over custody (pacing-thread pacing))))
-
 ;; A time limit may come at any moment: then the threads end, or the world is live as if it had come
 ;; a moment later. START is signalled in any case, so that no thread waits for it for ever.
 (defun start-threads (pacing caller)
-  "Start the thread of PACING, and the one that watches it, which work inside CALLER."
   (let ((ready (make-semaphore "ready"))
         (start (make-semaphore "start"))
         (ready-p nil))
@@ -145,7 +132,10 @@ the custody has been handed over by then."
           (wait-on-semaphore ready)
           (setf ready-p t))
         (if ready-p
-            (publish-pacing pacing)
+            (let ((custody (pacing-custody pacing)))
+              (setf (timeline-pacing (pacing-timeline pacing)) pacing
+                    (custody-pacing custody) pacing)
+              (hand-over custody (pacing-thread pacing)))
             (setf (pacing-stopping-p pacing) t))
         (signal-semaphore start)))))
 
@@ -153,9 +143,8 @@ the custody has been handed over by then."
   "Let a new thread pass ticks of TIMELINE at RATE by calling TICK, as long as IDLE-P is false, both
 functions of no arguments; if PAUSED-P, not before RESUME. The thread works inside CALLER, a
 function of a function that calls it, and is handed the custody of TIMELINE, which this thread has.
-Return TIMELINE. Signals MISUSE if it
-is live already, WRONG-ARGUMENT for a rate that is neither a number from 0.001 to 1000000 nor
-:FREE."
+Return TIMELINE. Signals MISUSE if it is live already, WRONG-ARGUMENT for a rate that is neither a
+number from 0.001 to 1000000 nor :FREE."
   (check-rate rate)
   (when (live-p timeline) (reject-use "~A runs live already." (timeline-name timeline)))
   (let ((pacing (make-pacing timeline rate tick idle-p

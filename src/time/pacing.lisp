@@ -101,8 +101,7 @@ what users' code the thread is in."
   (check-of-type 'set-rate 'rate rate 'rate))
 
 (defun steer (simulation paused-p steps)
-  "Let SIMULATION be paused if PAUSED-P, but pass STEPS ticks, and wake it. Without effect if it
-never ran live."
+  "Let SIMULATION, if live, be paused if PAUSED-P, but pass STEPS ticks."
   (if-paced (pacing simulation)
     (setf (pacing-steps pacing) steps
           (pacing-paused-p pacing) paused-p
@@ -133,8 +132,6 @@ RATE. Signals WRONG-ARGUMENT."
     (setf (pacing-rate pacing) rate)
     (wake pacing))
   rate)
-
-;;; Stopping.
 
 ;;; The thread ends by itself after its tick. Users' code that keeps it from ending is aborted, but
 ;;; only if whoever stops the run says so.
@@ -198,8 +195,7 @@ interrupted."
   timeline)
 
 (defun call-alone (timeline function)
-  "Stop whoever paces the world of TIMELINE, and call FUNCTION with that in custody. Return the
-values."
+  "Stop whoever paces the world of TIMELINE; return what FUNCTION does with that in custody."
   (let ((custody (timeline-custody timeline)))
     (flet ((make-free ()
              (let ((pacing (custody-pacing custody)))
@@ -245,8 +241,7 @@ code it has begun; NIL if it is in none, or one that waits in a debugger."
       (and (user-calls-origin calls) (user-calls-waiting-p calls) t))))
 
 (defun abort-hog (simulation)
-  "Abort the users' code that keeps the live SIMULATION waiting, if it has been named for that. True
-if there is such."
+  "Abort the users' code that was named for keeping the live SIMULATION waiting. True if any."
   (if-paced (pacing simulation)
     (and (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
          (interrupt-hog pacing))))

@@ -26,8 +26,7 @@
 the owner."))
 
 (defgeneric request-entry (request)
-  (:documentation "Return what a journal notes of REQUEST: a list of the operator's name, a symbol,
-and what it is asked with.")
+  (:documentation "Return what a journal notes of REQUEST: a list (operator argument ...).")
   (:method ((request request))
     (cons (request-operator request) (request-arguments request))))
 
@@ -49,8 +48,6 @@ the other can tell by that whether somebody else came between" :export)))
 (defun note-asked (resource)
   "Note that RESOURCE is asked for, if it is one that can tell."
   (when (resource-p resource) (atomic-incf (resource-asked resource))))
-
-;;; What the parts of a tick are called.
 
 ;;; Phases are counted from 1, and 0 is between ticks. What happens in one the run's tick says. In
 ;;; those that change the world a fork does again by itself whatever users' code does there.

@@ -40,12 +40,6 @@
       (call-in-tick (lambda () (call-user-code handler "an event's interrupt handler"))
                     (timeline-of *simulation*)))))
 
-(defun time-left (event)
-  "Return how many ticks are left after this one, which is that of EVENT, for it to happen in."
-  (if (scheduled-deadline event)
-      (- (scheduled-deadline event) (event-time event))
-      1))
-
 (defun hopeless-p (event)
   "True if EVENT evaporates before it may happen."
   (and (scheduled-deadline event)
@@ -53,7 +47,8 @@
 
 (defun run-scheduled (event)
   "Do what EVENT is to do if its test is true; if not, try again in the next tick (reading 80)."
-  (let ((test (scheduled-test event)) (left (time-left event)))
+  (let* ((test (scheduled-test event)) (deadline (scheduled-deadline event))
+         (left (if deadline (- deadline (event-time event)) 1)))
     (cond ((or (minusp left) (hopeless-p event)))
           ((or (null test) (call-user-code test "a scheduled event's :when"))
            (call-user-code (scheduled-body event) "a scheduled event"))

@@ -131,8 +131,7 @@ TIMELINE after its world has changed."
 (defvar *repeated* nil "The timeline of the run that is being repeated here, or NIL.")
 
 (defun untold-p (timeline)
-  "True if who asks for something here, of TIMELINE, is not to be told of its end, as that is told
-of again anyway."
+  "True if who asks TIMELINE here is not to be told of the end, as that is told of again anyway."
   (and (eq timeline *repeated*)
        (changing-phase-p (phase-here timeline))
        (not (goes-on-in-forks-p))))
@@ -164,8 +163,7 @@ works in is a fork, or code is secluded."
 
 (defun post (request object)
   "Have REQUEST performed at the start of the next tick of the timeline of OBJECT, after those
-posted before. Any thread may post. Return nothing. Signals MISUSE if the run is over.
-See reading 219."
+posted before. Any thread may post. Return nothing. Signals MISUSE if it is over (reading 219)."
   (let ((timeline (timeline-of object)))
     (check-own-run timeline)
     (check-not-over timeline)
@@ -179,8 +177,7 @@ See reading 219."
   (values))
 
 (defun post-again (request timeline)
-  "Have REQUEST, which was taken from TIMELINE, performed after those posted before. Called by the
-owner."
+  "Have REQUEST, taken from TIMELINE, performed after those posted before. Called by the owner."
   (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw (request timeline)
@@ -197,8 +194,7 @@ owner."
 ;; Another thread may ask for something in the midst of a tick. Its place among what the tick asks
 ;; for must not matter, as that is not in the journal.
 (defun take-requests (timeline)
-  "Empty the inbox of TIMELINE; return its requests, oldest first, but those of the tick before all
-others."
+  "Empty TIMELINE's inbox; return its requests, the oldest first, but the tick's before others."
   (loop for inbox = (timeline-inbox timeline)
         when (swap-if (timeline-inbox timeline) inbox '())
           return (let ((requests (reverse inbox)))
@@ -210,12 +206,10 @@ others."
 ;;; Notifications.
 
 (defun notify-later (timeline function &rest arguments)
-  "Call FUNCTION, the name of one, with ARGUMENTS at the end of this tick, after those already to be
-called then."
+  "Call FUNCTION, a name, with ARGUMENTS at the end of this tick, after those called then already."
   (push (cons function arguments) (timeline-notifications timeline)))
 
 (defun next-notification (timeline)
-  "Return what is to be called next at the end of this tick, removed, or NIL."
   (or (pop (timeline-untold timeline))
       (progn (setf (timeline-untold timeline)
                    (reverse (shiftf (timeline-notifications timeline) '())))
@@ -236,8 +230,6 @@ called then."
 (defun deliver-notifications (timeline)
   "Call what is to be called at the end of this tick, in order; the rest also if a call is left."
   (when (notifications-left-p timeline) (deliver-all timeline)))
-
-;;; What thinking costs.
 
 ;;; The manual (1.2) keeps simulated time and thinking time apart. Who wants to know what thinking
 ;;; is worth has to tie them together again, and so that every machine does it alike. So a run has a
@@ -282,8 +274,7 @@ called then."
         (timeline-real-p timeline) (eq mode :real)))
 
 (defun give-threads (timeline real)
-  "Let plans of TIMELINE have a thread of their own if REAL is true and thinking is not charged
-for."
+  "Let plans of TIMELINE have a thread of their own if REAL, unless thinking is charged for."
   (setf (timeline-real-p timeline) (and real (not (timeline-charge timeline)))))
 
 (defun thinking-charged-p (timeline)
