@@ -21,7 +21,7 @@
   (with-watcher (:clean t)
     (multiple-value-bind (ball here) (ball-at 5.9 10.5 :size 1)
       ;; By hand: its trajectory can be followed.
-      (robot:take-up (robot:robot-hand watcher 0) ball)
+      (world:move-thing ball (robot:robot-hand watcher 0))
       (is (robot:designator-local-p* here))
       (robot:set-down (robot:robot-hand watcher 0) ball)
       (run:run-ticks 1)

@@ -225,7 +225,7 @@ claiming that this was once."
   (with-watcher (:clean t)
     (let ((box (put 'box '(5.5 10.5) :capacity 9))
           (pen (put 'pen '(5.5 10.5) :size 1)))
-      (robot:take-up (robot:robot-hand watcher 0) pen)
+      (world:move-thing pen (robot:robot-hand watcher 0))
       (is (equal '(box pen) (find-objects '() :type :local)))
       (robot:move-part (eye) box)
       (is (equal '() (find-objects '() :type :local)))

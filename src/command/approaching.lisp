@@ -20,13 +20,6 @@
         0d0
         (angle-difference (bearing-to robot x y) (robot-angle robot)))))
 
-(defun turn-to-goal (robot designator)
-  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it, but for
-the error of turning."
-  (let ((angle (angle-to-goal robot designator)))
-    (or (< (abs angle) +facing+)
-        (< (abs (turn-step robot angle)) +facing+))))
-
 (defun ready-p (operation robot designator)
   "True if ROBOT, which faces DESIGNATOR but for the error of turning, is to drive: it has aimed
 well enough, or often enough, or is on its way."
@@ -48,8 +41,7 @@ has then arrived, and what blocked it, or NIL."
     (reached-p robot x y last-step block)))
 
 (defun arrive (operation camera designator)
-  "End OPERATION where DESIGNATOR, tracked by CAMERA, is, and with it the track (readings 108
-and 110)."
+  "End OPERATION at DESIGNATOR, tracked by CAMERA, and the track (readings 108 and 110)."
   (cond ((designator-denotation designator)
          (succeed operation camera designator)
          (end-on-arrival camera))
@@ -57,13 +49,13 @@ and 110)."
            (fail-with operation :not-tracking camera designator))))
 
 (defun approach-step (operation robot camera designator)
-  "Take ROBOT one tick nearer to DESIGNATOR, tracked by CAMERA, and end OPERATION if that ends
-it (reading 111)."
+  "Take ROBOT a tick nearer to DESIGNATOR, or end OPERATION if that is over (reading 111)."
   (cond ((not (tracking-p camera designator))
          (fail-with operation :not-tracking camera designator))
         ((at-designator-p robot designator) (arrive operation camera designator))
         ((standing-p robot) (fail-with operation :not-moving camera designator))
-        ((and (turn-to-goal robot designator) (ready-p operation robot designator))
+        ((and (turn-towards robot (angle-to-goal robot designator) +facing+)
+              (ready-p operation robot designator))
          (multiple-value-bind (arrived block) (drive-to-goal robot designator)
            (cond (arrived (arrive operation camera designator))
                  (block (fail-with operation :robot-blocked camera designator)))))))
@@ -80,12 +72,6 @@ it (reading 111)."
 (defmethod approaching-p ((operation operation) camera)
   (and (eq 'robot-goto-designator (command-name (operation-command operation)))
        (eq camera (first (operation-arguments operation)))))
-
-(defun approach (operation robot designator)
-  "Let ROBOT go to DESIGNATOR, beginning in this tick."
-  (begin-movement robot)
-  (setf (operation-subject operation) designator)
-  (go-on-now operation 'approach-on))
 
 ;; As reading 109 says.
 (define-command robot-goto-designator (operation (robot robot)
@@ -104,4 +90,6 @@ designator if no other camera tracks it."
     (cond ((null designator) (fail-with operation :not-tracking camera))
           ((eq (designator-type designator) :local)
            (fail-with operation :goto-local camera designator))
-          (t (approach operation robot designator)))))
+          (t (begin-movement robot)
+             (setf (operation-subject operation) designator)
+             (go-on-now operation 'approach-on)))))

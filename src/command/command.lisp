@@ -80,7 +80,6 @@ parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
   (get symbol 'command))
 
 (defun register-command (command)
-  "Let there be COMMAND, for those who ask by name, and for journals."
   (let ((name (command-name command)))
     (setf (get name 'command) command)
     (register *commands* name command)
@@ -91,8 +90,6 @@ parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
       (lambda (resource &rest arguments)
         (apply name resource (append arguments '(nil)))))
     name))
-
-;;; Steps.
 
 ;;; An operation has the name of a function that carries it on, its step. A file that says how far a
 ;;; command is may name what is a step, and no other function. Our own steps trust what they are
@@ -114,14 +111,12 @@ that is false."
      (defun ,name (,operation) ,documentation ,@body)))
 
 (defun use-step (step)
-  "Return STEP, the name of a function that GO-ON is told of. Signals an error if it is one of ours
-that DEFINE-STEP has not defined."
+  "Return STEP, which GO-ON is told of. Signals an error for one of ours without a DEFINE-STEP."
   (cond ((get step 'step) step)
         (*marking-p* (error "~S is not defined by DEFINE-STEP" step))
         (t (note-step step :guarded))))
 
 (defun step-p (name)
-  "True if the symbol NAME is that of a function which carries operations on."
   (and (get name 'step) (fboundp name) t))
 
 (defun using-step (form)
@@ -141,7 +136,6 @@ one when what it stands in is loaded."
 ;;; What people want to know.
 
 (defun specification-text (specification)
-  "Return what SPECIFICATION, of a command's argument or result, says."
   (format nil "~(~A~)~@[, ~A~]" (spec-name specification)
           (and (string/= "" (spec-text specification)) (spec-text specification))))
 

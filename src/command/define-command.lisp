@@ -5,7 +5,6 @@
 (export '(define-command))
 
 (defun replace-start (prefix replacement string)
-  "Return STRING with PREFIX at its start replaced by REPLACEMENT, or NIL."
   (when (starts-with-subseq prefix string)
     (concatenate 'string replacement (subseq string (length prefix)))))
 
@@ -39,13 +38,12 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   (destructuring-bind (name type &optional (text "")) specification
     `(make-spec ',name ',type ,text)))
 
-(defun continuation-p (value)
-  (or (functionp value)
-      (and (symbolp value)
-           (not (eq t value))
-           (or (not (keywordp value)) (fboundp value)))))
-
-(define-argument-type 'continuation #'continuation-p
+(define-argument-type 'continuation
+  (lambda (value)
+    (or (functionp value)
+        (and (symbolp value)
+             (not (eq t value))
+             (or (not (keywordp value)) (fboundp value)))))
   (one-line "a continuation: a function of an error code and the command's results, as
 (continuation (err &rest results) ...) makes, or NIL for none"))
 
@@ -68,8 +66,7 @@ data that is not quoted, or (90 deg)."
                          name (abridged form))))))
 
 (defun doubt-count (name parameters forms)
-  "Warn if FORMS, the arguments in a call of the command NAME, are not as many as PARAMETERS, a
-lambda list that ends in an optional one."
+  "Warn if FORMS, the arguments in a call of NAME, are not as many as PARAMETERS."
   (unless (<= (- (length parameters) 2) (length forms) (1- (length parameters)))
     (doubt-definition "~(~A~) takes ~(~:A~), not ~D argument~:P."
                       name parameters (length forms))))
@@ -94,8 +91,7 @@ COUNT arguments, and that is not known to return one."
                                                               (first form)))))))))
 
 (defun doubt-result (name form count)
-  "Warn if FORM, the continuation in a call of the command NAME, which gets COUNT arguments, does at
-once what is to be done in the end."
+  "Warn if FORM, the continuation in a call of NAME, does at once what is for the end."
   (when (or (returns-nothing-p form) (called-early-p form count))
     (let ((*print-pretty* nil))
       (doubt-definition "~(~A~): ~S is done at once, not when the command has ended, and returns ~
@@ -106,7 +102,6 @@ once what is to be done in the end."
   "Where commands belong.")
 
 (defun check-command-form (name resource parameters results options)
-  "Signal MALFORMED-DEFINITION unless DEFINE-COMMAND can use these parts of its form."
   (flet ((check (test clause expected)
            (unless test
              (reject-clause (title "define-command" name) clause expected))))
@@ -118,15 +113,11 @@ once what is to be done in the end."
     (dolist (result results)
       (check (and (proper-list-p result) (= 2 (length result)) (stringp (second result))) result
              "(name \"what it is\")"))
-    (dolist (option options)
-      (check (and (consp option)
-                  (member (first option)
-                          '(:family :section :delay :errors :expected :report :echo :prompt
-                            :prefix :occupies :traits)))
-             option
-             (format nil "(:family ...), (:section ...), (:delay ...), (:errors ...), ~
-                          (:expected ...), (:report ...), (:echo ...), (:prompt ...), ~
-                          (:prefix ...), (:occupies ...) or (:traits ...)")))
+    (loop with keys = '(:family :section :delay :errors :expected :report :echo :prompt :prefix
+                        :occupies :traits)
+          for option in options
+          do (check (and (consp option) (member (first option) keys)) option
+                    (format nil "~{(~(~S~) ...)~#[~; or ~:;, ~]~}" keys)))
     (dolist (trait (option :traits options))
       (check (member trait *command-traits*) trait
              (format nil "traits of ~{~(~S~)~^, ~}" *command-traits*)))
@@ -137,7 +128,6 @@ once what is to be done in the end."
              (format nil "(:family family), one of ~{~(~S~)~^, ~}" *command-families*)))))
 
 (defun check-types-known (name types)
-  "Signal MALFORMED-DEFINITION unless each of TYPES, of the command NAME, is an argument type."
   (dolist (type types)
     (unless (find-argument-type type nil)
       (reject-clause (title "define-command" name) type

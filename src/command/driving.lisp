@@ -151,15 +151,12 @@ once more meanwhile does not prolong that."
          (go-on-now operation 'coast))
         (t (succeed operation))))
 
-;;; Along a wall.
-
 ;;; The manual only mentions that robots can do this (appendix C); what it means is ours. The wall
 ;;; is the one in the nearest of the four cells around the robot's that are walls; those to the
 ;;; side win over the one ahead. The robot keeps it on the side where it was.
 
 (defun axis (angle)
-  "Return the heading along the grid's axes that is nearest to ANGLE, as a number of quarter turns
-from 0 to 3."
+  "Return the axis of the grid nearest to ANGLE, as a number of quarter turns from 0 to 3."
   (mod (round (/ angle (/ pi 2))) 4))
 
 (defun neighbour-wall-p (robot quarter)
@@ -183,16 +180,7 @@ along it; NIL if no wall is near."
           ;; Ahead of the robot: turn right, so that it comes to lie at the left.
           ((neighbour-wall-p robot heading) (values heading (1+ heading))))))
 
-(defun steer (robot heading)
-  "Turn ROBOT, by no more than a tick's turn, towards the HEADING in quarter turns. True if it
-then looks there, but for the error of turning."
-  (let* ((left (angle-difference (* heading (/ pi 2)) (robot-angle robot)))
-         (close (< (abs left) 1d-3)))
-    (or close
-        (< (abs (turn-step robot left)) +facing+))))
-
 (defun drive-along (operation robot side)
-  "Drive ROBOT for a tick along the wall at SIDE, and end OPERATION where that ends."
   (ecase (drive-tick robot)
     (:wall (succeed operation))
     (:thing (fail-with operation :robot-blocked))
@@ -206,7 +194,9 @@ then looks there, but for the error of turning."
   "Follow the wall of OPERATION, whose subject is its side and the heading along it, for a tick."
   (let ((robot (operation-resource operation)))
     (destructuring-bind (side heading) (operation-subject operation)
-      (cond ((not (steer robot heading)) (once-more operation))
+      (cond ((not (turn-towards robot
+                                (angle-difference (* heading (/ pi 2)) (robot-angle robot)) 1d-3))
+             (once-more operation))
             ((standing-p robot) (fail-with operation :not-moving))
             (t (drive-along operation robot side))))))
 

@@ -135,8 +135,6 @@ a sentence; NIL if it is not one of the simulator's own."
   (let ((remedy (third (assoc code *meanings*))))
     (and remedy (string/= "" remedy) (one-line remedy))))
 
-;;; What pictures and lists of moments make a mark of.
-
 (defun trouble-p (code)
   "True if CODE, an error code or NIL, is of a failure that people look for: plans often look for
 what is not there, and let a newer command take over from an older one."

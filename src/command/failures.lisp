@@ -31,14 +31,15 @@ Where requests are carried out, the tick that they begin has not been counted ye
          (eq (request-name request) (interruption-what interruption))
          interruption)))
 
-(defun note-failure (robot request code text &key tick asked resource)
-  "Let ROBOT remember that REQUEST, which was asked of RESOURCE after the tick ASKED, ends in TICK
-with the error CODE and the message TEXT."
-  (let ((interruption (and (eq code :interrupt) (interruption-of request tick))))
-    (setf (robot-failure robot)
+(defun note-failure (operation code text)
+  "Let the robot of OPERATION remember that it ends with the error CODE and the message TEXT."
+  (let* ((tick (timeline-tick (operation-timeline operation)))
+         (interruption (and (eq code :interrupt) (interruption-of operation tick))))
+    (setf (robot-failure (resource-robot (operation-resource operation)))
           (make-failure (if interruption (interruption-tick interruption) tick)
-                        asked (request-name request) resource (request-arguments request)
-                        (request-asker request) code text
+                        (operation-asked operation) (request-name operation)
+                        (resource-told operation) (operation-arguments operation)
+                        (request-asker operation) code text
                         (and interruption
                              (list (interruption-by interruption)
                                    (interruption-by-asker interruption)))))))
@@ -50,7 +51,6 @@ with the error CODE and the message TEXT."
   (command-name (operation-command operation)))
 
 (defun mind-of (resource)
-  "Return the mind of RESOURCE if that is a robot, or NIL."
   (and (robot-p resource) (robot-mind resource)))
 
 (defun occupant (resource)
@@ -63,12 +63,9 @@ with the error CODE and the message TEXT."
 
 (defun newest-interruption (resource)
   "Return the last interruption on RESOURCE, also of thoughts if it is a robot; or NIL."
-  (let ((own (resource-interruption resource))
-        (thought (and (mind-of resource) (resource-interruption (mind-of resource)))))
-    (cond ((null own) thought)
-          ((null thought) own)
-          ((> (interruption-tick thought) (interruption-tick own)) thought)
-          (t own))))
+  (first (stable-sort (loop for each in (list resource (mind-of resource))
+                            when (and each (resource-interruption each)) collect it)
+                      #'> :key #'interruption-tick)))
 
 (defun check-resource (operator resource)
   (unless (typep resource '(or robot part))
@@ -129,7 +126,6 @@ tick in which it was. A robot's thoughts count. NIL if nothing ever was."
       (t argument))))
 
 (defun call-text (failure)
-  "Return what was asked for, as one would type it in Lisp."
   (let ((*print-case* :downcase) (*read-default-float-format* 'double-float))
     (safe-text (list* (failure-command failure)
                      (mapcar #'argument-as-typed

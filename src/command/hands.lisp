@@ -21,7 +21,6 @@
         (t (princ-to-string destination))))
 
 (defun succeed-saying (operation text &rest results)
-  "End OPERATION successfully with RESULTS; TEXT is what its message says."
   (tell-of operation text)
   (apply #'succeed operation results))
 
@@ -82,11 +81,10 @@ forgiven (readings 153 and 237)."
         ((not (tracking-p camera designator)) :not-tracked)))
 
 (defun grasp (hand thing dice)
-  "Let HAND grasp THING, NIL for one that only seems to be there. Return an error code or NIL.
-See reading 151."
+  "Let HAND grasp THING, NIL if it only seems there. Return NIL or a code (readings 151, 231)."
   (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
         ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
-        (t (take-up hand thing)
+        (t (move-thing thing hand)
            nil)))
 
 (defun try-grasp (hand designator dice)
@@ -136,9 +134,9 @@ designators silently."
 
 ;;; Feeling.
 
-(defun answer (operation code text)
-  "End OPERATION with CODE, which answers a question and is no failure; TEXT says it."
-  (tell-of operation text)
+(defun answer (operation code)
+  "End OPERATION with CODE, which answers a question and is no failure."
+  (tell-of operation (error-text operation code))
   (setf (operation-finished-p operation) t)
   (notify operation code '()))
 
@@ -149,16 +147,13 @@ designators silently."
      (:errors (:grasping (text-of "~A is holding something"))
               (:not-grasping (text-of "~A is not holding anything"))))
     "Feel whether HAND holds something. One of the two error codes is the answer."
-  (if (hand-holding hand)
-      (answer operation :grasping (format nil "~A is holding something" hand))
-      (answer operation :not-grasping (format nil "~A is not holding anything" hand))))
+  (answer operation (if (hand-holding hand) :grasping :not-grasping)))
 
 (defconstant +watch-period+ 1000
   "How long the event of a watch waits, in ticks, before it is queued anew.")
 
 (define-step watch-grip (operation (hand-p (operation-resource operation)))
-  "Let OPERATION occupy its hand until that no longer holds its subject, what it held at
-first (reading 162)."
+  "Let OPERATION occupy its hand until that does not hold its subject any more (reading 162)."
   (let ((hand (operation-resource operation)))
     (cond ((not (eq (operation-subject operation) (hand-holding hand)))
            (fail-with operation :grasp-lost))
@@ -179,8 +174,7 @@ first (reading 162)."
       (fail-with operation :not-grasping)))
 
 (defun grip-watched-p (resource)
-  "True if RESOURCE carries out a HAND-TRACK that has begun: one that ends only when something
-happens."
+  "True if RESOURCE carries out a HAND-TRACK that has begun and waits for something to happen."
   (let ((operation (resource-event resource)))
     (and (operation-p operation)
          (eq 'watch-grip (operation-step operation)))))

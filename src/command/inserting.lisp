@@ -23,18 +23,15 @@
         while (thing-p outer)
         thereis (eq outer (hand-holding hand))))
 
-(defun hand-obstacle (hand container)
-  "Return the error code that keeps HAND out of CONTAINER, a thing or bin, or NIL (reading 155)."
-  (cond ((location-closed-p container) :bin-closed)
+(defun try-hand-insertion (hand container)
+  "Move HAND into CONTAINER, NIL if it is not there. Return an error code or NIL (reading 155)."
+  (cond ((null container) :hand-bump)
+        ((location-closed-p container) :bin-closed)
         ((not (has-room-p container (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0)))
          :insufficient-capacity)
         ((held-inside-p hand container) :holding-thing)
-        ((not (reaches-container-p hand container)) :different-location)))
-
-(defun try-hand-insertion (hand container)
-  "Move HAND into CONTAINER, NIL for one that is not there. Return an error code or NIL."
-  (cond ((and container (hand-obstacle hand container)))
-        ((or (null container) (chance hand-insert-miss-prob* (handling-dice hand))) :hand-bump)
+        ((not (reaches-container-p hand container)) :different-location)
+        ((chance hand-insert-miss-prob* (handling-dice hand)) :hand-bump)
         (t (move-part hand container)
            nil)))
 
@@ -108,14 +105,6 @@
 
 ;;; Cameras.
 
-(defun camera-obstacle (camera destination container)
-  "Return the error code that keeps CAMERA from trying to enter CONTAINER, NIL if there is
-none (reading 159)."
-  (cond ((and container (location-closed-p container)) :bin-closed)
-        ((storage-bin-p destination) nil)
-        ((null (camera-tracks camera)) :not-tracking)
-        ((not (tracking-p camera destination)) :not-tracking-destination)))
-
 (defun camera-misses-p (camera destination container)
   "True if CAMERA, on its way into DESTINATION, bumps it, or is where there is nothing. What it
 cannot reach it cannot bump."
@@ -124,8 +113,11 @@ cannot reach it cannot bump."
          (chance camera-insert-miss-prob* (handling-dice camera)))))
 
 (defun try-camera-insertion (camera destination container)
-  "Move CAMERA into CONTAINER, which DESTINATION stands for. Return an error code or NIL."
-  (cond ((camera-obstacle camera destination container))
+  "Move CAMERA into CONTAINER, that of DESTINATION. Return an error code or NIL (reading 159)."
+  (cond ((and container (location-closed-p container)) :bin-closed)
+        ((and (designator-p destination) (null (camera-tracks camera))) :not-tracking)
+        ((and (designator-p destination) (not (tracking-p camera destination)))
+         :not-tracking-destination)
         ((camera-misses-p camera destination container) :camera-bump)
         ((and container (not (has-room-p container 0d0))) :insufficient-capacity)
         ((and (designator-p destination) (eq (designator-type destination) :non-local))
@@ -157,8 +149,6 @@ cannot reach it cannot bump."
                         (chance camera-insert-lose-desig-prob* (handling-dice camera)))))
       (drop-designator destination))
     (finish operation code destination)))
-
-;;; Opening and closing storage bins.
 
 ;;; A closed bin keeps its contents from kicking themselves out, and parts from reaching in.
 

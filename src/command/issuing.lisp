@@ -8,13 +8,11 @@
 ;;; What is of another run.
 
 (defun owner-of-argument (argument)
-  "Return the robot that ARGUMENT, of a command, belongs to, or NIL."
   (typecase argument
     (designator (designator-robot argument))
     (part (part-robot argument))))
 
 (defun check-of-this-run (command resource arguments)
-  "Signal MISUSE if one of ARGUMENTS, of COMMAND on RESOURCE, is in another world than that."
   (let ((world (robot-world (resource-robot resource))))
     (dolist (argument arguments)
       (let* ((robot (if (robot-p argument) argument (owner-of-argument argument)))
@@ -29,7 +27,6 @@
 ;;; What is said once for each name.
 
 (defun told-at-end (command)
-  "Return the names of what continuations of COMMAND are called with, a list."
   (list* 'err (spec-name (command-resource command))
          (mapcar #'spec-name (command-results command))))
 
@@ -60,8 +57,7 @@
 ;;; One simulation inside of another.
 
 (defun asked-elsewhere (world)
-  "Return the key under which WORLD notes that something was asked for in it in this tick, inside of
-a simulation of another."
+  "Return the key for what is asked of WORLD in this tick inside of a simulation of another."
   (list :asked-elsewhere (world-tick world)))
 
 (defun asked-elsewhere-p (world)
@@ -70,8 +66,7 @@ of WORLD passed."
   (said-p (asked-elsewhere world) world))
 
 (defun note-asked-elsewhere (world)
-  "Remember if a program asks for something in WORLD, which waits for ticks, inside of a simulation
-of another."
+  "Remember if a program asks WORLD, which waits for ticks, inside of a simulation of another."
   (let ((timeline (world-timeline world)))
     (when (and *simulation*
                (by-program-p)
@@ -101,8 +96,7 @@ WITH-SIMULATION, somebody at a REPL or a continuation."
            (timeline-inbox timeline)))
 
 (defun barely-begun (resource timeline)
-  "Return what a live robot's RESOURCE carries out, if it takes time and was asked for in the last
-tick; or NIL."
+  "Return the lasting command that live RESOURCE carries out since the last tick; or NIL."
   (let ((event (resource-event resource)))
     (and (live-p timeline)
          (operation-p event)
@@ -133,7 +127,6 @@ the same command of a robot again, as in a loop."
         (warn-of-hurry (operation-command before) command resource)))))
 
 (defun warn-of-hurry (before command resource)
-  "Say once that COMMAND replaces the command BEFORE of RESOURCE, which has done nothing yet."
   (let ((*print-pretty* nil))
     (warn-once (list :hurry (command-name before) (command-name command))
                (robot-world (resource-robot resource))
@@ -166,7 +159,6 @@ way by the same asker, who is not told of its end: it begins anew."
       (warn-of-again command (- (timeline-tick timeline) (operation-asked before)) resource))))
 
 (defun warn-of-again (command ticks resource)
-  "Say once that COMMAND of RESOURCE interrupts itself after TICKS."
   (let ((*print-pretty* nil))
     (warn-once (list :again (command-name command))
                (robot-world (resource-robot resource))
@@ -177,7 +169,6 @@ way by the same asker, who is not told of its end: it begins anew."
 
 ;; Manipulations, and commands that users define, may be for two robots.
 (defun doubt-owners (command robot arguments)
-  "Say once for each owner if one of ARGUMENTS, of COMMAND, is another robot's than ROBOT's."
   (unless (or (command-guarded-p command) (eq :manipulating (command-family command)))
     (dolist (argument arguments)
       (let ((owner (owner-of-argument argument)))
@@ -187,7 +178,6 @@ way by the same asker, who is not told of its end: it begins anew."
                              (command-name command) argument owner robot)))))))
 
 (defun doubt-arguments (command world arguments)
-  "Say once if one of ARGUMENTS, of COMMAND in WORLD, is allowed, but most likely not meant."
   (loop for spec in (command-parameters command)
         for argument in arguments
         do (case (spec-type spec)
@@ -208,8 +198,7 @@ than the run of TIMELINE in WORLD knows.")
   (:method (timeline world) (declare (ignore timeline world)) '()))
 
 (defun doubt-bindings (command world bindings)
-  "Say once for COMMAND, asked for in WORLD while parameters were as BINDINGS say, that it is done
-with others, if so."
+  "Say once for COMMAND if it is done with other parameters than it was asked for with."
   (loop for (symbol . value) in bindings
         unless (eql value (symbol-value symbol))
           do (warn-once (list :bound (command-name command)) world
@@ -246,8 +235,7 @@ that is; or, live, say so if they are this thread's."
               (t (push (list* command world bindings) *asked-with*)))))))
 
 (defun between-runs-p (world)
-  "True if what is asked of a robot in WORLD, one that top-level code works in, waits for a run to
-begin, or to go on."
+  "True if what is asked of a robot in WORLD, a map's own, waits for a run to begin or go on."
   (let ((timeline (world-timeline world)))
     (and (eq world (map-resident (world-map world)))
          (not (live-p timeline))
@@ -272,7 +260,6 @@ begin, or to go on."
               (type-of resource) name name (form-of-resource resource)))))
 
 (defun way-to-run (resource)
-  "Return in a sentence how the robot of RESOURCE, which is in no run, gets into one."
   (let* ((robot (resource-robot resource))
          (map (world-map (robot-world robot))))
     (if (and *world*
@@ -303,7 +290,6 @@ for, as running a plan lets ticks pass."
 ;;; Issuing.
 
 (defun occupied (command resource)
-  "Return what COMMAND, which is issued on RESOURCE, occupies."
   (let ((reader (command-occupies command)))
     (if reader (funcall reader resource) resource)))
 

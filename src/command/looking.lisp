@@ -16,8 +16,6 @@
     "Take a view with CAMERA."
   (succeed operation (take-view camera)))
 
-;;; Searches.
-
 ;;; The search itself takes no time once its delay is over, but naming all that was found takes a
 ;;; tick for each after the first. What has moved away by then is left out.
 
@@ -40,10 +38,8 @@ that the attributes can have, and of a range the lower end first"
 (defun name-sightings (camera sightings)
   "Return designators for those of SIGHTINGS that CAMERA still has. Of more than a robot keeps, the
 first are pushed out by the last."
-  (let ((designators (loop for sighting in sightings
-                           for designator = (designate sighting camera)
-                           when designator collect designator)))
-    (remove-if-not #'designator-valid-p designators)))
+  (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
+    (remove-if-not #'designator-valid-p (remove nil designators))))
 
 (defun designate-first (operation sightings)
   (let ((designator (first (name-sightings (operation-resource operation) sightings))))
@@ -61,8 +57,7 @@ first are pushed out by the last."
         (fail-with operation :designator-not-found))))
 
 (defun designate-all (operation sightings)
-  "End OPERATION with designators for all of SIGHTINGS, when it has had the time to name
-them (reading 134)."
+  "End OPERATION with designators for SIGHTINGS, a tick later for each more (reading 134)."
   (setf (operation-subject operation) sightings)
   (if (rest sightings)
       (go-on operation 'designate-found (length (rest sightings)))
@@ -71,8 +66,7 @@ them (reading 134)."
 ;;; Places.
 
 (defun place-search-obstacle (camera place-type)
-  "Return the error code that keeps CAMERA from a search for places of PLACE-TYPE, or
-NIL (reading 69)."
+  "Return the code that keeps CAMERA from looking for PLACE-TYPE, or NIL (reading 69)."
   (let ((type (find-place-type place-type nil)))
     (cond ((camera-tracking camera) :already-tracking)
           ((null type) :invalid-place-type)
@@ -123,15 +117,12 @@ found none is an answer: :DESIGNATOR-NOT-FOUND."
 
 ;;; Things.
 
-(defun note-unknown-substances (specification)
-  "Tell of substances that are wanted in SPECIFICATION and that there are not."
+(defun search-for-things (operation camera type specification all)
+  ;; Tell of substances that are wanted and that there are not.
   (loop for (key value) in specification
         when (eq key :substance)
           do (dolist (choice (ensure-list value))
-               (when (and choice (symbolp choice)) (note-unknown-substance choice)))))
-
-(defun search-for-things (operation camera type specification all)
-  (note-unknown-substances specification)
+               (when (and choice (symbolp choice)) (note-unknown-substance choice))))
   (if (camera-tracking camera)
       (fail-with operation :already-tracking)
       (funcall (if all #'designate-all #'designate-first)
@@ -166,8 +157,6 @@ no such object is an answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
 the first. That it found no such object is an answer: :DESIGNATOR-NOT-FOUND."
   (search-for-things operation camera type specification t))
 
-;;; Tracks.
-
 ;;; CAMERA-TRACK tells its continuation twice: with NIL when the track begins, and with a code when
 ;;; it ends. If it cannot begin, it tells once.
 
@@ -182,8 +171,7 @@ the first. That it found no such object is an answer: :DESIGNATOR-NOT-FOUND."
            :lost-track))))
 
 (defun local-to-camera-p (camera designator)
-  "True if what the local DESIGNATOR denotes is where CAMERA is, and next to the
-robot (reading 140)."
+  "True if what DESIGNATOR denotes is next to the robot, and where CAMERA is (reading 140)."
   (and (own-designator-p camera designator)
        (eq (designator-location designator) (camera-location camera))
        (designator-local-p* designator)))
@@ -193,11 +181,10 @@ robot (reading 140)."
   (setf (operation-finished-p operation) t)
   (if (eq code :interrupt)
       (report operation code '())
-      (note-failed operation code (error-text operation code)))
+      (note-failure operation code (error-text operation code)))
   (notify operation code (list designator)))
 
 (defun interrupt-track (operation camera)
-  "End the track of CAMERA, if it has one, for OPERATION, which is at work."
   (let ((track (camera-tracking camera)))
     (when (and track (track-operation track))
       (note-interruption (track-operation track) operation
@@ -241,8 +228,6 @@ track begins, with NIL, and again when it ends, with the error code that says ho
          (succeed operation))
         (t (fail-with operation :not-tracking))))
 
-;;; Turns.
-
 ;;; A camera turns exactly as told, and at once after its delay; what it reports is an estimate. Its
 ;;; angle is relative to the robot and never normalised. Turning a camera interrupts its track.
 
@@ -254,8 +239,7 @@ track begins, with NIL, and again when it ends, with the error code that says ho
     (+ (double angle) (angle-error (world-dice world :looking)))))
 
 (defun turn-camera-to (operation camera direction)
-  "Turn CAMERA to DIRECTION, relative to the robot, the short way round, for OPERATION; return an
-estimate of the angle."
+  "Turn CAMERA to DIRECTION, relative to the robot, the short way; return an estimate."
   (turn-camera operation camera (angle-difference direction (camera-angle camera))))
 
 (defun camera-turned-text (operation angle)

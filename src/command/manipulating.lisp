@@ -8,19 +8,13 @@
 ;;; another robot designates nothing that could be manipulated.
 
 (defun designated-thing (designator resource)
-  "Return the thing that DESIGNATOR of the robot of RESOURCE denotes and that is local, or
-NIL (reading 175)."
+  "Return the local thing that DESIGNATOR, of RESOURCE's robot, denotes, or NIL (reading 175)."
   (and (own-designator-p resource designator)
        (eq (designator-type designator) :local)
        (designator-local-p* designator)
        (designator-thing designator)))
 
 ;;; Which methods there are for some arguments.
-
-(defun fits-type-p (value type)
-  "True if VALUE can be of the type called TYPE. Types that commands do not know fit all."
-  (let ((known (and type (find-argument-type type nil))))
-    (or (null type) (null known) (argument-of-type-p value type))))
 
 (defun method-takes-p (method arguments)
   "True if ARGUMENTS are of the number and types that METHOD wants."
@@ -32,7 +26,9 @@ NIL (reading 175)."
          (typep (nth count arguments) '(or robot part))
          (loop for value in (nthcdr count arguments)
                for (nil type) in typed
-               always (fits-type-p value type)))))
+               ;; Types that commands do not know fit all.
+               for known = (and type (find-argument-type type nil))
+               always (or (null known) (argument-of-type-p value type))))))
 
 (defun method-usage (method)
   (format nil "~(~A~)" (parameter-variables (method-parameters method))))
@@ -75,7 +71,6 @@ NIL (reading 175)."
 ;;; In its tick.
 
 (defun call-body (method arguments)
-  "Return the values that the body of METHOD returns for ARGUMENTS as a list."
   (let ((things (method-things method arguments)))
     (multiple-value-list
      (apply (method-body method) (append things (nthcdr (length things) arguments))))))
@@ -91,8 +86,7 @@ code."
                               result write (values nil result)." name (cut text 60))))))
 
 (defun run-body (operation method)
-  "Run the body of METHOD, and end OPERATION with the error code and the value that it returns, or
-with :FAILED if it fails or is left."
+  "Run the body of METHOD; end OPERATION with the code and value it returns, or with :FAILED."
   (let ((results '(:failed)) (*world* (operation-world operation)))
     (in-any-case
       (call-user-code (lambda ()
@@ -104,8 +98,7 @@ with :FAILED if it fails or is left."
 (define-step carry-out (operation (and (manipulation-method-p (operation-subject operation))
                                        (method-takes-p (operation-subject operation)
                                                        (operation-arguments operation))))
-  "Do what the method that is the subject of OPERATION does, if that is still possible and succeeds,
-and end OPERATION."
+  "Do what the subject of OPERATION, a method, does, if it still can and succeeds; end OPERATION."
   (let ((method (operation-subject operation))
         (dice (world-dice (operation-world operation) :manipulations)))
     (if (and (method-applies-p method (operation-arguments operation))
@@ -135,25 +128,19 @@ is NIL (manual E)."
           (mapcar #'destination-name (designators-given operation)) (operation-resource operation)
           (and value (one-line (safe-text value :escape nil :length 100)))))
 
-(defun far-designator (operation)
-  "Return the designator given to OPERATION, a manipulation, that is not local, or NIL."
-  (find :local (designators-given operation) :key #'designator-type :test-not #'eq))
-
 (defun things-meant (operation)
-  "Return what the designators given to OPERATION, a manipulation, designate; NIL if that of one is
-nothing."
+  "Return what the designators given to OPERATION designate; NIL if one of them nothing."
   (let ((things (loop for designator in (designators-given operation)
                       collect (designated-thing designator (operation-resource operation)))))
     (and (notany #'null things) things)))
 
 (defun failed-text (operation)
-  "Return in words that the manipulation OPERATION failed, and why if that is its designator, or the
-things, which no method is for."
+  "Return in words that the manipulation OPERATION failed, and why, if that is known."
   (format nil "~A failed~@[: ~A is not local, as objects of manipulations must be. Go there, as by ~
                robot-goto-designator, and search again with the type :local~]~@[: none of its ~
                methods is for ~{~A~^, ~}; their patterns ask for something else~]"
           (command-prefix (operation-command operation))
-          (far-designator operation)
+          (find :local (designators-given operation) :key #'designator-type :test-not #'eq)
           (and (null (operation-subject operation)) (things-meant operation))))
 
 (define-record (manipulation-command (:include command) (:constructor %make-manipulation-command))
@@ -163,7 +150,6 @@ things, which no method is for."
   (list* 'manipulate (command-name command) (operation-arguments operation)))
 
 (defun make-manipulation-command (name)
-  "Return the command by which the manipulation NAME is carried out."
   (let ((prefix (string-downcase name)))
     (%make-manipulation-command
      :name name :prompt-name (string-upcase name) :prefix prefix

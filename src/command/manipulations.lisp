@@ -81,7 +81,6 @@ others, each a list (variable type), with NIL for no type."
                                    (pop list))))))
 
 (defun parse-parameters (definition form)
-  "Return the PARAMETER-LIST that FORM stands for. Signals MALFORMED-DEFINITION."
   (unless (and (proper-list-p form) (rest (member :by form)))
     (reject-clause definition form "(variable - descriptor ... :BY resource other...)"))
   (multiple-value-bind (objects patterns) (parse-objects definition (ldiff form (member :by form)))
@@ -92,7 +91,6 @@ others, each a list (variable type), with NIL for no type."
       (make-parameter-list objects patterns typed))))
 
 (defun parameter-variables (parameters)
-  "Return the variables of PARAMETERS, in order."
   (append (parameter-list-objects parameters)
           (mapcar #'first (parameter-list-typed parameters))))
 
@@ -113,12 +111,6 @@ for its resource, and such lists for all that follows. The type is NIL where non
   (and (consp (cddr form))
        (null (cdddr form))
        "the list of options stands behind the parameters, () if there are none"))
-
-(defun check-method-options (definition options)
-  (unless (typep options '(or null (cons keyword)))
-    (reject-clause definition options
-                   "a list of options before the body, such as (:success 9/10), or () for none"))
-  (check-options definition options '(:success :delay)))
 
 (defun outdated-p (name method source)
   "True if METHOD of NAME is from an earlier version of the file of SOURCE, which has it no more. If
@@ -148,7 +140,6 @@ parameter list or of which it is a new version (reading 174)."
     (cons method (remove old current))))
 
 (defun say-if-shared (name methods method)
-  "Warn if METHOD is the first from its file, and METHODS of NAME are from others."
   (let* ((file (source-file (method-source method)))
          (files (mapcar (lambda (old) (source-file (method-source old))) methods))
          (others (remove nil files)))
@@ -187,7 +178,10 @@ parameter list, BODY a function of as many arguments. Return NAME."
 
 (defun manipulation-forms (definition name parameters options body)
   (check-name definition name "manipulation")
-  (check-method-options definition options)
+  (unless (typep options '(or null (cons keyword)))
+    (reject-clause definition options
+                   "a list of options before the body, such as (:success 9/10), or () for none"))
+  (check-options definition options '(:success :delay))
   (let* ((parsed (parse-parameters definition parameters))
          (variables (parameter-variables parsed)))
     (loop for (nil type) in (parameter-list-typed parsed) do (doubt-type definition type))

@@ -48,7 +48,7 @@ command that it cut short, or NIL"))
 (setf (documentation 'operation-resource 'function)
       "Return the robot or part that the operation occupies.")
 
-(declaim (inline operation-command))
+(declaim (inline operation-command operation-agenda))
 (defun operation-command (operation)
   "Return the command that OPERATION carries out."
   (the command (operation-operator operation)))
@@ -58,7 +58,6 @@ command that it cut short, or NIL"))
     (format stream "~A of ~A" (command-name (operation-command operation))
             (operation-resource operation))))
 
-(declaim (inline operation-agenda))
 (defun operation-agenda (operation)
   (timeline-agenda (the timeline (operation-timeline operation))))
 
@@ -68,7 +67,6 @@ command that it cut short, or NIL"))
     (if (mind-p resource) (mind-robot resource) resource)))
 
 (defun operation-world (operation)
-  "Return the world that OPERATION takes place in."
   (robot-world (resource-robot (operation-resource operation))))
 
 (defmethod reference ((operation operation))
@@ -101,29 +99,19 @@ command that it cut short, or NIL"))
     (apply #'format nil control (operation-resource operation) (operation-arguments operation))))
 
 (defun name-of-robot (operation)
-  "Return the name of the robot that OPERATION is of, or whose part it is of."
   (robot-name (resource-robot (operation-resource operation))))
 
 (defun tell-of (operation text)
-  "Queue the message TEXT about OPERATION."
   (let ((*told-of* (request-asker operation)) (*robot-told-of* (name-of-robot operation)))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
-(defun note-failed (operation code text)
-  "Let the robot of OPERATION, which ends with the error CODE and the message TEXT, remember that."
-  (note-failure (resource-robot (operation-resource operation)) operation code text
-                :tick (timeline-tick (operation-timeline operation))
-                :asked (operation-asked operation)
-                :resource (resource-told operation)))
-
 (defun tell-of-failure (operation kind code text)
-  "Queue TEXT, a message of KIND, as OPERATION ends with the error CODE, which its continuation is
-told, too."
+  "Queue TEXT, a message of KIND, as OPERATION ends with CODE, told to its continuation, too."
   (queue-message (make-message kind (list text)
                                :about (command-name (operation-command operation))
                                :told-p (and (operation-continuation operation) t))
                  *message-queue*)
-  (note-failed operation code text))
+  (note-failure operation code text))
 
 (defun report (operation code results)
   "Queue the message that OPERATION ends with (reading 229)."
@@ -137,12 +125,6 @@ told, too."
           (code (tell-of-failure operation :error code (error-text operation code)))
           (report (let ((text (printing-words () (apply report operation results))))
                     (when text (tell-of operation text)))))))
-
-(defun fit-results (operation results)
-  "Return RESULTS, with NIL for each of the command's results that is missing (reading 85)."
-  (loop for nil in (command-results (operation-command operation))
-        for rest = results then (rest rest)
-        collect (first rest)))
 
 ;; As reading 86 says.
 (defun tell-end (operation code results)
@@ -166,7 +148,10 @@ the resource and RESULTS. The second end of an operation changes nothing."
     (setf (operation-finished-p operation) t)
     (when (event-pending-p operation)
       (cancel-event (operation-agenda operation) operation))
-    (let ((results (fit-results operation results)))
+    ;; NIL for each of the command's results that is missing (reading 85).
+    (let ((results (loop for nil in (command-results (operation-command operation))
+                         for rest = results then (rest rest)
+                         collect (first rest))))
       ;; A user's command may fail in its report.
       (unwind-protect (report operation code results)
         (notify operation code results)))))

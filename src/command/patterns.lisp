@@ -8,13 +8,11 @@
 ;;; two numbers mean a range. NIL means false or unspecified. A matchvar is bound where
 ;;; it comes first and must meet the same value wherever it comes again, in this pattern or a later.
 
-(defun impossible-value (attribute value)
-  "Return what of VALUE, in a pattern for ATTRIBUTE, no thing can have, and what was meant perhaps."
-  (find-if-not (lambda (value) (or (matchvar-p value) (in-domain-p attribute value)))
-               (if (in-domain-p attribute value) '() (ensure-list value))))
-
 (defun check-discrete-clause (definition clause attribute)
-  (let ((value (impossible-value attribute (second clause))))
+  (let ((value (find-if-not (lambda (value) (or (matchvar-p value) (in-domain-p attribute value)))
+                            (if (in-domain-p attribute (second clause))
+                                '()
+                                (ensure-list (second clause))))))
     (when value
       (reject-clause definition clause
                      (format nil "one of ~(~A~)~@[; did you mean ~(~A~)?~]"

@@ -5,14 +5,12 @@
 (export '(check-commands))
 
 (defun step-fits-p (operation)
-  "True if OPERATION is such as its step needs."
   (let ((fits-p (get (operation-step operation) 'step)))
     (if (eq :guarded fits-p)
         (command-guarded-p (operation-command operation))
         (funcall fits-p operation))))
 
 (defun arguments-fit-p (operation)
-  "True if OPERATION has arguments such as its command takes."
   (let ((command (operation-command operation)) (arguments (operation-arguments operation)))
     (or (manipulation-command-p command)
         (and (= (length arguments) (length (command-parameters command)))
@@ -21,7 +19,6 @@
                     (cons (resource-told operation) arguments))))))
 
 (defun check-operation (operation)
-  "Signal CONTRADICTION unless OPERATION, put together from a file, could be under way or begin."
   (must-hold (and (command-p (request-operator operation))
                   (eq #'run-operation (event-function operation))
                   (eq #'interrupt-operation (event-interrupt operation))

@@ -6,11 +6,16 @@
 ;;; as the turn angle goes into the angle.
 
 (defun set-within (value low high)
-  "Return VALUE as a double within LOW and HIGH, and whether it was too :LOW or :HIGH for
-them (reading 91)."
+  "Return VALUE within LOW and HIGH, and whether it was too :LOW or :HIGH (reading 91)."
   (cond ((< value low) (values (double low) :low))
         ((> value high) (values (double high) :high))
         (t (values (double value) nil))))
+
+(defun limit-text (control parameter)
+  "Return a function that makes an error's text of CONTROL and the value of PARAMETER."
+  (lambda (operation)
+    (declare (ignore operation))
+    (format nil control (symbol-value parameter))))
 
 ;; As reading 94 says.
 (define-command robot-set-speed (operation (robot robot)
@@ -18,10 +23,7 @@ them (reading 91)."
     ((speed "the speed set"))
     ((:family :moving) (:section "3.5")
      (:errors (:negative-speed "Speed cannot be negative. Set to 0")
-              (:too-high-speed (lambda (operation)
-                                 (declare (ignore operation))
-                                 (format nil "Speed too high. Set to the maximum, ~,2F"
-                                         max-speed*))))
+              (:too-high-speed (limit-text "Speed too high. Set to the maximum, ~,2F" 'max-speed*)))
      (:report (speed) (phrase "Speed set to ~,2F" speed)))
     "Set the speed at which ROBOT drives, cut off at 0 and MAX-SPEED*."
   (multiple-value-bind (speed outside) (set-within speed 0 max-speed*)
@@ -34,14 +36,10 @@ them (reading 91)."
                                        "the new turn angle, min-turn-angle* to max-turn-angle*"))
     ((turn-angle "the turn angle set"))
     ((:family :moving) (:section "3.5")
-     (:errors (:too-low-turn-angle (lambda (operation)
-                                     (declare (ignore operation))
-                                     (format nil "Turn angle too low. Set to the minimum, ~,2F"
-                                             min-turn-angle*)))
-              (:too-high-turn-angle (lambda (operation)
-                                      (declare (ignore operation))
-                                      (format nil "Turn angle too high. Set to the maximum, ~,2F"
-                                              max-turn-angle*))))
+     (:errors (:too-low-turn-angle
+               (limit-text "Turn angle too low. Set to the minimum, ~,2F" 'min-turn-angle*))
+              (:too-high-turn-angle
+               (limit-text "Turn angle too high. Set to the maximum, ~,2F" 'max-turn-angle*)))
      (:report (angle) (format nil "Turn angle set to ~,2F" angle)))
     "Set how far ROBOT turns in a tick, cut off at MIN-TURN-ANGLE* and MAX-TURN-ANGLE*."
   (multiple-value-bind (angle outside) (set-within angle min-turn-angle* max-turn-angle*)
@@ -64,6 +62,12 @@ odometry's reading of the step. See reading 99."
     (turn-tick robot step)
     (values (- left step)
             (* 0.5d0 (+ (robot-turned-low robot) (robot-turned-high robot))))))
+
+(defun turn-towards (robot angle close)
+  "Turn ROBOT by ANGLE, unless that is less than CLOSE, but by no more than a tick's turn. True if
+it then faces there, but for the error of turning."
+  (or (< (abs angle) close)
+      (< (abs (turn-step robot angle)) +facing+)))
 
 (define-step turn-on (operation (robot-p (operation-resource operation)))
   "Turn for a tick what is left to be turned by OPERATION, and end that when nothing is."
@@ -110,8 +114,6 @@ odometry's reading of the step. See reading 99."
   (define-turn robot-turn-left (/ pi -2) "a quarter circle to the left")
   (define-turn robot-turn-right (/ pi 2) "a quarter circle to the right"))
 
-;;; Sensing places, and turning by them.
-
 ;;; All of these act on the place type that the robot senses, which may not be the one that is
 ;;; there. Its directions are then those that the sensed type gives the cell.
 
@@ -129,7 +131,6 @@ odometry's reading of the step. See reading 99."
     (succeed operation (robot-last-place robot))))
 
 (defun turn-to-face (operation robot direction)
-  "Turn ROBOT to DIRECTION, the short way round, and end OPERATION."
   (turn-by operation robot (angle-difference direction (robot-angle robot))))
 
 (defun judged-right-p (robot type)

@@ -17,18 +17,15 @@
 where the command is: :COMMAND, :TRACK or NIL" :export)))
 
 (defun track-operation-of (resource)
-  "Return the operation of the track that RESOURCE keeps, or NIL."
   (let ((track (and (camera-p resource) (camera-tracking resource))))
     (and track (operation-p (track-operation track)) (track-operation track))))
 
 (defun tells-p (operation continuation)
-  "True if OPERATION, an event or NIL, is to tell CONTINUATION of its end."
   (and (operation-p operation)
        (eq continuation (operation-continuation operation))))
 
 (defun place-of-withdrawn (withdrawal)
-  "Return where the command of WITHDRAWAL is: on its resource, :COMMAND; in the background of that,
-:TRACK; or nowhere, NIL."
+  "Return where the command of WITHDRAWAL is: :COMMAND, on its resource, :TRACK, or NIL."
   (destructuring-bind (resource &optional place) (request-arguments withdrawal)
     (let ((continuation (withdrawal-continuation withdrawal)))
       (cond ((null continuation) place)
