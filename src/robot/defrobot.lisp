@@ -31,7 +31,6 @@
         "a map; there is none yet")))
 
 (defun parse-place (environment position angle reject)
-  "Return the map, and where in it the robot starts."
   (unless (typep environment '(or map symbol string))
     (funcall reject environment "a map or its name"))
   (let ((map (or (find-map environment nil)
@@ -48,8 +47,7 @@
       map)))
 
 (defun settable-slots (kind)
-  "Return what is known of the slots of KIND, a kind of part, that DEFROBOT may give values to: its
-own fixed ones."
+  "Return those slots of KIND, a kind of part, that DEFROBOT may set: its own fixed ones."
   (remove-if-not (lambda (slot)
                    (and (eq :fixed (kind-slot-role slot))
                         (not (member (kind-slot-name slot) '(robot index)))))
@@ -73,14 +71,12 @@ own fixed ones."
           (list initarg value))))))
 
 (defun find-part-kind (name)
-  "Return the kind of part of users' own that is called NAME, or NIL."
   (let ((kind (and name (symbolp name) (find name (all-kinds 'part) :key #'kind-name))))
     (and kind
          (not (member (kind-name kind) '(part camera hand storage-bin)))
          kind)))
 
 (defun parse-values (kind specification reject)
-  "Return the initargs and values in SPECIFICATION of a part of KIND."
   (loop for (initarg value) on (rest specification) by #'cddr
         append (or (parse-initarg kind initarg value)
                    (funcall reject specification

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(outer-location inside-p part-inside part-reaches-p part-reaches-bin-p take-up set-down
+(export '(outer-location inside-p part-inside part-reaches-p part-reaches-bin-p set-down
           move-part space-around settle-robots))
 
 ;;; A hand or camera is in the open with its robot (location NIL), inside a thing, or inside one of
@@ -44,8 +44,7 @@
          (and x (within-reach-p (part-robot part) x y)))))
 
 (defun part-reaches-bin-p (part bin)
-  "True if PART can get at the storage BIN: it is its robot's, and the part is in the
-open (reading 230)."
+  "True if PART, in the open, can get at the storage BIN, as it is its robot's (reading 230)."
   (and (eq (part-robot part) (storage-bin-robot bin))
        (null (part-location part))))
 
@@ -61,12 +60,6 @@ open (reading 230)."
       (loop for outer = (part-location hand) then (outer-location outer)
             while outer
             thereis (location-closed-p outer))))
-
-;;; Things into and out of hands.
-
-(defun take-up (hand thing)
-  "Let HAND hold THING, wherever that was (reading 231)."
-  (move-thing thing hand))
 
 (defun set-down (hand thing)
   "Leave THING, which HAND holds, where the hand is: in what it is inside of, or on the floor where

@@ -2,25 +2,19 @@
 
 (in-package :ars-magna.robot)
 
-(export '(blueprint-robot make-robot robot-of-blueprint start-trouble check-in-run retire-robot
+(export '(blueprint-robot make-robot start-trouble check-in-run retire-robot
           close-robot settle-robot resident-p))
 
 ;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
 ;;; name; a fresh simulation makes another by the same blueprint.
 
-(defun robot-of-blueprint (blueprint world)
-  "Return the robot in WORLD that is called as BLUEPRINT says, or NIL."
-  (find (blueprint-name blueprint) (world-robots world) :key #'robot-name :test #'eq))
-
-(defun resident-robot (blueprint)
-  "Return the robot made by BLUEPRINT, or an earlier one of its name, that top-level code commands."
-  (let ((map (find-map (blueprint-map blueprint) nil)))
-    (and map (map-resident map) (robot-of-blueprint blueprint (map-resident map)))))
-
 (defun blueprint-robot (blueprint)
   "Return the robot of BLUEPRINT here and now: the value of its variable."
-  (let* ((name (blueprint-name blueprint)) (value (and (boundp name) (symbol-value name))))
-    (if (robot-p value) value (resident-robot blueprint))))
+  (let* ((name (blueprint-name blueprint)) (value (and (boundp name) (symbol-value name)))
+         (map (find-map (blueprint-map blueprint) nil)))
+    (cond ((robot-p value) value)
+          ((and map (map-resident map))
+           (find name (world-robots (map-resident map)) :key #'robot-name :test #'eq)))))
 
 (addition all-robots)
 (defun all-robots ()
@@ -53,7 +47,6 @@ NIL."
         (robot-parts robot) (make-parts robot (blueprint-parts blueprint))))
 
 (defun kind-constructor (kind)
-  "Return the function that makes parts of KIND, a symbol. Signals MISUSE if there is none."
   (let ((name (find-symbol (concatenate 'string "MAKE-" (symbol-name kind))
                            (symbol-package kind))))
     (if (and name (fboundp name))
@@ -68,15 +61,13 @@ NIL."
         ((wall-at-p map x y) (format nil "~A is inside a wall" (point-in-text x y)))))
 
 (defun check-start (blueprint map)
-  "Signal MISUSE unless a robot made by BLUEPRINT fits into MAP."
   (let ((trouble (start-trouble map (blueprint-x blueprint) (blueprint-y blueprint))))
     (when trouble
       (reject-use "~(~A~) no longer fits into ~(~A~): ~A. Define the robot anew."
                   (blueprint-name blueprint) (map-name map) trouble))))
 
 (defun make-robot (blueprint world)
-  "Return a robot made by BLUEPRINT, at its start in WORLD. Signals MISUSE if that is in a wall.
-See reading 215."
+  "Return a robot made by BLUEPRINT, in WORLD. MISUSE if its start is in a wall (reading 215)."
   (check-start blueprint (world-map world))
   (let ((robot (%make-robot :name (blueprint-name blueprint) :blueprint blueprint :world world)))
     (ensure-timeline world)
@@ -86,7 +77,6 @@ See reading 215."
     robot))
 
 (defun stand-at-start (robot)
-  "Put ROBOT where its blueprint says, with a fresh odometer."
   (let ((blueprint (robot-blueprint robot)))
     (set-robot-pose robot (blueprint-x blueprint) (blueprint-y blueprint)
                     (blueprint-angle blueprint))
@@ -97,8 +87,6 @@ See reading 215."
 
 (defmethod reset :after ((robot robot))
   (stand-at-start robot))
-
-;;; Retiring.
 
 ;;; A robot is retired when its definition, its map or its run is replaced. What it was doing is
 ;;; interrupted; whoever still holds it and commands it is told so.
@@ -126,7 +114,6 @@ See reading 215."
     (and other (null (robot-retired other)) other)))
 
 (defun take-out (robot reason)
-  "Retire ROBOT, interrupt what it is doing, and take it out of its world."
   (let ((world (robot-world robot)))
     (deferring-interrupts
       (in-any-case
@@ -142,7 +129,6 @@ See reading 215."
       (asking ((ensure-timeline world)) (take-out robot reason)))))
 
 (defun robot-made-by (blueprint world)
-  "Return the robot in WORLD that was made by BLUEPRINT and is not retired, or NIL."
   (find-if (lambda (robot)
              (and (eq blueprint (robot-blueprint robot)) (null (robot-retired robot))))
            (world-robots world)))
@@ -179,19 +165,17 @@ an earlier definition of its name, and return it; the one that is there already,
 (defmethod take-back ((blueprint blueprint))
   (take-out-all (blueprint-name blueprint) "its definition has been taken back"))
 
-(defun in-order-of-definition (robots)
-  "Return ROBOTS in the order in which they were defined."
-  (sort (copy-list robots) #'<
-        :key (lambda (robot)
-               (or (position (robot-name robot) (all-blueprints) :key #'blueprint-name) -1))))
-
 (defmethod reinstate ((blueprint blueprint))
   (let ((robot (blueprint-robot blueprint)))
     (when (robot-p robot)
       (let ((world (robot-world robot)))
+        ;; In the order in which they were defined.
         (setf (robot-retired robot) nil
-              (world-robots world) (in-order-of-definition
-                                    (adjoin robot (world-robots world)))))))
+              (world-robots world)
+              (sort (copy-list (adjoin robot (world-robots world))) #'<
+                    :key (lambda (each)
+                           (or (position (robot-name each) (all-blueprints) :key #'blueprint-name)
+                               -1)))))))
   blueprint)
 
 (define-facts (blueprint blueprint)

@@ -77,8 +77,6 @@ by name."
   "Return the error, in radians, of an estimate of an angle (manual, chapter 4)."
   (if no-sensor-error* 0d0 (roll-within (double camera-angle-max-error*) dice)))
 
-;;; Which things fit.
-
 ;;; A descriptor specification is a list of (attribute value) or (attribute value threshold). A
 ;;; thing matches if readings of all those attributes fit; these readings are what is reported.
 ;;; A thing that says nothing of a boolean attribute counts as having it false; of any other, it
@@ -93,20 +91,16 @@ are NIL, if it is one of CHOICES."
   (high nil :type (or null real) :read-only t)
   (choices '() :type list :read-only t))
 
-;; As reading 125 says.
-(defun numeric-demand (key attribute value threshold)
-  (let ((threshold (or threshold standard-match-threshold*)))
-    (multiple-value-bind (low high) (value-limits value)
-      (make-demand :key key :attribute attribute
-                   :low (- low threshold) :high (+ high threshold)))))
-
-;; As readings 123 and 124 say.
+;; As readings 123 to 125 say.
 (defun parse-demand (specification)
   (destructuring-bind (name value &optional threshold) specification
     (let* ((key (attribute-key name)) (attribute (attribute-of key)))
       (if (or (asks-range-p attribute value)
               (and (realp value) (not (discrete-p attribute))))
-          (numeric-demand key attribute value threshold)
+          (multiple-value-bind (low high) (value-limits value)
+            (let ((threshold (or threshold standard-match-threshold*)))
+              (make-demand :key key :attribute attribute
+                           :low (- low threshold) :high (+ high threshold))))
           (make-demand :key key :attribute attribute
                        ;; NIL is a value, not a list of none.
                        :choices (if (consp value) value (list value)))))))
@@ -161,16 +155,13 @@ are NIL, if it is one of CHOICES."
 
 ;;; Fitting.
 
-(defun number-of-reading (key reading)
-  "Return the number that READING of the attribute KEY is or means, or NIL."
-  (cond ((realp reading) reading)
-        ((and reading (eq key :substance)) (substance-value-parameter reading))))
-
 (defun fits-p (demand reading)
   "True if READING of a thing's attribute is what DEMAND wants."
   (let ((key (demand-key demand)) (low (demand-low demand)))
     (if low
-        (let ((number (number-of-reading key reading)))
+        (let ((number (cond ((realp reading) reading)
+                            ((and reading (eq key :substance))
+                             (substance-value-parameter reading)))))
           (and number (<= low number (demand-high demand))))
         (member (if (and (consp reading) (eq key :substance))
                     (substance-value-type reading)
@@ -240,8 +231,7 @@ function of an attribute, returns its value, and secondly whether there is anyth
                                                      (map-package map))))))))
 
 (defun describe-thing (thing readings distance dice)
-  "Return the description of THING that a search reports: what is noticed, then
-READINGS (reading 128)."
+  "Return what a search reports of THING: what is noticed, then READINGS (reading 128)."
   (append (notice-attributes (thing-map thing) (mapcar #'first readings)
                              (lambda (attribute)
                                (values (thing-value thing (attribute-name attribute)) t))

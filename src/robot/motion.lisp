@@ -74,15 +74,13 @@ be taken over the nearest border: it goes there anyway, or it goes along."
         ((= cell (round position)) (minusp direction))
         (t (plusp direction))))
 
-(declaim (inline stand))
+(declaim (inline stand pass-cells))
 (defun stand (robot dx dy moved cell-x cell-y)
-  "Move ROBOT by MOVED metres in direction (DX,DY), into the cell at CELL-X and CELL-Y."
   (declare (type robot robot) (type double-float dx dy moved))
   (setf (robot-x robot) (within-cell (+ (robot-x robot) (* dx moved)) cell-x)
         (robot-y robot) (within-cell (+ (robot-y robot) (* dy moved)) cell-y)
         (robot-moved robot) moved))
 
-(declaim (inline pass-cells))
 (defun pass-cells (robot world dx dy distance)
   "Move ROBOT, in the map of WORLD, by DISTANCE in direction (DX,DY), or to what blocks it. Leave
 the metres in ROBOT-MOVED; return :WALL, :THING or NIL."
@@ -192,17 +190,15 @@ So a robot can drive along the border of two cells, and stay in one of them."
 (define-constant +standstill+ 1d-12
   :documentation "A robot that is slower, in metres per tick, does not move.")
 
-(declaim (inline robot-speed-now))
+(declaim (inline robot-speed-now step-now standing-p))
 (defun robot-speed-now (robot)
   "Return the speed of ROBOT within MAX-SPEED* as it is now, in metres per tick (reading 93)."
   (min (robot-speed robot) (double max-speed*)))
 
-(declaim (inline step-now))
 (defun step-now (robot)
   "Return how far ROBOT means to drive in a tick at its speed, in metres."
   (* (the double-float (robot-speed-now robot)) (double tick-quantum*)))
 
-(declaim (inline standing-p))
 (defun standing-p (robot)
   "True if ROBOT cannot drive because its speed is 0, or next to it."
   (< (the double-float (robot-speed-now robot)) +standstill+))
@@ -235,8 +231,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
 
 (declaim (inline count-distance))
 (defun count-distance (robot low high)
-  "Tell the odometers of ROBOT that it drove between LOW and HIGH metres, both negative if it drove
-backwards."
+  "Tell the odometers of ROBOT that it drove LOW to HIGH metres, negative if backwards."
   (declare #.*hot* (type robot robot) (type double-float low high))
   (dolist (odometer (robot-odometer-list robot))
     (odometer-drive odometer low high))

@@ -80,7 +80,7 @@ metres on the map, and the heading in radians. For displays: no program of the r
             (values (odometer-sin-min odometer) (odometer-sin-max odometer))
             (bounds (sine low) (sine high) (/ pi 2) (/ pi -2))))))
 
-(declaim (inline rounding))
+(declaim (inline rounding odometer-drive))
 (defun rounding (value)
   "Return more than the rounding error of a sum that gave VALUE."
   (declare (type double-float value))
@@ -92,10 +92,8 @@ metres on the map, and the heading in radians. For displays: no program of the r
      (let ((sum (+ ,low-place ,low))) (setf ,low-place (- sum (rounding sum))))
      (let ((sum (+ ,high-place ,high))) (setf ,high-place (+ sum (rounding sum))))))
 
-(declaim (inline odometer-drive))
 (defun odometer-drive (odometer low high)
-  "Count a distance between LOW and HIGH along the heading (reading 97); both are negative if the
-robot drove backwards."
+  "Count LOW to HIGH metres along the heading, both negative if backwards (reading 97)."
   (declare (type odometer odometer) (type double-float low high))
   (labels ((least (factor) (* factor (if (minusp factor) high low)))
            (most (factor) (* factor (if (minusp factor) low high)))
@@ -112,7 +110,6 @@ robot drove backwards."
           (count-by cos-min cos-max sin-min sin-max)))))
 
 (defun odometer-turn (odometer low high)
-  "Count a turn between LOW and HIGH."
   (declare (type double-float low high))
   (widen (odometer-angle-min odometer) low (odometer-angle-max odometer) high)
   (refresh-bounds odometer))
@@ -159,7 +156,6 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
                  (odometer-angle-min odometer) (odometer-angle-max odometer)))
 
 (defun add-odometer (robot name)
-  "Give ROBOT a new odometer called NAME, instead of any other of that name. Return it."
   (let ((odometer (%make-odometer robot name)))
     (reset-reading odometer :pos)
     (reset-reading odometer :ang)
@@ -193,10 +189,6 @@ NAME is a symbol or a string."
   "Return the PLACE that ROBOT is really in, or NIL."
   (cell-type (map-cell (world-map (robot-world robot)) (robot-x robot) (robot-y robot))))
 
-(defun random-place-type (robot dice)
-  (let ((types (remove nil (map-place-types (world-map (robot-world robot))))))
-    (and (plusp (length types)) (roll-element types dice))))
-
 (defun sense-place-type (robot)
   "Return the place type that ROBOT senses where it is, or NIL. Where there is one it is missed
 with TYPE-FALSE-NEG*, where there is none a random one is sensed with
@@ -205,7 +197,9 @@ TYPE-FALSE-POS* (reading 221)."
         (dice (world-dice (robot-world robot) :place)))
     (cond (no-sensor-error* (and place (place-type place)))
           (place (unless (chance type-false-neg* dice) (place-type place)))
-          ((chance type-false-pos* dice) (random-place-type robot dice)))))
+          ((chance type-false-pos* dice)
+           (let ((types (remove nil (map-place-types (world-map (robot-world robot))))))
+             (and (plusp (length types)) (roll-element types dice)))))))
 
 (defun canonical-directions (robot type)
   "Return a list of the two canonical directions, in radians, that TYPE gives the cell in which

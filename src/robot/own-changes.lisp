@@ -16,9 +16,6 @@ published: if that is something else now, the robot has been taken off its way."
 
 (define-shared planned-way)
 
-(defun way-point-p (point)
-  (or (pt-p point) (number-pair-p point)))
-
 (defun way-point (point)
   "Return the coordinates of POINT, a PT or a list (x y), as a list."
   (if (pt-p point)
@@ -33,7 +30,8 @@ It holds until something else is published, or a command of the robot is interru
 and TRAVEL-TO do this; programs of one's own may. Nothing else comes of it: ROBOT goes nowhere, and
 digests and journals stay what they are. Return ROBOT. Signals WRONG-ARGUMENT."
   (check-argument publish-way robot (robot-p robot) (argument-type-text 'robot robot))
-  (check-argument publish-way points (and (proper-list-p points) (every #'way-point-p points))
+  (check-argument publish-way points
+                  (proper-list-of-p (lambda (point) (or (pt-p point) (number-pair-p point))) points)
                   "a list of PTs, or of lists (x y)")
   (setf (robot-published-way robot)
         (and points (make-planned-way (mapcar #'way-point points) (resource-interruption robot))))
@@ -51,8 +49,7 @@ PUBLISH-WAY; () if it is on none, or was taken off it."
 ;;; What is left of it.
 
 (defun foot-on (from to x y)
-  "Return the point, a list, of the line between the points FROM and TO that is nearest to X, Y, and
-how far that is."
+  "Return the point between FROM and TO, on a line, that is nearest to X, Y, and how far it is."
   (destructuring-bind (x1 y1 x2 y2) (append from to)
     (let* ((dx (- x2 x1)) (dy (- y2 y1))
            (square (+ (* dx dx) (* dy dy)))
@@ -101,13 +98,11 @@ no part of the robot any more."
         (reset-reading odometer part)))
   odometer)
 
-(defun reset-named-odometer (robot name part)
-  "Reset PART, :POS or :ANG, of the odometer of ROBOT called NAME, if there is one."
-  (let ((odometer (robot-odometer robot name)))
-    (when odometer (reset-by-program odometer part))))
-
 (define-argument-type 'odometer-part (lambda (value) (member value '(:pos :ang))) ":pos or :ang")
-(define-operator 'reset-odometer '(robot name odometer-part) #'reset-named-odometer)
+(define-operator 'reset-odometer '(robot name odometer-part)
+  (lambda (robot name part)
+    (let ((odometer (robot-odometer robot name)))
+      (when odometer (reset-by-program odometer part)))))
 
 (public reset-odometer-pos)
 (defun reset-odometer-pos (odometer)

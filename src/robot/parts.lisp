@@ -252,7 +252,6 @@ anything comes to be that WORLD-SETTLED-P excludes."
   (first (hand-contents hand)))
 
 (defun part-of (robot reader index operator)
-  "Return the part of ROBOT with INDEX among those that READER returns."
   (unless (robot-p robot)
     (reject-argument operator "robot" robot (argument-type-text 'robot robot)))
   (let ((parts (funcall reader robot)))

@@ -18,13 +18,12 @@
   "How far it is from a cell to the next, by index."
   '(signed-byte 16))
 
-(declaim (inline nonzero))
+(declaim (inline nonzero walk-to-corner walk-ray))
 (defun nonzero (component)
   "Return COMPONENT of a direction, or if it is almost 0 what is as good, whatever its sign."
   (declare (type double-float component))
   (if (< (abs component) +least-component+) +least-component+ component))
 
-(declaim (inline walk-to-corner))
 (defun walk-to-corner (visit world x y dx dy)
   "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction
 (DX,DY) meets after the first, until it returns true or the map ends; or until the ray meets a
@@ -44,7 +43,6 @@ values; else NIL."
                (map-width map) (map-height map) x y dx dy +no-limit+)
     (values beyond-x beyond-y)))
 
-(declaim (inline walk-ray))
 (defun walk-ray (visit world x y dx dy)
   "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction
 (DX,DY) meets after the first, until it returns true or the map ends. At a corner it meets neither
@@ -101,7 +99,7 @@ before BODY runs for the direction before, so that the processor divides while B
 ;;; nobody waits for cost one test, each axis has its own code. 75 x 75, 10 things: 10.8 -> 12.6 M
 ;;; rays/s, some 5 % of it by leaving REACH out; 1000 x 1000 rooms, 100,000 things: 14.7 -> 19.7.
 
-(declaim (inline begin-axis))
+(declaim (inline begin-axis walk-fan))
 (defun begin-axis (back per stride behind ahead left-behind left-ahead)
   "Return how the index changes where a ray crosses borders of one axis, at what distance it does
 so first, and how often it may, going BACK or not, with a distance PER border. The rest is how far
@@ -111,7 +109,6 @@ the borders behind and ahead are, and how many of each."
       (values (- stride) (* per behind) left-behind)
       (values stride (* per ahead) left-ahead)))
 
-(declaim (inline walk-fan))
 (defun walk-fan (visit corner stops flags width height x y angle fan count reach)
   "Call VISIT, which is inline, with index and flags of each cell that has some of the flags STOPS
 and that COUNT rays from (X,Y) meet after the first, evenly spaced over FAN radians around ANGLE.

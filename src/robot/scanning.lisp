@@ -11,13 +11,12 @@
 ;;; container or storage bin sees what is directly in it, at distance 0. What a hand holds is where
 ;;; the hand is.
 
-(declaim (inline mark-seen))
+(declaim (inline mark-seen walls-around-p))
 (defun mark-seen (flags index)
   "Let the flag +SEEN+ take the place of +OCCUPIED+ in FLAGS at INDEX, or the other way round."
   (declare (type flag-vector flags) (type cell-index index))
   (setf (aref flags index) (logxor (aref flags index) (logior +occupied+ +seen+))))
 
-(declaim (inline walls-around-p))
 (defun walls-around-p (map x y)
   "True if any line from (X,Y) ends at a wall of MAP."
   (declare (type double-float x y))
@@ -85,7 +84,6 @@ place type has NUMBER in the map."
   (+ (robot-angle (camera-robot camera)) (camera-angle camera)))
 
 (defun held-things (robot location)
-  "Return the things in those hands of ROBOT that are in LOCATION."
   (loop for hand across (robot-hands robot)
         when (eq (hand-location hand) location)
           append (hand-contents hand)))
@@ -117,8 +115,7 @@ meet within REACH columns and rows."
                        when index collect index))))
 
 (defun things-in-cells (cells camera local)
-  "Return the things on the floor of CELLS that are within the reach of CAMERA's robot, or if not
-LOCAL the others (reading 131)."
+  "Return the things in CELLS local to CAMERA's robot, or unless LOCAL the others (reading 131)."
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '()))
     (dolist (index cells (nreverse things))
       (do-cell (thing index world)
@@ -133,15 +130,13 @@ LOCAL the others (reading 131)."
                    (things-in-cells others camera t))))
 
 (defun things-in-open-view (camera local)
-  "Return the things on the floor that CAMERA has in view, those within reach if LOCAL, else the
-others."
+  "Return the things on the floor in CAMERA's view: within reach if LOCAL, else the others."
   (let ((cells (cells-in-view camera (if local 1 +no-limit+))))
     (append (things-in-cells cells camera local)
             (and local cells (things-faced camera cells)))))
 
 (defun things-in-view (camera type)
-  "Return the things that CAMERA has in view and that are of TYPE, :LOCAL or
-:NON-LOCAL (reading 132)."
+  "Return the things of TYPE, :LOCAL or :NON-LOCAL, that CAMERA has in view (reading 132)."
   (let ((location (camera-location camera)) (local (eq type :local)))
     (append (cond ((null location) (things-in-open-view camera local))
                   (local (location-contents location)))
@@ -173,7 +168,6 @@ for what DEMANDS describe (reading 129)."
                    (and matches (list (cons thing readings))))))
 
 (defun seen-from (camera thing)
-  "Return the distance at which CAMERA sees THING, in metres."
   (if (camera-location camera)
       0d0
       (multiple-value-call #'distance-to (camera-robot camera) (thing-position thing))))
@@ -213,11 +207,6 @@ finds. What is not there may be among them."
               collect (multiple-value-bind (y x) (floor index (map-width map))
                         (cell-type (map-cell map x y)))))))
 
-(defun place-sighting (place name)
-  (let ((cell (place-cell place)))
-    (make-sighting :non-local place (+ 0.5d0 (cell-x cell)) (+ 0.5d0 (cell-y cell))
-                   (list name))))
-
 (defun look-for-places (camera type &key all (name (place-type-name type)))
   "Return sightings by CAMERA, in the open, of places of the place type TYPE: of one, or of ALL
 that it finds. What is not there may be among them. They are described by NAME, the symbol by which
@@ -229,10 +218,11 @@ somebody has asked for TYPE (reading 74)."
          (phantoms (phantom-count (place-type-confusion type) all dice)))
     (loop for place in (some-of (append finds (make-list phantoms)) all dice)
           collect (if place
-                      (place-sighting place name)
+                      (let ((cell (place-cell place)))
+                        (make-sighting :non-local place
+                                       (+ 0.5d0 (cell-x cell)) (+ 0.5d0 (cell-y cell))
+                                       (list name)))
                       (imagine camera :non-local (list name) dice)))))
-
-;;; Views (manual 2.2, 3.3, 3.4.3).
 
 ;;; Each pixel is the parameter of the surface that its ray meets: of a wall, of the largest thing
 ;;; that obstructs vision in the first cell that has one, or 0 where the map ends. Things on the
@@ -241,8 +231,7 @@ somebody has asked for TYPE (reading 74)."
 ;;; container.
 
 (defun obstructing-thing (index world)
-  "Return the largest of the things in the cell INDEX of WORLD that obstructs vision, the first of
-equals, or NIL (reading 240)."
+  "Return the largest thing in the cell INDEX that obstructs vision, or NIL (reading 240)."
   (let ((best nil))
     (do-cell (thing index world)
       (when (and (thing-obsview-p thing)

@@ -9,12 +9,11 @@
 ;;; a line goes on if one of the two lets it through. Two that touch at the corner close it, so that
 ;;; oblique walls have no holes. What moves and what sees agree on this (manual 2.1).
 
-(declaim (inline whole-part))
+(declaim (inline whole-part within-cell))
 (defun whole-part (x)
   (declare (type double-float x))
   (the fixnum (floor (the (double-float -1d9 1d9) x))))
 
-(declaim (inline within-cell))
 (defun within-cell (coordinate cell)
   "Return COORDINATE, or the nearest inside CELL if rounding took it out."
   (declare (type double-float coordinate) (type fixnum cell))
@@ -56,8 +55,6 @@ return the point just beyond it, as two values; else NIL. Cells with a flag of M
            (if (plusp direction) (1- (round position)) (round position))))
     (unless (or (zerop dx) (zerop dy))
       (beyond-corner world mask x y (before x dx) (before y dy)))))
-
-;;; Whether one point can be seen from another (manual 3.4.3).
 
 ;;; Sight passes from cell to cell until a wall, or a cell where something on the floor obstructs
 ;;; it. Neither the cell of the eye nor that of the target does. The walk ends after as many borders
@@ -119,8 +116,7 @@ what rounding adds to it.")
 
 (defun in-same-cell-p (robot x y)
   "True if (X,Y), in metres, is in the cell of ROBOT."
-  (and (= (floor x) (floor (robot-x robot)))
-       (= (floor y) (floor (robot-y robot)))))
+  (same-cell-p x y (robot-x robot) (robot-y robot)))
 
 (defun at-cell-p (robot x y)
   "True if ROBOT stands in the cell of (X,Y), or no farther from it than the contact gap."

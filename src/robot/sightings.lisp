@@ -38,7 +38,6 @@
 ;;; Imagination (manual 3.4.1, chapter 4).
 
 (defun clip-to-map (map x y)
-  "Return (X,Y), or the nearest point of MAP."
   (values (clamp x 0d0 (- (map-width map) 1d-6))
           (clamp y 0d0 (- (map-height map) 1d-6))))
 
@@ -79,12 +78,6 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136
                              dice))
       (make-sighting type nil x y data))))
 
-(defun random-thing (world dice)
-  "Return any thing of WORLD; NIL if there are none, or by bad luck."
-  (let ((count (world-rank-count world)))
-    (and (plusp count)
-         (thing-of-rank (roll-index count dice) world))))
-
 (defun imagine-description (world demands dice)
   "Return a random description that meets DEMANDS. What is noticed besides is true of some thing
 in WORLD, each attribute of another."
@@ -96,7 +89,11 @@ in WORLD, each attribute of another."
                                           (roll-element (demand-choices demand) dice))))))
     (append (notice-attributes (world-map world) (mapcar #'first readings)
                                (lambda (attribute)
-                                 (let ((thing (random-thing world dice)))
+                                 ;; NIL if there are none, or by bad luck.
+                                 (let* ((count (world-rank-count world))
+                                        (thing (and (plusp count)
+                                                    (thing-of-rank (roll-index count dice)
+                                                                   world))))
                                    (values (and thing
                                                 (thing-value thing (attribute-name attribute)))
                                            thing)))

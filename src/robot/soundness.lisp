@@ -5,7 +5,6 @@
 (export '(check-robot))
 
 (defun check-parts (robot parts type)
-  "Signal CONTRADICTION unless PARTS, a vector, are ROBOT's own, of TYPE."
   (loop for part across parts
         for position from 0
         do (must-hold (and (typep part type)
@@ -17,7 +16,6 @@
            (check-occupant part)))
 
 (defun check-contents (holder contents most)
-  "Signal CONTRADICTION unless CONTENTS are at most MOST things that HOLDER holds."
   (must-hold (and (proper-list-of-p #'thing-p contents)
                   (<= (length contents) most)
                   (every (lambda (thing) (eq holder (thing-location thing))) contents))

@@ -63,15 +63,12 @@ miss it though nothing obstructs it. During an approach a line to a corner of it
           ((nil) (in-sight-p world own-x own-y x y))))))
 
 (defun visible-p (designator camera)
-  "True if nothing hides the DESIGNATOR's denotation, in the open, from CAMERA, or if that is NIL
-from its robot (reading 141)."
+  "True if nothing hides DESIGNATOR's denotation from CAMERA, or if NIL its robot (reading 141)."
   (let ((robot (designator-robot designator)))
     (cond ((null (designator-denotation designator)) t)
           (camera (seen-by-p camera designator))
           (t (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot)
                          (designator-x designator) (designator-y designator))))))
-
-;;; Tracks (manual 3.4.3, chapter 4).
 
 ;;; A track refreshes angle and distance of its designator, never the data, and points the camera
 ;;; there. It is lost when the denotation is occluded, moves too fast -- its direction from the
@@ -150,14 +147,6 @@ changed (reading 226)."
   (in-same-cell-p (designator-robot designator)
                   (designator-x designator) (designator-y designator)))
 
-;; As reading 220 says.
-(defun lost-by-chance-p (designator dice)
-  (and (not no-sensor-error*)
-       (chance (per-tick-probability (if (designator-denotation designator)
-                                         prob-lose-track*
-                                         prob-lose-false-track*))
-               dice)))
-
 (defun trackable-p (designator &optional camera)
   "True if CAMERA, in the open, can track the non-local DESIGNATOR now, wherever it points; without
 CAMERA, if one may."
@@ -182,8 +171,12 @@ approach is the approach's to tell (reading 112)."
           (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))
 
 (defun keep-or-lose (camera designator dice)
-  "Point CAMERA at DESIGNATOR, unless chance makes it lose that (reading 235)."
-  (if (lost-by-chance-p designator dice)
+  "Point CAMERA at DESIGNATOR, unless chance makes it lose that (readings 220, 235)."
+  (if (and (not no-sensor-error*)
+           (chance (per-tick-probability (if (designator-denotation designator)
+                                             prob-lose-track*
+                                             prob-lose-false-track*))
+                   dice))
       (lose-track camera)
       (setf (camera-angle camera) (designator-angle designator))))
 
@@ -245,11 +238,8 @@ approach is the approach's to tell (reading 112)."
           thereis (or (robot-ended-tracks robot)
                       (some #'camera-tracking (robot-cameras robot)))))
 
-;;; Starting.
-
 (defun start-track (camera designator operation)
-  "Let CAMERA track DESIGNATOR from now on; OPERATION is told when that ends, by
-TRACK-ENDED (reading 142)."
+  "Let CAMERA track DESIGNATOR; OPERATION is told by TRACK-ENDED when that ends (reading 142)."
   (unless (tracked-p designator)
     (let ((world (robot-world (camera-robot camera))))
       (refresh-once designator (world-tick world) (world-dice world :tracking))
@@ -257,8 +247,6 @@ TRACK-ENDED (reading 142)."
       (setf (designator-swing designator) 0d0)))
   (setf (camera-angle camera) (designator-angle designator)
         (camera-tracking camera) (make-track designator operation)))
-
-;;; Arriving.
 
 (defun end-on-arrival (camera)
   "Let CAMERA lose its track, as the robot has arrived at what it tracks; to the last it has pointed

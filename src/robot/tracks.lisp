@@ -22,8 +22,7 @@
    (operation nil t "what is told when the track ends, see TRACK-ENDED; or NIL" :export)))
 
 (defgeneric track-ended (operation code designator)
-  (:documentation "Let OPERATION know that the track of DESIGNATOR, which it began, has ended with
-CODE."))
+  (:documentation "Let OPERATION know that its track of DESIGNATOR has ended with CODE."))
 
 (defgeneric approaching-p (event camera)
   (:documentation "True if EVENT, pending on a robot, is to take it to what CAMERA tracks.")
@@ -65,7 +64,6 @@ CODE."))
     (track-ended (track-operation track) code (track-designator track))))
 
 (defun track-asker (track)
-  "Return a note of who asked for TRACK, or NIL if that is not known."
   (let ((operation (track-operation track)))
     (and (typep operation 'request) (request-asker operation))))
 
