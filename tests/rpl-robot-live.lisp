@@ -93,11 +93,11 @@ tick."
           (task (driver:begin-plan (rpl:interp-lambda ()
                                    (rpl:wait-for (svref driver:hand-lost* 0))))))
       (awaiting (eq :waiting (rpl:task-state task)))
-      (let ((steps (rpl:plan-runner-steps runner))
+      (let ((steps (rpl:runner-steps runner))
             (tick (run:simulation-tick simulation)))
         (command:robot-turn fitter 30)
         (awaiting (> (run:simulation-tick simulation) (+ 10 tick)))
-        (is (= steps (rpl:plan-runner-steps runner))))
+        (is (= steps (rpl:runner-steps runner))))
       (driver:end-plan task)
       (awaiting (eq :evaporated (rpl:task-state task))))))
 

@@ -125,7 +125,6 @@ of that."
   "Signal MALFORMED-DEFINITION if NAME, in an :order of FORM, is a symbol that names nothing."
   (unless (or (consp name)
               (member name (tags-in steps))
-              (member name (scope-variables scope))
               (and (symbolp name)
                    (not (constantp name))
                    (known-variable-p name (scope-environment scope))))

@@ -124,4 +124,3 @@ or else NIL. An interrupt may come at any point."
 (defun posted-p (home)
   "True if something posted to HOME has not been heard yet."
   (and (or (home-outbox home) (home-inbox home)) t))
-

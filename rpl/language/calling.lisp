@@ -42,7 +42,6 @@ was compiled."
   (and name
        (symbolp name)
        (not (constantp name))
-       (not (member name (scope-variables scope)))
        (not (known-variable-p name (scope-environment scope)))))
 
 (defun check-quote (plan form scope)

@@ -30,7 +30,6 @@ grey: tests/palette.lisp measures it.")
     (:evaporated #x606060 "evaporated"))
   "Lists (outcome color text): what the end of a bar looks like.")
 
-
 ;;; Ticks and pixels.
 
 (defstruct (scale (:constructor make-scale (start end &optional (left +label-width+)

@@ -43,7 +43,7 @@
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:heard-from-outside-p #:idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
-                #:plan-runner-tasks #:plan-runner-steps #:plan-runner-tick
+                #:plan-runner-tasks #:runner-steps #:plan-runner-tick
                 #:runner-note #:fail #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children

@@ -18,7 +18,7 @@ TASK, or NIL if it was at none."
 (defun look-at (interface thread)
   (let ((*runner* (interface-runner interface)))
     (make-look (interface-rests interface)
-               (plan-runner-steps)
+               (runner-steps *runner*)
                (and (eq thread (interface-holder interface))
                     (current-task)))))
 
@@ -47,10 +47,9 @@ TASK, or NIL if it was at none."
 
 (defun abort-step (interface steps)
   "Abort the Lisp code that the plans of INTERFACE are at in this thread, if it still is the same."
-  (let ((*runner* (interface-runner interface)))
-    (when (and (eql steps (plan-runner-steps))
-               (holding-p interface))
-      (abort))))
+  (when (and (eql steps (runner-steps (interface-runner interface)))
+             (holding-p interface))
+    (abort)))
 
 (defun end-hog (interface thread look stuck-p)
   "End the plan that LOOK is of: its Lisp code if it is STUCK-P in that, else between two steps."

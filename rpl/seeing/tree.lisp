@@ -141,5 +141,5 @@ without the parts of those tasks whose numbers are among FOLDED."
 
 (defun runner-mark (runner)
   "Return what changes, for EQUAL, whenever the tasks of RUNNER do; for any thread, and at once."
-  (list (plan-runner-steps runner) (runner-alive runner) (runner-serial runner)
+  (list (runner-steps runner) (runner-alive runner) (runner-serial runner)
         (runner-blocks runner) (and (runner-stepper runner) t)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(*runaway-limit* alone-p blocked-p make-ready plan-runner plan-runner-steps
+(export '(*runaway-limit* alone-p blocked-p make-ready plan-runner
           counted-steps plan-runner-tasks plan-runner-tick runner-note client-forked-p
           call-with-client-still hear-of-trouble note-seen all-tasks task-numbered note-word
           task-now))
@@ -43,7 +43,8 @@ one more fails with class :TOO-MANY-TASKS.")
   (serial 0 fixnum "the number of the task of the plan runner that began last" :writable :export)
   (alive 0 fixnum "how many tasks of the plan runner are not over" :writable :export)
   (client nil t "on whose behalf the plan runner runs plans, as MAKE-PLAN-RUNNER was told" :export)
-  (steps 0 (unsigned-byte 62) :writable)
+  (steps 0 (unsigned-byte 62)
+         "how many steps the plan runner has taken: expressions begun or ended" :writable :export)
   (pause 0 (unsigned-byte 62) "the number of steps at which the running task is to pause" :writable)
   (limit 0 (unsigned-byte 62) "the number of steps at which the reaction is to end" :writable)
   (slice +slice+ fixnum :writable)
@@ -144,10 +145,6 @@ care of; or, if FAILURE is NIL, TASK is a part of a plan that somebody has just 
 (defun task-numbered (number which)
   "Return the task with NUMBER of those of WHICH that are not over, or NIL."
   (find number (all-tasks which) :key #'task-serial))
-
-(defun plan-runner-steps (&optional (runner *runner*))
-  "Return how many steps RUNNER has taken: expressions begun or ended."
-  (runner-steps runner))
 
 (defun counted-steps (runner)
   "Return how many steps of RUNNER have counted: those that plans were not spared, and more that
