@@ -9,9 +9,7 @@
 ;;; A branch that others than the construct have evaporated counts as ended, neither well nor badly.
 
 (defun branches-code (branches scope)
-  `(vector ,@(loop with single = (single-scope scope)
-                   for branch in branches
-                   collect (plan-code branch single))))
+  `(vector ,@(loop for branch in branches collect (plan-code branch scope))))
 
 (defun start-branches (branches task environment)
   "Start each of BRANCHES as a part of TASK, which then waits. Return what a step returns."
@@ -29,7 +27,7 @@
   "Run BRANCHES in a plan side by side. Succeed when all have, with the value of the last one, one
 as of every task; fail as soon as one fails, and evaporate the others (manual D.7)."
   (:manual)
-  (:parts (branches simple-vector (branches-code branches scope)))
+  (:parts (branches simple-vector (branches-code branches (single-scope scope))))
   (:steps
    (begin
     (next inside)
@@ -52,6 +50,10 @@ one fails. Evaporate the others (manual D.4; reading 185)."
    (cond ((fail-or-escape task how result))
          ((eq how :succeeded) (complete task result))
          (t (complete-when-alone task nil)))))
+
+(defun all-failed (failures task frame)
+  "Return the failure of TASK at FRAME that stands for FAILURES, last first."
+  (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
 (define-construct try-all (&body branches)
   "Run BRANCHES in a plan side by side. Succeed as soon as one does, with its value, and evaporate
@@ -93,17 +95,10 @@ far, last first."
                   (setf left (remove chosen left :test #'eq))
                   chosen)))
 
-(defun all-failed (failures task frame)
-  "Return the failure of TASK at FRAME that stands for FAILURES, last first."
-  (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
-
-(defun attempts-code (attempts scope)
-  `(vector ,@(loop for attempt in attempts collect (plan-code attempt scope))))
-
 (define-construct try-in-order (&body attempts)
   "Run ATTEMPTS in a plan one after the other until one succeeds; return its value. If all fail,
 fail with a composite failure."
-  (:parts (attempts simple-vector (attempts-code attempts scope))
+  (:parts (attempts simple-vector (branches-code attempts scope))
           (order function '(function order-as-written)))
   (:steps
    (begin
@@ -128,7 +123,7 @@ fail with a composite failure."
   "Do as TRY-IN-ORDER, in an order that the plan runner chooses: at random if it was given dice,
 otherwise as written."
   (:like try-in-order)
-  (:parts (attempts simple-vector (attempts-code attempts scope))
+  (:parts (attempts simple-vector (branches-code attempts scope))
           (order function '(function order-by-chance))))
 
 ;;; For each element.
@@ -229,7 +224,7 @@ Evaporate the others. COUNT is an integer from 0, which needs none, to the numbe
 CRAM's statecharts of 2026 have a PAR with minimum_success)."
   (:arguments count)
   (:parts (needed function (value-lambda count scope))
-          (branches simple-vector (branches-code branches scope)))
+          (branches simple-vector (branches-code branches (single-scope scope))))
   (:steps
    (begin
     (let ((needed (checked-number (funcall needed environment) (length branches))))

@@ -197,7 +197,7 @@ around, or forms whose values are tasks; a may also be a fluent: b starts when i
 been pulsed since. Orders hold until the whole ends. What has started already cannot be b. Circles
 of orders of the tags in STEPS are errors when the plan is defined; what comes to wait in other
 circles is told as a deadlock. Return the value of the last step (CRAM's; the value is ours)."
-  (:parts (branches simple-vector (branches-code steps scope))
+  (:parts (branches simple-vector (branches-code steps (single-scope scope)))
           (pairs function (orders-lambda steps constraints form scope)))
   (:code (with-tags-code form (tags-in steps) scope #'build))
   (:steps
