@@ -1,8 +1,259 @@
-;;;; displays.lisp -- the six displays by name, and all of them in one picture (manual B).
+;;;; displays.lisp -- the six displays: the world, the robot's state and its parts (manual B).
 
 (in-package :ars-magna.display)
 
 (export '(draw-display display-title +displays+))
+
+;;; Each function of a display draws from 0, 0 and is given the image of the robot and how wide to
+;;; draw; it returns how many pixels down it has drawn. (In these loops Y steps before the parts run
+;;; out, so that it ends below the last.) Manual B.
+
+(define-constant +margin+ 6 :documentation "How far from the edge drawing begins, in pixels.")
+(define-constant +object-width+ 90 :documentation "How wide things are drawn at most, in pixels.")
+(define-constant +object-height+ 12 :documentation "How high things are drawn, in pixels.")
+(define-constant +largest-unit+ 8
+  :documentation "How many pixels wide a thing is drawn at most for each unit of its size.")
+
+(defun characters-in (width)
+  "Return how many characters fit into WIDTH pixels; at least one does."
+  (max 1 (floor width +character-width+)))
+
+(defun fit-text (text width)
+  (let ((count (characters-in width)))
+    (if (<= (length text) count)
+        text
+        (concatenate 'string (subseq text 0 (1- count)) "~"))))
+
+(defun draw-line-of-text (canvas x y width text)
+  "Write TEXT in the line whose top is at Y."
+  (draw-text canvas x (+ y 12) (fit-text text (- width x +margin+))))
+
+(defun draw-paragraph (canvas x y width text)
+  "Write TEXT, in as many lines as it takes, from Y. Return where it ends."
+  (dolist (line (wrapped-text text (characters-in (- width x +margin+))) y)
+    (draw-line-of-text canvas x y width line)
+    (incf y +line-height+)))
+
+;;; Things.
+
+(defun images-shown (robot)
+  "Return a list of the images of things that displays show of ROBOT."
+  (remove-if-not #'thing-image-p
+                 (append (mapcar #'designator-image-denotation (robot-image-designators robot))
+                         (loop for camera in (robot-image-cameras robot)
+                               for track = (camera-image-track camera)
+                               collect (camera-image-location camera)
+                               when track collect (designator-image-denotation track))
+                         (loop for hand in (robot-image-hands robot)
+                               collect (hand-image-contents hand)
+                               collect (hand-image-location hand))
+                         (mapcan (lambda (bin) (copy-list (bin-image-contents bin)))
+                                 (robot-image-bins robot)))))
+
+(defvar *size-unit* +largest-unit+
+  "How many pixels wide a thing is drawn for each unit of its size: all things of a robot alike, so
+that their widths are in proportion.")
+
+(defun size-unit (robot)
+  "Return how many pixels wide a unit of size is for the largest thing shown of ROBOT to fit."
+  (let ((largest (reduce #'max (mapcar #'thing-image-size (images-shown robot))
+                         :initial-value 0)))
+    (if (< (* largest +largest-unit+) +object-width+)
+        +largest-unit+
+        (/ +object-width+ largest))))
+
+(defun thing-width (image)
+  "Return how wide to draw the thing, in pixels: in proportion to its size, but so that it is seen."
+  (max 2 (* *size-unit* (thing-image-size image))))
+
+(defun draw-hollow (canvas x y width)
+  "Draw a frame in the current colour, with an outline that is seen on white whatever that is."
+  (let ((height (1- +object-height+)) (pen (if (< width 7) 1 2)))
+    (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))
+    (when (and in-color* (<= 4 width))
+      (with-lines (:width pen)
+        (draw-rectangle canvas draw-gcontext* (+ x 1/2 (/ pen 2)) (+ y 1/2 (/ pen 2))
+                        (- width 2 pen) (- height 1 pen))))))
+
+(defun draw-solid (canvas x y width)
+  (draw-rectangle canvas draw-gcontext* x y width +object-height+ t)
+  (with-color black*
+    (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (1- +object-height+))))
+
+(defun draw-block (canvas image x y)
+  "Draw a thing as a rectangle: solid if it blocks movement, crossed out if it obstructs view."
+  (let* ((width (thing-width image)) (right (+ x (max 0 (1- width))))
+         (bottom (+ y +object-height+ -1)) (solid-p (thing-image-obsmove-p image)))
+    (with-color (thing-image-color image)
+      (if solid-p (draw-solid canvas x y width) (draw-hollow canvas x y width)))
+    (when (thing-image-obsview-p image)
+      (with-gcontext (draw-gcontext* :foreground (if solid-p
+                                                     (ink-on (if in-color*
+                                                                 (thing-image-color image)
+                                                                 black*))
+                                                     black*))
+        (draw-segments canvas draw-gcontext* (list x y right bottom x bottom right y))))))
+
+(defun note-undrawable (image value trouble)
+  "Say once that TROUBLE keeps the thing from being drawn by VALUE, its :draw-function."
+  (unless (gethash value *broken-graphics*)
+    (setf (gethash value *broken-graphics*) t)
+    (error-set (subject-title image) " is drawn plainly: " trouble)))
+
+(defun draw-by-itself (canvas image x y)
+  "Have the thing drawn by its own :draw-function (reading 211). True if it has one that can."
+  (let ((value (thing-image-draw-function image)))
+    (multiple-value-bind (function trouble) (drawing-code value)
+      (when trouble (note-undrawable image value trouble))
+      (and function
+           (or (draw-by-user canvas function (list "the :draw-function of " (subject-title image))
+                             x y +object-width+ +object-height+
+                             (thing-image-thing image) x y +object-width+ +object-height+)
+               (wipe canvas x y +object-width+ +object-height+))))))
+
+(defun wipe (canvas x y width height)
+  "Draw over what is in a box. Return NIL."
+  (with-gcontext (draw-gcontext* :foreground white*)
+    (draw-rectangle canvas draw-gcontext* x y width height t)))
+
+(defun draw-object (canvas image x y width)
+  (with-subject (canvas image)
+    (let ((wide (cond ((draw-by-itself canvas image x y) +object-width+)
+                      (t (draw-block canvas image x y)
+                         (thing-width image)))))
+      (draw-line-of-text canvas (+ x wide +margin+) (- y 2) width (subject-title image)))))
+
+(defun draw-location (canvas location x y width)
+  "Draw what a part is inside of: a thing, or the text that LOCATION is."
+  (cond ((null location))
+        ((stringp location) (draw-line-of-text canvas x y width (format nil "in ~A" location)))
+        (t (draw-line-of-text canvas x y width "in ")
+           (draw-object canvas location (+ x 21) (+ y 2) width))))
+
+;;; Robot state.
+
+(defun draw-state (canvas robot width)
+  (let ((lines (list (format nil "Position: ~,2F, ~,2F"
+                             (robot-image-x robot) (robot-image-y robot))
+                     (format nil "Direction: ~A" (angle-text (robot-image-angle robot)))
+                     (format nil "Speed: ~,2F" (robot-image-speed robot))
+                     (format nil "Place: ~:[none~;~:*~(~A~)~]" (robot-image-place robot))
+                     (format nil "Under way: ~:[nothing~;~:*~A~]" (robot-image-under-way robot))
+                     (format nil "Interrupted: ~:[nothing~;~:*~A~]"
+                             (robot-image-interruption robot))))
+        (y +margin+))
+    (dolist (line lines y)
+      (setf y (draw-paragraph canvas +margin+ y width line)))))
+
+;;; Robot designators.
+
+(defun draw-denotation (canvas designator x y width)
+  (let ((denotation (designator-image-denotation designator)))
+    (if (thing-image-p denotation)
+        (draw-object canvas denotation x (+ y 2) width)
+        (draw-line-of-text canvas x y width (denotation-text designator)))))
+
+(defun draw-designators (canvas robot width)
+  (loop for y from +margin+ by +line-height+
+        for designator in (robot-image-designators robot)
+        do (with-subject (canvas designator)
+             (draw-line-of-text canvas +margin+ y width
+                                (format nil "~3D" (designator-image-number designator)))
+             (draw-denotation canvas designator (+ +margin+ 28) y width))
+        finally (return y)))
+
+;;; Cameras.
+
+(define-constant +dial+ 30 :documentation "The radius of the picture of a camera, in pixels.")
+
+(defun draw-tick (canvas x y angle)
+  (with-color (layer-ink :tracks)
+    (with-lines (:width 2)
+      (draw-segments canvas draw-gcontext*
+                     (append (around x y angle (* 1/2 +dial+)) (around x y angle +dial+))))))
+
+(defun draw-dial (canvas robot camera y)
+  "Draw CAMERA as a wedge in the direction in which it looks on the map, as wide as its field of
+view, with a tick in the direction in which it believes what it tracks to be."
+  (let* ((x (+ +margin+ +dial+)) (y (+ y +dial+))
+         (half (* 1/2 (camera-image-field-of-view camera)))
+         (angle (+ (robot-image-angle robot) (camera-image-angle camera)))
+         (track (camera-image-track camera)))
+    (with-color (svref lightblue* 9)
+      (draw-arc canvas draw-gcontext* (- x +dial+) (- y +dial+) (* 2 +dial+) (* 2 +dial+)
+                (- (+ angle half)) (* 2 half) in-color*))
+    (draw-lines canvas draw-gcontext*
+                (append (around x y (- angle half) +dial+) (list x y)
+                        (around x y (+ angle half) +dial+)))
+    (when track
+      (draw-tick canvas x y (+ (robot-image-angle robot) (designator-image-angle track))))))
+
+(defun view-text (camera)
+  "Return what CAMERA saw when a view was asked for last, and how long ago that was. STATUS looks
+anew; a display does not, lest it show what the robot cannot know."
+  (if (camera-image-view camera)
+      (format nil "View, asked for ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
+              (camera-image-view-age camera) (camera-image-view camera))
+      "View: none asked for yet"))
+
+(defun draw-track-line (canvas track x y width)
+  "Write what TRACK, the image of a designator, is, and draw what it denotes."
+  (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
+                      (designator-image-distance track))))
+    (draw-line-of-text canvas x y width text)
+    (draw-denotation canvas track (+ x (words-width text)) y width)))
+
+(defun draw-camera (canvas robot camera y width)
+  "Draw CAMERA from Y; return where that ends."
+  (let ((left (+ (* 2 +margin+) (* 2 +dial+))) (track (camera-image-track camera)) (next y))
+    (with-subject (canvas camera)
+      (draw-dial canvas robot camera y)
+      (setf next (draw-paragraph canvas left (+ y 6) width (view-text camera)))
+      (when track (draw-track-line canvas track left next width))
+      (draw-location canvas (camera-image-location camera)
+                     left (+ next +line-height+) width))
+    (+ +margin+ (max (+ y (* 2 +dial+)) (+ next (* 2 +line-height+))))))
+
+(defun draw-cameras (canvas robot width)
+  (reduce (lambda (y camera) (draw-camera canvas robot camera y width))
+          (robot-image-cameras robot) :initial-value +margin+))
+
+;;; Hands.
+
+(defun draw-hand (canvas hand y width)
+  "Draw HAND from Y; return where its picture ends."
+  (let ((left (+ +margin+ (* 10 +character-width+)))
+        (contents (hand-image-contents hand)))
+    (with-subject (canvas hand)
+      (draw-line-of-text canvas +margin+ y width (subject-title hand))
+      (if contents
+          (draw-object canvas contents left (+ y 2) width)
+          (draw-line-of-text canvas left y width "empty"))
+      (draw-location canvas (hand-image-location hand) left (+ y +line-height+) width)))
+  (+ y (* +line-height+ (if (hand-image-location hand) 2 1))))
+
+(defun draw-hands (canvas robot width)
+  (reduce (lambda (y hand) (draw-hand canvas hand y width))
+          (robot-image-hands robot) :initial-value +margin+))
+
+;;; Storage bins.
+
+(defun draw-bin (canvas bin y width)
+  "Draw BIN from Y; return where its picture ends."
+  (with-subject (canvas bin)
+    (draw-line-of-text canvas +margin+ y width
+                       (format nil "~A: ~:[open~;closed~]" (subject-title bin)
+                               (bin-image-closed-p bin)))
+    (loop for top from (+ y +line-height+) by +line-height+
+          for thing in (bin-image-contents bin)
+          do (draw-object canvas thing (+ (* 4 +margin+)) (+ top 2) width)
+          finally (return top))))
+
+(defun draw-bins (canvas robot width)
+  (reduce (lambda (y bin) (draw-bin canvas bin y width))
+          (robot-image-bins robot) :initial-value +margin+))
+
+;;;; The displays by name, and all in one picture
 
 (define-constant +details+
     '((:state "Robot state" draw-state) (:designators "Robot designators" draw-designators)

@@ -1,6 +1,103 @@
-;;;; yaml.lisp -- the little of YAML that descriptions of floors are written in.
+;;;; yaml.lisp -- what is wrong with a file; its numbers; the little of YAML that describes floors.
 
 (in-package :ars-magna.floors)
+
+(addition unusable-floor)
+
+(define-condition unusable-floor (ars-magna-error)
+  ((file   :initarg :file   :reader unusable-floor-file)
+   (line   :initarg :line   :initform nil :reader unusable-floor-line)
+   (reason :initarg :reason :reader unusable-floor-reason))
+  (:report (lambda (condition stream)
+             (format stream "~A~@[, line ~D~]: ~A."
+                     (shown-name (unusable-floor-file condition))
+                     (unusable-floor-line condition)
+                     (unusable-floor-reason condition))))
+  (:documentation "A file that IMPORT-MAP was to read, or EXPORT-MAP to write, cannot be used."))
+
+(setf (documentation 'unusable-floor-file 'function)
+      "Return the file that an UNUSABLE-FLOOR is about, a pathname or string."
+      (documentation 'unusable-floor-line 'function)
+      "Return the number of the line that an UNUSABLE-FLOOR is about, or NIL."
+      (documentation 'unusable-floor-reason 'function)
+      "Return in words what is wrong, and what to do about it.")
+
+(defun reject-floor (file line control &rest arguments)
+  "Signal UNUSABLE-FLOOR about LINE, perhaps NIL, of FILE. The text names the remedy."
+  (error 'unusable-floor :file file :line line :reason (apply #'format nil control arguments)))
+
+(defun file-called (name)
+  "Return the pathname for NAME, a string or pathname, which may begin with ~/. Signals
+UNUSABLE-FLOOR for ~user."
+  (when (and (stringp name) (starts-with-subseq "~" name) (not (starts-with-subseq "~/" name)))
+    (reject-floor name nil "of names that begin with ~~ only ~~/, your home directory, is known ~
+                            here; write the whole name of the file"))
+  (path-called name))
+
+(defun check-readable (file)
+  (let ((trouble (unusable-file-text file)))
+    (when trouble
+      (reject-floor file nil "~A (relative names begin in ~A)"
+                    trouble (native-name (base-directory))))))
+
+;;;; Decimals
+
+(defconstant +longest-decimal+ 60 "How many characters a number has at most.")
+(defconstant +largest-exponent+ 330
+  "How large the exponent of a number is at most: no double-float's is larger.")
+
+(defun digits-end (text start)
+  "Return where the decimal digits that begin in TEXT at START end."
+  (or (position-if-not (lambda (char) (find char "0123456789")) text :start start)
+      (length text)))
+
+(defun sign-at (text start)
+  "Return 1 or -1 for the sign in TEXT at START, and where that ends; 1 and START without one."
+  (case (and (< start (length text)) (char text start))
+    (#\+ (values 1 (1+ start)))
+    (#\- (values -1 (1+ start)))
+    (t (values 1 start))))
+
+(defun whole-between (text start end)
+  (if (< start end) (parse-integer text :start start :end end) 0))
+
+(defun exponent-at (text start)
+  "Return the exponent that TEXT ends with from START on, 0 if it ends there; NIL if neither."
+  (cond ((= start (length text)) 0)
+        ((char-equal #\e (char text start))
+         (multiple-value-bind (sign digits) (sign-at text (1+ start))
+           (when (and (< digits (length text)) (= (length text) (digits-end text digits)))
+             (let ((size (whole-between text digits (length text))))
+               (and (<= size +largest-exponent+) (* sign size))))))))
+
+(defun decimal-at (text start)
+  "Return the number without a sign that is in TEXT from START on, exactly, or NIL."
+  (let* ((point (digits-end text start))
+         (pointed (and (< point (length text)) (char= #\. (char text point))))
+         (end (if pointed (digits-end text (1+ point)) point))
+         (places (if pointed (- end point 1) 0))
+         (exponent (exponent-at text end)))
+    (when (and exponent (plusp (+ places (- point start))))
+      (* (+ (whole-between text start point)
+            (/ (whole-between text (1+ point) end) (expt 10 places)))
+         (expt 10 exponent)))))
+
+(defun read-decimal (text)
+  "Return the number, exactly, that TEXT stands for, such as -12.5, .5 or 1e-2; NIL if none."
+  (when (<= (length text) +longest-decimal+)
+    (multiple-value-bind (sign start) (sign-at text 0)
+      (let ((number (decimal-at text start)))
+        (and number (* sign number))))))
+
+(defun decimal (number)
+  "Return the shortest text that READ-DECIMAL makes NUMBER, as a double-float, of again."
+  (let ((*read-default-float-format* 'double-float)
+        (value (double number)))
+    (if (and (= value (ftruncate value)) (< (abs value) 1d15))
+        (format nil "~D.0" (truncate value))
+        (prin1-to-string value))))
+
+;;;; YAML
 
 ;;; This is no reader of YAML, but a strict one of the flat form that map savers write: lines
 ;;; `key: value', each key once, where a value is a word, a text in quotes, or a list [a, b, c],

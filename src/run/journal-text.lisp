@@ -15,16 +15,6 @@
                    "it is a journal; (replay FILE) and (load-journal FILE) read it")
 (defconstant +latest-end+ (expt 10 9) "The last tick that a journal on file can end at.")
 
-(addition damaged-journal)
-(define-condition damaged-journal (damaged-file)
-  ()
-  (:report (lambda (condition stream)
-             (format stream "~A is no usable journal: ~A. Save one with SAVE-JOURNAL; ~
-                             nothing was changed."
-                     (shown-name (damaged-file-name condition))
-                     (damaged-file-reason condition))))
-  (:documentation "A file that should hold a journal cannot be used."))
-
 ;;; Writing.
 
 (defun check-printable (journal)

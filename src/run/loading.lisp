@@ -4,17 +4,9 @@
 
 (export '(call-with-loaded-simulation))
 
-(addition damaged-simulation load-anyway)
+(addition load-anyway)
 (document-restarts
  'load-anyway "Load the saved run although what is defined now is not what was defined then.")
-(define-condition damaged-simulation (damaged-file)
-  ()
-  (:report (lambda (condition stream)
-             (format stream "~A is no usable saved run: ~A. Save one with SAVE-SIMULATION; ~
-                             nothing was changed."
-                     (shown-name (damaged-file-name condition))
-                     (damaged-file-reason condition))))
-  (:documentation "A file that should hold a saved run cannot be used."))
 
 ;;; The head.
 

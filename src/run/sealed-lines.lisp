@@ -18,6 +18,25 @@
                      (damaged-file-reason condition))))
   (:documentation "A file that should hold what the simulator has saved cannot be used."))
 
+(defun tell-of-damage (condition stream kind operator)
+  "Write to STREAM that the file of CONDITION is no KIND of file, and that OPERATOR saves one."
+  (format stream "~A is no usable ~A: ~A. Save one with ~A; nothing was changed."
+          (shown-name (damaged-file-name condition)) kind (damaged-file-reason condition) operator))
+
+(addition damaged-journal)
+(define-condition damaged-journal (damaged-file)
+  ()
+  (:report (lambda (condition stream)
+             (tell-of-damage condition stream "journal" "SAVE-JOURNAL")))
+  (:documentation "A file that should hold a journal cannot be used."))
+
+(addition damaged-simulation)
+(define-condition damaged-simulation (damaged-file)
+  ()
+  (:report (lambda (condition stream)
+             (tell-of-damage condition stream "saved run" "SAVE-SIMULATION")))
+  (:documentation "A file that should hold a saved run cannot be used."))
+
 ;;; Writing.
 
 (defun write-sealed (text sum out)

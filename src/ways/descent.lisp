@@ -1,6 +1,89 @@
-;;;; descent.lisp -- down a field to its goal, from cell to cell at any angle.
+;;;; descent.lisp -- down a field to its goal at any angle, drawn as a way with few turns.
 
 (in-package :ars-magna.ways)
+
+;;;; What a straight line costs
+
+;;; A line is cut at all whole and half coordinates: a piece of it is in one cell, whose cost
+;;; counts, and in one square between nodes, which must have no wall at its corners. So lines keep
+;;; half a metre off walls, as steps from node to node do. But one along a row of nodes, as through
+;;; a doorway, need only cross free cells; and who stands near a wall may leave his own cell at any
+;;; angle at which nothing else is near.
+
+(deftype metres () '(double-float -1d5 1d5))
+(deftype halves () "A whole number of half metres." '(signed-byte 20))
+
+(declaim (inline piece-cost))
+(defun piece-cost (cells columns i j narrow)
+  "Return what a metre costs in the half cell (I J) of CELLS; it is half as wide and high as one.
+NARROW is true of a line that only needs free cells."
+  (declare (type amounts cells) (type (integer 0 40000) columns) (type halves i j))
+  (flet ((cell (column row) (aref cells (the node (+ 1 column row))))
+         (row (j) (* columns (1+ (ash j -1)))))
+    (declare (inline cell row))
+    (or (unless narrow
+          (let ((left (ash (1- i) -1)) (right (ash (1+ i) -1))
+                (above (row (1- j))) (below (row (1+ j))))
+            (when (or (>= (cell left above) +barred+) (>= (cell left below) +barred+)
+                      (>= (cell right above) +barred+) (>= (cell right below) +barred+))
+              +barred+)))
+        (cell (ash i -1) (row j)))))
+
+;; It lives on the stack, and functions get it instead of floats, which would have to be boxed.
+(declaim (inline make-line))
+(defstruct (line (:constructor make-line (x y end-x end-y limit)) (:copier nil) (:predicate nil))
+  "A straight line from (X,Y) to (END-X,END-Y), which is to cost no more than LIMIT, and what it
+costs."
+  (x 0d0 :type metres :read-only t)
+  (y 0d0 :type metres :read-only t)
+  (end-x 0d0 :type metres :read-only t)
+  (end-y 0d0 :type metres :read-only t)
+  (limit 0d0 :type double-float :read-only t)
+  (cost 0d0 :type double-float))
+(declaim-final line)
+
+(defun measure-line (line cells columns leaving)
+  "Let LINE have what it costs; +BARRED+ if it is not free, or costs more than its limit. CELLS are
+those of a terrain or field, COLUMNS in a row. LEAVING is true if it may begin near a wall."
+  (declare #.*hot* (type line line) (type amounts cells) (type (integer 0 40000) columns))
+  (let* ((u (* 2 (line-x line))) (v (* 2 (line-y line)))
+         (du (- (* 2 (line-end-x line)) u)) (dv (- (* 2 (line-end-y line)) v))
+         (limit (line-limit line))
+         (length (* 0.5d0 (sqrt (+ (* du du) (* dv dv)))))
+         (i (if (minusp du) (1- (ceiling u)) (floor u)))
+         (j (if (minusp dv) (1- (ceiling v)) (floor v)))
+         (along (or (and (zerop dv) (oddp j) (= v (double j)))
+                    (and (zerop du) (oddp i) (= u (double i)))))
+         (start-i (ash i -1)) (start-j (ash j -1))
+         (part 0d0) (sum 0d0))
+    (declare (type halves i j) (type double-float part sum length))
+    (flet ((first-crossing (start change half)
+             (declare (type double-float start change) (type halves half))
+             (cond ((plusp change) (/ (- (double (1+ half)) start) change))
+                   ((minusp change) (/ (- (double half) start) change))
+                   (t 2d0)))
+           (between (change) (if (zerop change) 0d0 (/ (abs change)))))
+      (declare (inline first-crossing between))
+      (let ((next-u (first-crossing u du i)) (next-v (first-crossing v dv j))
+            (between-u (between du)) (between-v (between dv))
+            (step-i (if (plusp du) 1 -1)) (step-j (if (plusp dv) 1 -1)))
+        (declare (type double-float next-u next-v between-u between-v))
+        (setf (line-cost line)
+              (loop
+                (let* ((next (min next-u next-v 1d0)) (piece (* length (- next part))))
+                  ;; A line through a corner touches what it does not cross.
+                  (when (> piece 1d-9)
+                    (let ((narrow (or along
+                                      (and leaving (= (ash i -1) start-i) (= (ash j -1) start-j)))))
+                      (incf sum (* piece (piece-cost cells columns i j narrow))))
+                    (when (> sum limit) (return +barred+)))
+                  (when (>= next 1d0) (return sum))
+                  (setf part (max part next))
+                  (if (<= next-u next-v)
+                      (setf i (+ i step-i) next-u (+ next-u between-u))
+                      (setf j (+ j step-j) next-v (+ next-v between-v))))))))))
+
+;;;; Steps
 
 ;;; From a point in a cell, a step leads to the best point of the ring around the cell's middle: of
 ;;; the eight sides between the middles of its neighbours. Only what costs less than where one is,
@@ -95,3 +178,103 @@ less at its end."
             (descent-value descent) best-value
             (descent-step descent) (- least best-value))
       t)))
+
+;;;; Drawing a way
+
+(defconstant +dearer-if-straight+ 1.02d0
+  "How many times as much a straight piece may cost as the steps that it stands for: it saves
+turns.")
+
+(defstruct (pencil (:constructor make-pencil (x y)) (:copier nil))
+  "The way drawn so far: it turns at (X,Y), and steps that cost SINCE have led on to (END-X,END-Y)."
+  (x 0d0 :type double-float)
+  (y 0d0 :type double-float)
+  (end-x x :type double-float)
+  (end-y y :type double-float)
+  (since 0d0 :type double-float)
+  (points '() :type list))
+(declaim-final pencil)
+
+(defun turn-here (pencil)
+  "Let the way of PENCIL have a point where it has come to."
+  (push (make-pt (pencil-end-x pencil) (pencil-end-y pencil)) (pencil-points pencil))
+  (setf (pencil-x pencil) (pencil-end-x pencil)
+        (pencil-y pencil) (pencil-end-y pencil)
+        (pencil-since pencil) 0d0))
+
+(declaim (inline free-line-cost))
+(defun free-line-cost (field x y end-x end-y limit leaving)
+  "Return what the straight line from (X,Y) to (END-X,END-Y) costs on the cells of FIELD; +BARRED+
+if it is not free, or costs more than LIMIT. LEAVING is true if it may begin near a wall."
+  (let ((line (make-line x y end-x end-y limit)))
+    (declare (dynamic-extent line))
+    (measure-line line (field-cells field) (field-columns field) leaving)
+    (line-cost line)))
+
+(declaim (inline first-line-p))
+(defun first-line-p (pencil)
+  (null (pencil-points pencil)))
+
+(declaim (inline go-straight-p draw-on))
+(defun go-straight-p (pencil field x y limit last)
+  "True if the line from the last turn of PENCIL to (X,Y) is free and costs no more than LIMIT. The
+LAST line of a way may end as near to a wall as the first may begin."
+  (declare (type pencil pencil) (type metres x y) (type double-float limit))
+  (let ((from-x (pencil-x pencil)) (from-y (pencil-y pencil)))
+    (or (< (free-line-cost field from-x from-y x y limit (first-line-p pencil)) +barred+)
+        (and last (< (free-line-cost field x y from-x from-y limit t) +barred+)))))
+
+(defun draw-on (pencil field x y cost last)
+  "Let the way of PENCIL go on to (X,Y), by a free step that costs COST: straight, if that is as
+good."
+  (declare #.*hot* (type pencil pencil) (type metres x y) (type double-float cost))
+  (let ((since (+ (pencil-since pencil) cost)))
+    (unless (or (zerop (pencil-since pencil))
+                (go-straight-p pencil field x y (* since +dearer-if-straight+) last))
+      (turn-here pencil)
+      (setf since cost))
+    (setf (pencil-since pencil) since
+          (pencil-end-x pencil) x
+          (pencil-end-y pencil) y)
+    nil))
+
+(defun draw-to (pencil field x y cost &optional last)
+  "Let the way of PENCIL go on to (X,Y), by a step that costs COST at most. LAST is true of its
+last."
+  (declare #.*hot* (type pencil pencil) (type metres x y) (type double-float cost))
+  (let* ((from-x (pencil-end-x pencil)) (from-y (pencil-end-y pencil))
+         (true-cost (free-line-cost field from-x from-y x y cost (first-line-p pencil))))
+    (declare (type metres from-x from-y))
+    (when (and (>= true-cost +barred+) (not last) (plusp (pencil-since pencil)))
+      ;; By way of the cell's middle one comes near to no wall.
+      (let ((middle-x (+ (ffloor from-x) 0.5d0)) (middle-y (+ (ffloor from-y) 0.5d0)))
+        (draw-on pencil field middle-x middle-y
+                 (free-line-cost field from-x from-y middle-x middle-y (/ +barred+ 2)
+                                 nil)
+                 nil)))
+    (draw-on pencil field x y (min cost true-cost) last)))
+
+(defun draw-way (pencil descent goal-x goal-y until turns)
+  "Draw the way down DESCENT to (GOAL-X,GOAL-Y), or into a cell for which UNTIL is true, or to its
+turn number TURNS."
+  (let* ((field (descent-field descent)) (goal (field-goal field))
+         (node (descent-node descent)))
+    (loop until (or (= node goal)
+                    (and turns (nthcdr (1- turns) (pencil-points pencil)))
+                    (not (step-down descent)))
+          do (draw-to pencil field (descent-x descent) (descent-y descent) (descent-step descent))
+             (let ((next (descent-node descent)))
+               (when (and until (/= node next))
+                 (multiple-value-bind (row column) (floor (the node next) (field-columns field))
+                   (when (funcall (the function until) (1- column) (1- row)) (return))))
+               (setf node next))
+          finally (when (= node goal) (draw-to-goal pencil descent goal-x goal-y)))
+    (turn-here pencil)))
+
+(defun draw-to-goal (pencil descent x y)
+  "Draw the last step, within the cell of the goal, which is at (X,Y)."
+  (let ((field (descent-field descent))
+        (dx (- x (descent-x descent))) (dy (- y (descent-y descent))))
+    (draw-to pencil field x y
+             (* (sqrt (+ (* dx dx) (* dy dy))) (aref (field-cells field) (field-goal field)))
+             t)))

@@ -2,13 +2,115 @@
 
 (in-package :ars-magna.ways)
 
+;;;; The queue: nodes that wait, by their keys, a binary heap in two arrays
+
+;;; A node may be in it more than once; who takes one out sees whether it still counts.
+
+(deftype nodes () '(simple-array (unsigned-byte 31) (*)))
+
+(defstruct (queue (:constructor make-queue ()) (:copier nil))
+  "Nodes with their keys, double-floats. The least key comes first."
+  (keys (make-amounts 64 0d0) :type amounts)
+  (nodes (make-array 64 :element-type '(unsigned-byte 31)) :type nodes)
+  (count 0 :type (unsigned-byte 40)))
+(declaim-final queue)
+
+(defun enlarge-queue (queue)
+  "Give QUEUE room for twice as many."
+  (flet ((enlarged (array)
+           (replace (make-array (* 2 (length array)) :element-type (array-element-type array))
+                    array)))
+    (setf (queue-keys queue) (enlarged (queue-keys queue))
+          (queue-nodes queue) (enlarged (queue-nodes queue)))))
+
+(declaim (inline put-in-place))
+(defun put-in-place (keys nodes place key node)
+  "Let NODE with KEY be at PLACE of the arrays KEYS and NODES of a queue."
+  (declare (type amounts keys) (type nodes nodes))
+  (setf (aref keys place) key
+        (aref nodes place) node))
+
+(declaim (inline queue-push))
+(defun queue-push (queue node key)
+  (declare (type node node) (type double-float key))
+  (when (= (queue-count queue) (length (queue-keys queue))) (enlarge-queue queue))
+  (let ((keys (queue-keys queue)) (nodes (queue-nodes queue)) (place (queue-count queue)))
+    (setf (queue-count queue) (1+ place))
+    (loop while (plusp place)
+          do (let ((parent (ash (1- place) -1)))
+               (when (<= (aref keys parent) key) (return))
+               (put-in-place keys nodes place (aref keys parent) (aref nodes parent))
+               (setf place parent)))
+    (put-in-place keys nodes place key node)
+    nil))
+
+(defun queue-drop (queue)
+  "Take out the node with the least key."
+  (declare #.*hot*)
+  (let* ((keys (queue-keys queue)) (nodes (queue-nodes queue))
+         (count (1- (queue-count queue)))
+         (key (aref keys count)) (node (aref nodes count)) (place 0))
+    (declare (type (unsigned-byte 40) count place))
+    (setf (queue-count queue) count)
+    (loop
+      (let ((child (1+ (* 2 place))))
+        (declare (type (unsigned-byte 41) child))
+        (when (>= child count) (return))
+        (when (and (< (1+ child) count) (< (aref keys (1+ child)) (aref keys child)))
+          (incf child))
+        (when (>= (aref keys child) key) (return))
+        (put-in-place keys nodes place (aref keys child) (aref nodes child))
+        (setf place child)))
+    (put-in-place keys nodes place key node)
+    nil))
+
+(defun copy-into-queue (queue other)
+  (setf (queue-keys queue) (copy-seq (queue-keys other))
+        (queue-nodes queue) (copy-seq (queue-nodes other))
+        (queue-count queue) (queue-count other))
+  queue)
+
+;;;; Crossing the square between the middles of four cells
+
+;;; Ways run between the middles of cells, the nodes. Four of them are the corners of a square. A
+;;; metre in it costs what it does in the dearest of the four cells; a metre on the line between two
+;;; neighbouring nodes what it does in the dearer one. So there is no way into a square with a wall
+;;; at a corner: ways keep half a metre off all walls, and go through the middle of a doorway that
+;;; is one cell wide.
+;;;
+;;; From a node a way may cross a square to any point of the two sides opposite. What the goal
+;;; costs from there is known for the corners, and taken to change evenly between them. That is
+;;; Field D*: D. Ferguson and A. Stentz, "Using interpolation to improve path planning: the Field
+;;; D* algorithm", Journal of Field Robotics 23(2), 2006.
+
+(defconstant +diagonal+ (sqrt 2d0) "The length of a square's diagonal, in metres.")
+
+(declaim (inline crossing-by))
+(defun crossing-by (straight diagonal edge square)
+  "Return what the goal costs from a node by way of the side of a square opposite: STRAIGHT and
+DIAGONAL are what it costs from the ends of that, EDGE and SQUARE what a metre costs on the line to
+the first, and in the square. The result is larger than what it depends on, by a third at least."
+  (declare (type double-float straight diagonal edge square))
+  (let ((drop (- straight diagonal)) (along (+ edge straight)))
+    (if (or (<= drop 0d0) (>= square +barred+))
+        along
+        (let ((slope (min drop edge)))
+          (min along
+               (if (< (* slope +diagonal+) square)
+                   ;; The best point is on the side.
+                   (+ diagonal slope (sqrt (the (double-float 0d0) (- (* square square)
+                                                                      (* slope slope)))))
+                   (+ diagonal (* square +diagonal+))))))))
+
+;;;; Fields
+
 ;;; The method is that of D* Lite (S. Koenig and M. Likhachev, "D* Lite", AAAI 2002), without its
 ;;; heuristic: each node has a TOTAL (their g), and a DRAFT (their rhs), which is what its
 ;;; neighbours' totals make it now. Nodes whose two differ wait in a queue, by the lesser of the
 ;;; two. When all that is less than a node's total has been dealt with, that total is right.
 ;;;
 ;;; Totals are decided by cells and goal alone, to the bit: a total depends on lesser ones only (see
-;;; crossing.lisp), and whenever a draft might have to rise it is made anew. So neither what was
+;;; CROSSING-BY), and whenever a draft might have to rise it is made anew. So neither what was
 ;;; asked before, nor cells that were barred once and are free again, nor the order of the queue
 ;;; leave a trace. And without a heuristic a field serves robots anywhere.
 

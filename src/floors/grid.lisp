@@ -1,0 +1,300 @@
+;;;; grid.lisp -- from pixels to cells, and to as few straight walls as possible.
+
+(in-package :ars-magna.floors)
+
+;;; The blacker a pixel, the likelier it is that something is there; :negate turns that round. Above
+;;; one threshold it is occupied, below the other free, between them unknown. In the mode raw the
+;;; value itself is the chance in percent, and above 100 unknown. In the mode scale ROS has shades
+;;; between the thresholds; a cell of ours is a wall or not, so there, too, they are unknown.
+
+(defconstant +free+ 0 "Stands for a cell where nothing is.")
+(defconstant +occupied+ 1 "Stands for a cell where something is.")
+(defconstant +unknown+ 2 "Stands for a cell of which nobody knows.")
+
+(defstruct (grid (:constructor make-grid
+                     (width height &optional (cells (make-octets (* width height)))))
+                 (:copier nil))
+  "WIDTH by HEIGHT cells, row by row from the top: +FREE+, +OCCUPIED+ or +UNKNOWN+ each."
+  (width 1 :type (integer 1) :read-only t)
+  (height 1 :type (integer 1) :read-only t)
+  (cells (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t))
+
+(defun count-of (state grid)
+  (count state (grid-cells grid)))
+
+(defun chance-of (description sample white)
+  "Return how likely it is that a pixel with the value SAMPLE is occupied, from 0 to 1; NIL if
+that is not known."
+  (let ((brightness (/ sample white)))
+    (cond ((eq :raw (description-mode description))
+           (let ((percent (round (* 255 brightness))))
+             (and (<= percent 100) (/ percent 100))))
+          ((description-negated-p description) brightness)
+          (t (- 1 brightness)))))
+
+(defun state-of (description sample white)
+  (let ((chance (chance-of description sample white)))
+    (cond ((null chance) +unknown+)
+          ((< (description-occupied description) chance) +occupied+)
+          ((< chance (description-free description)) +free+)
+          (t +unknown+))))
+
+(defun state-table (description white)
+  "Return a vector of the states of pixels, by their values from 0 to WHITE; what is one more than
+that is unknown."
+  (let ((table (make-octets (+ 2 white))))
+    (setf (aref table (1+ white)) +unknown+)
+    (dotimes (sample (1+ white) table)
+      (setf (aref table sample) (state-of description sample white)))))
+
+;;; Cells of several pixels. They are laid from the lower left corner, where the origin is, so the
+;;; last row and column may have fewer pixels.
+
+(defun state-of-block (free occupied unknown share)
+  "Return the state of a cell with so many pixels: occupied if any is, and SHARE of them are;
+unknown if more are that than free."
+  (cond ((and (plusp occupied) (<= (* share (+ free occupied unknown)) occupied)) +occupied+)
+        ((< free unknown) +unknown+)
+        (t +free+)))
+
+(defun count-states (image table left top right bottom)
+  "Return how many of the pixels of IMAGE from LEFT to below RIGHT and TOP to below BOTTOM are free,
+occupied and unknown, by TABLE."
+  (let ((samples (image-samples image)) (width (image-width image))
+        (counts (make-array 3 :initial-element 0)))
+    (declare (type samples samples) (type octets table) (dynamic-extent counts))
+    (loop for y from top below bottom
+          do (loop for x from left below right
+                   do (incf (aref counts (aref table (aref samples (+ x (* y width))))))))
+    (values (aref counts +free+) (aref counts +occupied+) (aref counts +unknown+))))
+
+(defun block-grid (image table side share)
+  (let* ((width (ceiling (image-width image) side))
+         (height (ceiling (image-height image) side))
+         (missing (- (* side height) (image-height image)))
+         (grid (make-grid width height)))
+    (dotimes (y height grid)
+      (let* ((top (- (* y side) missing)) (bottom (+ top side)))
+        (dotimes (x width)
+          (setf (aref (grid-cells grid) (+ x (* y width)))
+                (multiple-value-call #'state-of-block
+                  (count-states image table (* x side) (max 0 top)
+                                (min (image-width image) (* (1+ x) side)) bottom)
+                  share)))))))
+
+(defun pixel-grid (image table)
+  (let ((samples (image-samples image))
+        (grid (make-grid (image-width image) (image-height image))))
+    (declare (type samples samples) (type octets table))
+    (let ((cells (grid-cells grid)))
+      (dotimes (index (length cells) grid)
+        (setf (aref cells index) (aref table (aref samples index)))))))
+
+(defun image-grid (image description side share)
+  (let ((table (state-table description (image-white image))))
+    (if (= 1 side)
+        (pixel-grid image table)
+        (block-grid image table side share))))
+
+;;;; The longest lines of cells, along rows and along columns
+
+;;; A run is a line of cells that may be walls, with an end on either side. Each such cell is in
+;;; one run along its row and in one along its column. Runs have numbers, from 0 for either kind.
+
+(deftype numbers () '(simple-array (signed-byte 32) (*)))
+
+(defun make-numbers (size &optional (initial -1))
+  (make-array size :element-type '(signed-byte 32) :initial-element initial))
+
+(defstruct (runs (:constructor make-runs (step cells of)) (:copier nil))
+  "The runs of a grid in which STEP leads from a cell to the next: OF has the run of each cell, by
+index, -1 for none; COUNT of them begin at the STARTS and have so many cells as LENGTHS say."
+  (step 1 :type fixnum :read-only t)
+  (cells (make-octets 0) :type octets :read-only t)
+  (of (make-numbers 0) :type numbers :read-only t)
+  (count 0 :type fixnum)
+  (starts (make-numbers 0) :type numbers)
+  (lengths (make-numbers 0) :type numbers))
+
+(defun number-runs (runs lines per-line line-step allowed)
+  "Give numbers to the cells of RUNS that are in a state ALLOWED, a bit for each state, in all LINES
+of PER-LINE cells; LINE-STEP leads from a line to the next."
+  (declare #.*hot* (type fixnum lines per-line line-step allowed))
+  (let ((cells (runs-cells runs)) (of (runs-of runs)) (step (runs-step runs)) (count 0))
+    (declare (type octets cells) (type numbers of) (type fixnum step count))
+    (dotimes (line lines)
+      (let ((inside nil) (index (* line line-step)))
+        (declare (type cell-index index))
+        (dotimes (place per-line)
+          (let ((wall (logbitp (aref cells index) allowed)))
+            (when (and wall (not inside)) (incf count))
+            (when wall (setf (aref of index) (1- count)))
+            (setf inside wall)
+            (incf index step)))))
+    (setf (runs-count runs) count)
+    runs))
+
+(defun measure-runs (runs)
+  (let ((starts (make-numbers (runs-count runs))) (lengths (make-numbers (runs-count runs) 0)))
+    (loop for run across (runs-of runs) for index from 0
+          unless (minusp run)
+            do (when (minusp (aref starts run)) (setf (aref starts run) index))
+               (incf (aref lengths run)))
+    (setf (runs-starts runs) starts
+          (runs-lengths runs) lengths)
+    runs))
+
+(defun states-mask (states)
+  "Return a bit for each of the list STATES."
+  (reduce #'logior states :key (lambda (state) (ash 1 state))))
+
+(defun find-runs (grid allowed along)
+  "Return the runs of GRID ALONG its :ROWS or :COLUMNS through cells in states ALLOWED, a list."
+  (let* ((width (grid-width grid)) (height (grid-height grid)) (rows (eq along :rows))
+         (runs (make-runs (if rows 1 width) (grid-cells grid) (make-numbers (* width height)))))
+    (number-runs runs (if rows height width) (if rows width height) (if rows width 1)
+                 (states-mask allowed))
+    (measure-runs runs)))
+
+(defun run-ends (runs run width)
+  "Return the columns and rows of the first and the last cell of RUN, a number, in a grid of WIDTH:
+two lists (x y)."
+  (flet ((place (index) (nreverse (multiple-value-list (floor index width)))))
+    (let ((start (aref (runs-starts runs) run)))
+      (values (place start)
+              (place (+ start (* (runs-step runs) (1- (aref (runs-lengths runs) run)))))))))
+
+;;;; As few lines as possible
+
+;;; Each cell that has to be a wall must be in a wall along its row or one along its column, and it
+;;; is never worse to let these be whole runs. So a cell is a tie between two runs, and what we look
+;;; for are fewest runs that have an end of every tie: a least vertex cover. Between two sorts of
+;;; runs that is found by way of a greatest matching, pairs of runs that share a cell, none of them
+;;; twice (Koenig's theorem). The matching is that of Hopcroft and Karp: in rounds, from the rows
+;;; that have no mate yet, layer by layer, along ways on which ties and pairs take turns.
+
+(defstruct (cover (:constructor %make-cover
+                      (rows columns needed row-mate column-mate layer reached))
+                  (:copier nil))
+  "The matching so far of the runs ROWS and COLUMNS: the ROW-MATE of each row is a column, the
+COLUMN-MATE of each column a row, or -1. Cells in states NEEDED, a bit for each, are ties. In a
+round, LAYER says how many pairs lie between a row and one without a mate, -1 if there is no way;
+REACHED how many of its cells each row has tried."
+  (rows nil :type runs :read-only t)
+  (columns nil :type runs :read-only t)
+  (needed 0 :type (unsigned-byte 8) :read-only t)
+  (row-mate (make-numbers 0) :type numbers :read-only t)
+  (column-mate (make-numbers 0) :type numbers :read-only t)
+  (layer (make-numbers 0) :type numbers :read-only t)
+  (reached (make-numbers 0) :type numbers :read-only t))
+
+(defun make-cover (rows columns needed)
+  (%make-cover rows columns needed
+               (make-numbers (runs-count rows)) (make-numbers (runs-count columns))
+               (make-numbers (runs-count rows)) (make-numbers (runs-count rows) 0)))
+
+(declaim (inline tie-at))
+(defun tie-at (cover row place)
+  "Return the column that the cell at PLACE of ROW ties that to, or -1 if the cell is not needed."
+  (declare (type fixnum row place))
+  (let* ((rows (cover-rows cover))
+         (index (+ (aref (runs-starts rows) row) place)))
+    (declare (type cell-index index))
+    (if (logbitp (aref (runs-cells rows) index) (cover-needed cover))
+        (aref (runs-of (cover-columns cover)) index)
+        -1)))
+
+(defmacro do-ties ((column cover row) &body body)
+  "Run BODY with each COLUMN that needed cells tie ROW to."
+  (with-gensyms (place)
+    `(dotimes (,place (aref (runs-lengths (cover-rows ,cover)) ,row))
+       (let ((,column (tie-at ,cover ,row ,place)))
+         (unless (minusp ,column) ,@body)))))
+
+(defun find-layers (cover)
+  "Note the layers of all rows. True if a way leads to a column that has no mate."
+  (declare #.*hot*)
+  (let* ((count (runs-count (cover-rows cover))) (layer (cover-layer cover))
+         (queue (make-numbers count)) (end 0) (found nil))
+    (declare (type fixnum count end) (type numbers layer queue))
+    (fill layer -1)
+    (fill (cover-reached cover) 0)
+    (flet ((enqueue (row number)
+             (setf (aref layer row) number
+                   (aref queue end) row)
+             (incf end)))
+      (dotimes (row count)
+        (when (minusp (aref (cover-row-mate cover) row)) (enqueue row 0)))
+      (loop for next of-type fixnum from 0
+            while (< next end)
+            do (let ((row (aref queue next)))
+                 (do-ties (column cover row)
+                   (let ((mate (aref (cover-column-mate cover) column)))
+                     (cond ((minusp mate) (setf found t))
+                           ((minusp (aref layer mate))
+                            (enqueue mate (1+ (aref layer row))))))))))
+    found))
+
+(defun next-tie (cover row)
+  "Return the next column, of those that ROW has not tried in this round, that leads on: one without
+a mate, or whose mate is in the next layer. NIL if there is none."
+  (declare #.*hot* (type fixnum row))
+  (let ((reached (cover-reached cover)) (layer (cover-layer cover))
+        (length (aref (runs-lengths (cover-rows cover)) row)))
+    (declare (type numbers reached layer))
+    (loop while (< (aref reached row) length)
+          do (let ((column (tie-at cover row (aref reached row))))
+               (incf (aref reached row))
+               (unless (minusp column)
+                 (let ((mate (aref (cover-column-mate cover) column)))
+                   (when (or (minusp mate) (= (aref layer mate) (1+ (aref layer row))))
+                     (return column))))))))
+
+(defun pair-along (cover way)
+  "Let each row of WAY, conses (row . column), have its column for a mate."
+  (loop for (row . column) in way
+        do (setf (aref (cover-row-mate cover) row) column
+                 (aref (cover-column-mate cover) column) row)))
+
+(defun find-mate (cover row)
+  "Find a mate for ROW, which has none, perhaps by giving other mates to others. If there is a way
+in this round's layers, take it."
+  (let ((way (list (cons row nil))))
+    (loop while way
+          do (let* ((row (car (first way))) (column (next-tie cover row)))
+               (cond ((null column) (pop way))
+                     (t (setf (cdr (first way)) column)
+                        (let ((mate (aref (cover-column-mate cover) column)))
+                          (cond ((minusp mate) (return (pair-along cover way)))
+                                (t (push (cons mate nil) way))))))))))
+
+(defun match-runs (cover)
+  "Find a greatest matching for COVER. Its layers are then those of a round that finds no way."
+  (loop while (find-layers cover)
+        do (dotimes (row (runs-count (cover-rows cover)))
+             (when (minusp (aref (cover-row-mate cover) row))
+               (find-mate cover row))))
+  cover)
+
+(defun columns-to-take (cover)
+  "Return a bit for each column of COVER: 1 if a row that the last round reached is tied to it."
+  (let ((taken (make-array (runs-count (cover-columns cover))
+                           :element-type 'bit :initial-element 0)))
+    (dotimes (row (runs-count (cover-rows cover)) taken)
+      (unless (minusp (aref (cover-layer cover) row))
+        (do-ties (column cover row)
+          (setf (sbit taken column) 1))))))
+
+(defun fewest-lines (grid needed allowed)
+  "Return as few straight lines as there can be, along rows and columns, that go through all cells
+of GRID in a state of the list NEEDED and only through such in a state of the list ALLOWED: lists of
+two ends (x y), those along rows first, from the top."
+  (let* ((rows (find-runs grid allowed :rows)) (columns (find-runs grid allowed :columns))
+         (cover (match-runs (make-cover rows columns (states-mask needed))))
+         (taken (columns-to-take cover)))
+    (flet ((ends (runs run)
+             (multiple-value-list (run-ends runs run (grid-width grid)))))
+      (append (loop for row below (runs-count rows)
+                    when (minusp (aref (cover-layer cover) row)) collect (ends rows row))
+              (loop for column below (runs-count columns)
+                    when (= 1 (sbit taken column)) collect (ends columns column))))))
