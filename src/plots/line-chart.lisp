@@ -147,7 +147,7 @@ on an axis that begins at FROM."
                      (+ shift (place (spot-x spot) (plane-across plane)))
                      (place (spot-y spot) (plane-upward plane)))))))
 
-(defun draw-series (canvas all plane words percent connect)
+(defun draw-series (canvas all plane words percent)
   "Draw ALL series: lines, above them intervals, above them markers."
   (let ((shifts (sideways all
                           (mapcar (lambda (x) (place x (plane-across plane))) (all-x all))
@@ -155,7 +155,7 @@ on an axis that begins at FROM."
     (flet ((each (function)
              (dolist (series all)
                (funcall function series (funcall shifts (series-index series))))))
-      (when connect
+      (unless words
         (each (lambda (series shift) (draw-connections canvas series plane shift))))
       (each (lambda (series shift) (draw-intervals canvas series plane shift)))
       (each (lambda (series shift) (draw-spots canvas series plane shift words percent))))))
@@ -171,19 +171,18 @@ on an axis that begins at FROM."
          upward
          (loop for series in all
                collect (legend-name (series-name series) (some #'spot-y (series-spots series))))
-         options))
+         :connect (null words) options))
 
-(defun line-chart (series &rest options &key percent range log-x (connect nil connect-given-p)
-                                          title subtitle x-label y-label legend-title
-                                          width height)
+(defun line-chart (series &rest options
+                   &key percent range log-x title subtitle x-label y-label legend-title
+                     width height)
   "Return a chart of SERIES as an SVG document. Each is a list (name point...), a point a list
 (x y) or (x y low high): Y at X, with an interval. X is a number or, then for all, a string or
 symbol; what is not known is NIL. PERCENT: Y are rates, shown as per cent from 0 to 100. RANGE is a
-list (low high) that the axis upward shows at least. LOG-X: X on a logarithmic scale. CONNECT: lines
-join the points, by default if X are numbers. TITLE, SUBTITLE, X-LABEL, Y-LABEL and
-LEGEND-TITLE, which says what the series are, are strings or NIL; WIDTH and HEIGHT are pixels, by
-default 720 and 440, and grow where the text needs it. A series without a name, NIL, does without a
-legend. Signals WRONG-ARGUMENT."
+list (low high) that the axis upward shows at least. LOG-X: X on a logarithmic scale. Lines join
+the points if X are numbers. TITLE, SUBTITLE, X-LABEL, Y-LABEL and LEGEND-TITLE, which says what the
+series are, are strings or NIL; WIDTH and HEIGHT are pixels, by default 720 and 440, and grow where
+the text needs it. A series without a name, NIL, does without a legend. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument line-chart range (typep range '(or null (cons real (cons real null))))
                   "a list of two numbers, or NIL")
@@ -191,11 +190,9 @@ legend. Signals WRONG-ARGUMENT."
     (let* ((values (all-x given))
            (words (and words-p values))
            (all (if words-p (numbered given words) given))
-           (connect (if connect-given-p connect (not words-p)))
            (upward (axis-upward (all-y all) percent
                                 (mapcar #'exact (or range (and percent '(0 1))))))
-           (plane (plan-line-chart all words values log-x upward
-                                   (list* :connect connect options))))
+           (plane (plan-line-chart all words values log-x upward options)))
       (plane-svg plane (all-y all)
                  (lambda (canvas)
-                   (draw-series canvas all plane words percent connect))))))
+                   (draw-series canvas all plane words percent))))))
