@@ -27,27 +27,19 @@ end, if that is NIL."))
   "Return a growing text of TEXT from START on; see MORE there."
   (make-instance 'growing-text :text (extensible-text text) :position start :more more))
 
-(defun next-line-p (stream)
-  "Let the text of STREAM, of which all has been read, have another line. True if there is one."
-  (let ((line (funcall (text-grower stream) (grown-text stream))))
-    (when line (extend-text (grown-text stream) line))
-    (and line t)))
-
 (defmethod stream-read-char ((stream growing-text))
-  (if (or (<= (grown-position stream) (length (grown-text stream)))
-          (next-line-p stream))
-      (let ((text (grown-text stream)) (position (grown-position stream)))
-        (incf (grown-position stream))
-        (if (< position (length text)) (char text position) #\Newline))
-      :eof))
+  (let ((text (grown-text stream)) (position (grown-position stream)))
+    (when (> position (length text))
+      (let ((line (funcall (text-grower stream) text)))
+        (unless line (return-from stream-read-char :eof))
+        (extend-text text line)))
+    (incf (grown-position stream))
+    (if (< position (length text)) (char text position) #\Newline)))
 
 (defmethod stream-unread-char ((stream growing-text) char)
   (declare (ignore char))
   (decf (grown-position stream))
   nil)
-
-(defun grown-out-p (stream)
-  (<= (length (grown-text stream)) (grown-position stream)))
 
 ;;;; The history
 
@@ -90,12 +82,6 @@ NIL: the newest entry then has a fill pointer."
                        :test #'string=)))
     (mapcar #'entry-of-line (reverse (last lines *history-limit*)))))
 
-(defun call-with-history-file (function file)
-  (check-unprotected file)
-  (with-open-file (out file :direction :output :if-exists :append :if-does-not-exist :create
-                            :external-format :utf-8)
-    (funcall function out)))
-
 (defun shorten-file (file entries)
   "Let FILE have no more than ENTRIES, newest first, if it has grown long."
   (when (< (* 2 *history-limit*) (count #\Newline (file-text file)))
@@ -116,10 +102,11 @@ NIL: the newest entry then has a fill pointer."
       (setf (history-unsaved-p history) nil)))
   (when (and (shiftf (history-unsaved-p history) nil) (history-file history))
     (ignore-errors
-     (call-with-history-file (lambda (out)
-                               (format out "~A~%"
-                                       (entry-on-a-line (first (history-entries history)))))
-                             (history-file history)))))
+     (check-unprotected (history-file history))
+     (with-open-file (out (history-file history) :direction :output :if-exists :append
+                                                 :if-does-not-exist :create
+                                                 :external-format :utf-8)
+       (format out "~A~%" (entry-on-a-line (first (history-entries history))))))))
 
 ;;; Entries.
 
@@ -136,12 +123,6 @@ NIL: the newest entry then has a fill pointer."
   (and (<= (length start) (length text))
        (string= start text :end2 (length start))))
 
-(defun begin-growing (history before)
-  "Let the newest entry be BEFORE, a text that begins with it and is about to go on."
-  (pop (history-entries history))
-  (push (extensible-text (copy-seq before)) (history-entries history))
-  (setf (history-growing history) before))
-
 ;; That the same text goes on is known without looking through it for each line.
 (defun amend-entry (history line before)
   "Put LINE, which goes on from the text BEFORE, behind the newest entry, if BEFORE begins with
@@ -149,6 +130,8 @@ that."
   (let ((newest (first (history-entries history)))
         (same-p (eq before (history-growing history))))
     (when (and newest (or same-p (begins-with-p before newest)))
-      (unless same-p (begin-growing history before))
+      (unless same-p
+        (setf (first (history-entries history)) (extensible-text (copy-seq before))
+              (history-growing history) before))
       (extend-text (first (history-entries history)) line)
       (setf (history-unsaved-p history) t))))

@@ -23,11 +23,6 @@
           do (write-char char out)
           until (or (alpha-char-p char) (char= char #\~)))))
 
-(defun follows-p (octet next)
-  "True if OCTET is one that follows in a character; if not, NEXT is to return it again."
-  (or (<= #x80 (char-code octet) #xBF)
-      (progn (funcall next octet) nil)))
-
 (defun read-text (lead next)
   "Return the character in UTF-8 that begins with the octet LEAD, as a string."
   (decoded (with-output-to-string (out)
@@ -39,7 +34,12 @@
                                   ((< code #xF8) 3)
                                   (t 0)))
                    for char = (funcall next)
-                   while (and char (follows-p char next)) do (write-char char out)))))
+                   while char
+                   ;; One that does not follow in a character is the next to be read.
+                   do (unless (<= #x80 (char-code char) #xBF)
+                        (funcall next char)
+                        (return))
+                      (write-char char out)))))
 
 (defun with-newlines (text)
   "Return TEXT, as pasted, with newlines between its lines, but none at its end."

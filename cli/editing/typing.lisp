@@ -43,15 +43,13 @@ line is before the first."
     (when (and next (< -1 next (length entries)))
       (change-ahead ahead (nth next entries) (length (nth next entries))))))
 
-(defun press-given-ahead (ahead kind text)
-  (ecase kind
-    (:paste (insert-ahead ahead (without-answers text)))
-    (:entry (enter-ahead ahead (list text)))))
-
 (defun press-ahead (ahead key entries)
   "Do to AHEAD what KEY does. ENTRIES, the newest first, were entered before its lines."
   (cond ((stringp key) (insert-ahead ahead key))
-        ((consp key) (press-given-ahead ahead (first key) (second key)))
+        ((consp key) (destructuring-bind (kind text) key
+                       (ecase kind
+                         (:paste (insert-ahead ahead (without-answers text)))
+                         (:entry (enter-ahead ahead (list text))))))
         ((and (eq key :rubout) (string= "" (ahead-text ahead))) (type-last-again ahead))
         ((change-of key) (multiple-value-call #'change-ahead ahead
                            (funcall (change-of key) (ahead-text ahead) (ahead-point ahead))))

@@ -65,13 +65,6 @@ what USAGE, a function like METHOD-USAGE, returns of its methods."
       (reject-absent "manipulation" name (mapcar #'manipulation-name (all-manipulations))
                    "MANIPULATE lists all.")))
 
-(defun doer (by data robot)
-  "Return what carries out a method whose resource is BY, if DATA, a list of its number, or (), says
-which part of ROBOT."
-  (if (by-part-p by)
-      (read-argument (type-key (second by)) (if data (first data) 0) robot)
-      robot))
-
 (defun arguments-for (method data robot)
   "Return the arguments of METHOD for DATA, as typed, with ROBOT; or NIL if they are too many or too
 few."
@@ -81,7 +74,11 @@ few."
       (when (or (zerop extra) (and (= 1 extra) (by-part-p by)))
         (append (loop for number in (subseq data 0 count)
                       collect (designator-numbered number robot))
-                (list (doer by (subseq data count (+ count extra)) robot))
+                ;; The part that does it, the first if its number is left out, or the robot.
+                (list (if (by-part-p by)
+                          (read-argument (type-key (second by))
+                                         (if (= 1 extra) (nth count data) 0) robot)
+                          robot))
                 (nthcdr (+ count extra) data))))))
 
 (defun send-manipulation (session manipulation data)

@@ -5,7 +5,7 @@
 (defparameter *families*
   '((:general . "The prompt") (:seeing . "The robot and its world") (:planning . "Plans")
     (:running . "Running")
-    (:moving . "Moving and turning"))
+    (:moving . "Moving and turning") (:manipulating . "Manipulating"))
   "The families of the main menu, with what it calls them.")
 
 (defun write-menu (lines)
@@ -17,12 +17,10 @@
 
 (defun write-main-menu ()
   (loop for (family . title) in *families*
-        do (format t "~A~%" title)
-           (write-menu (lines-of family)))
-  (let ((lines (lines-of :manipulating)))
-    (when lines
-      (format t "Manipulating~%")
-      (write-menu lines)))
+        for lines = (lines-of family)
+        do (when lines
+             (format t "~A~%" title)
+             (write-menu lines)))
   (terpri)
   (write-filled "MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, PLAN lists
 the plans, HELP name tells more of a command, a plan, or whatever has a name; APROPOS word searches.
@@ -30,7 +28,6 @@ The beginning of a command's name will do. A line in parentheses is Lisp. HELP K
 is edited. What has left the screen is still in your terminal's memory: scroll up." 0))
 
 (defun slot-help (slot)
-  "Return what HELP says of SLOT."
   (format nil "~A: ~{~A~^; ~}~:[~; (may be left out)~]." (slot-name slot)
           (remove "" (remove-duplicates (list (slot-text slot) (slot-words slot)) :test #'string=)
                   :test #'string=)

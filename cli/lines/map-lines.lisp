@@ -155,9 +155,6 @@ something."
         +frame-seconds+
         (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
 
-(defun pressed-within-p (session seconds)
-  (octets-within-p (source-of (session-input session)) seconds))
-
 (defun watch-screen (session simulation count options)
   "Show maps of SIMULATION in place until COUNT ticks have passed, or no more will, if COUNT is not
 NIL, or a key is pressed, or there is something else to be done. True if it was a key."
@@ -169,7 +166,9 @@ NIL, or a key is pressed, or there is something else to be done. True if it was 
                       (typed-ahead-p (session-input session)))
                   (simulation-over simulation)
                   (session-breaks session))
-        do (when (pressed-within-p session (frame-seconds session simulation)) (return t))
+        do (when (octets-within-p (source-of (session-input session))
+                                  (frame-seconds session simulation))
+             (return t))
            (unless (time-passes-p session simulation) (pass-tick session simulation))))
 
 (defun watch-in-place (session simulation count options)

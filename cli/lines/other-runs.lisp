@@ -16,7 +16,6 @@
 (attend *rewind-hooks* let-errands-go)
 
 (defun rewind-here (session ticks)
-  "Let SESSION go on in a run that is TICKS ticks back."
   (rewind ticks)
   ;; The commands that are under way again are nobody's errands.
   (setf (session-after-rewind session) nil
@@ -260,11 +259,6 @@ opens one of each."
 ;;; forked stands still meanwhile. As a trial, a fork is entered by a line that goes on until
 ;;; another one leads out.
 
-(defun copied-run (seed)
-  (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))))
-    (keep-forks t fork)
-    fork))
-
 (defun read-in-fork (session)
   (loop until (session-over-p session)
         do (call-guarded session (lambda () (next-line-inside session)))
@@ -292,7 +286,8 @@ out."
 
 (defun go-to-fork (session seed)
   "Let SESSION be in a fork of the current run until a line leads out; then forget it."
-  (let ((fork (copied-run seed)) (run *simulation*))
+  (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
+    (keep-forks t fork)
     (tell-others session run (format nil "Another prompt is in a fork of the run, which waits.~%"))
     (unwind-protect (call-with-others-paused (lambda () (enter-fork session fork)))
       (tell-others session run

@@ -4,14 +4,13 @@
 
 ;;; A picture shows the layers that pictures show by default, and those whose names are typed.
 
-(defun picture-words ()
-  "Return the words that PICTURE understands: names of layers, and BARE for none of those shown by
-default; and what MAP calls the same."
-  (mapcar #'symbol-name (append (picture-layers) '(:bare) (text-layers))))
-
 (defun picture-word (text line)
-  "Return the layer that TEXT, one of PICTURE-WORDS or its beginning, means after LINE."
-  (layer-named (word-meant text (picture-words) line "a file, a scale, and words: ~{~A~^, ~}")))
+  "Return the layer that TEXT means after LINE: a word or its beginning, which names a layer, as MAP
+or PICTURE call it, or is BARE, for none of those shown by default."
+  (layer-named (word-meant text
+                           (mapcar #'symbol-name
+                                   (append (picture-layers) '(:bare) (text-layers)))
+                           line "a file, a scale, and words: ~{~A~^, ~}")))
 
 (defun picture-options (text &optional (line "PICTURE"))
   "Return as options of SAVE-PICTURE what TEXT, as typed after LINE and the name of the file, asks
@@ -77,11 +76,6 @@ are those of PICTURE, and ANYWAY: also if what is defined is not what the run be
 ;;; is installed. The program's own second core, for --window, has it already; the first one, and a
 ;;; Lisp of the user's, load it when somebody wants a window.
 
-(defun configure-asdf ()
-  "In this program, let ASDF find the project, and what has been compiled of it."
-  (when (find-package :ars-magna.build)
-    (uiop:symbol-call :ars-magna.build :configure)))
-
 (defun call-or-say (function trouble)
   "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
 is of no interest. If that fails, signal BAD-LINE with TROUBLE, the control string of a text that
@@ -109,11 +103,6 @@ says why."
   (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt"))
   "What is to be done where McCLIM is not installed.")
 
-(defun reject-unfit-clx ()
-  "Signal BAD-LINE if the CLX that would be loaded is known not to work."
-  (let ((trouble (ars-magna.clx:clx-trouble)))
-    (when trouble (reject-line "No window: ~A" trouble))))
-
 (defun ensure-windows ()
   "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM, or
 if CLX does not work."
@@ -121,12 +110,15 @@ if CLX does not work."
     (when (member (environment-value "DISPLAY") '(nil "") :test #'equal)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
                     world here, PICTURE in a file."))
-    (configure-asdf)
+    ;; In this program, ASDF is to find the project, and what has been compiled of it.
+    (when (find-package :ars-magna.build)
+      (uiop:symbol-call :ars-magna.build :configure))
     (let ((found-p (ars-magna.clx:find-library "mcclim/looks")))
       (unless (or found-p (find-package :quicklisp) (ars-magna.clx:quicklisp-file))
         (write-string *how-to-get-windows*)
         (reject-line "No window: McCLIM is not installed; what is to be done stands above."))
-      (reject-unfit-clx)
+      (let ((trouble (ars-magna.clx:clx-trouble)))
+        (when trouble (reject-line "No window: ~A" trouble)))
       (format t "Loading what windows need; the first time that takes some minutes.~%")
       (finish-output)
       (load-windows (not found-p)))))

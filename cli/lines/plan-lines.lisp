@@ -123,12 +123,6 @@ plan would write it: few symbols have a package."
           do (write-string text out :start start :end end)
           while end)))
 
-(defun failure-report (failure name)
-  (let ((*message-queue* (make-message-queue)))
-    (call-reading-plan name (lambda ()
-                              (report-failure failure)
-                              (message-text (first (take-messages)))))))
-
 (define-line "PLANS" (session) (:planning)
     "Show the plans under way, as trees of what they do and wait for; if the last to end failed,
 also where and why."
@@ -140,7 +134,11 @@ also where and why."
         (format t "No plan is under way. PLAN lists the plans that there are.~%")))
   (when (session-failure session)
     (destructuring-bind (failure name) (session-failure session)
-      (format t "The last plan failed: ~A~&" (failure-report failure name)))))
+      (let ((*message-queue* (make-message-queue)))
+        (format t "The last plan failed: ~A~&"
+                (call-reading-plan name (lambda ()
+                                          (report-failure failure)
+                                          (message-text (first (take-messages))))))))))
 
 (define-line "STOP-PLAN" (session (n count "the number of a plan under way" :optional))
     (:planning)

@@ -23,17 +23,14 @@
                  (format nil "idle, else ~A" (rate-text (simulation-rate simulation))))
                 (t (rate-text (simulation-rate simulation))))))
 
-(defun pause-now (simulation)
-  "Let SIMULATION stand still, and wait until the tick that is under way has passed."
-  (pause simulation)
-  (asking (simulation)))
-
 (define-line "PAUSE" (session) (:running)
     "Let time stand still until RESUME."
   (let ((simulation (current-simulation)))
     (if (session-visit session)
         (pause-visit (session-visit session))
-        (pause-now (live-simulation)))
+        (progn (pause (live-simulation))
+               ;; The tick that is under way passes first.
+               (asking (simulation))))
     (format t "~A~%" (time-text session simulation))))
 
 (defun resume-here (session)
@@ -139,10 +136,6 @@ those that have it in their names."
   (put-line "~A" (parameter-text parameter))
   (format t "~A~%" (parameter-sentence parameter)))
 
-(defun read-setting (text)
-  (handler-case (values (read-data-from-string text 0))
-    (error () (reject-line "~A cannot be read; give a number, T or NIL." text))))
-
 (define-line "PARAMS" (session (name :parameter "the name of a parameter" :optional)
                                (value :rest "its new value" :optional))
     (:running)
@@ -153,7 +146,11 @@ give one a new VALUE."
            (when value (reject-line "~A is a part of several names. Type more of it." name))
            (list-parameters parameters))
           (t (let ((parameter (or (first parameters) (find-parameter name))))
-               (when value (setf (parameter-value parameter) (read-setting value)))
+               (when value
+                 (setf (parameter-value parameter)
+                       (handler-case (values (read-data-from-string value 0))
+                         (error ()
+                           (reject-line "~A cannot be read; give a number, T or NIL." value)))))
                (write-parameter parameter))))))
 
 ;;; Journals.

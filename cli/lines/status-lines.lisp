@@ -169,15 +169,11 @@ inside a wall."
 ;;; In Lisp NIL is nothing, false and the empty list, and a list may be a property list or not. So
 ;;; here is said by their keys what the values are, where a program could not tell.
 
-(defparameter *keys-of-objects*
-  '(:cameras :hands :bins :sensors :under-way :interrupted :designators)
-  "The keys whose values are lists of property lists.")
-
-(defparameter *keys-of-lists* '(:view :contents :slots :data)
-  "The keys whose values are lists, which may be empty.")
-
-(defparameter *keys-of-truths* '(:live :closed)
-  "The keys whose values are true or false.")
+(defparameter *kinds-of-keys*
+  '((:objects :cameras :hands :bins :sensors :under-way :interrupted :designators)
+    (:lists :view :contents :slots :data)
+    (:truths :live :closed))
+  "Lists (kind key...): keys whose values are lists of property lists, lists, or true or false.")
 
 (defun arrays-for-lists (value)
   (if (and (consp value) (null (cdr (last value))))
@@ -185,11 +181,11 @@ inside a wall."
       value))
 
 (defun value-for-json (key value)
-  (cond ((member key *keys-of-objects*) (map 'vector #'object-for-json value))
-        ((member key *keys-of-truths*) (if value t :false))
-        ((and (eq key :failed) value) (object-for-json value))
-        ((and (member key *keys-of-lists*) (null value)) #())
-        (t (arrays-for-lists value))))
+  (case (first (find-if (lambda (kind) (member key (rest kind))) *kinds-of-keys*))
+    (:objects (map 'vector #'object-for-json value))
+    (:truths (if value t :false))
+    (:lists (if value (arrays-for-lists value) #()))
+    (t (if (eq key :failed) (object-for-json value) (arrays-for-lists value)))))
 
 (defun object-for-json (plist)
   "Return PLIST with values that WRITE-JSON takes for what they are."

@@ -7,9 +7,6 @@
 
 ;;; What is said of each kind.
 
-(defun number-text (number)
-  (if (integerp number) (format nil "~D" number) (amount-text number)))
-
 (defun place-type-words (type)
   (format nil "PLACE senses whether the robot is in one~:[; PLACE-DESIG 0 ~(~A~) searches for one, ~
                and takes something else for one with a probability of ~A~;, but no camera finds ~
@@ -43,7 +40,7 @@
 
 (defun substance-words (substance)
   (format nil "A camera sees ~A where a wall or thing is of it, unless that says otherwise."
-          (number-text (substance-parameter (substance-name substance)))))
+          (amount-text (substance-parameter (substance-name substance)))))
 
 (defun kicker-words (kicker)
   (format nil "Runs with a probability of ~A in each tick on the things that have it.~@[ ~A~]"
@@ -102,12 +99,9 @@
 
 ;;; What is brought by a system of its own.
 
-(defparameter *names-elsewhere*
-  '("IS-SUCCESS-RATE" "PASS-PROBABILITY" "REPEAT-TRIAL")
-  "What the system ars-magna/fiveam defines.")
-
 (defun names-elsewhere ()
-  (unless (find-package :ars-fiveam) *names-elsewhere*))
+  "Return what the system ars-magna/fiveam defines, if that is not loaded."
+  (unless (find-package :ars-fiveam) '("IS-SUCCESS-RATE" "PASS-PROBABILITY" "REPEAT-TRIAL")))
 
 (defun elsewhere-words (name)
   (format nil "ARS-FIVEAM:~A comes with (asdf:load-system \"ars-magna/fiveam\"), for tests." name))
@@ -194,7 +188,7 @@ or none."
     ("error code" codes-and-commands code-name code-words)
     ("error code" codes-of-all identity code-of-all-words)
     ("restart" all-restarts identity restart-words)
-    ("subject" all-subjects subject-name subject-words)
+    ("subject" all-subjects first subject-words)
     ("name of a library" names-elsewhere identity elsewhere-words)
     (lisp-title lisp-names identity lisp-words write-lisp-topic))
   "Lists (title lister name words [writer]): what there is of each kind, what one is called, what is
@@ -269,7 +263,5 @@ was started with --color never."))
   "Lists (name text): what has no name in the simulator, but is asked for.")
 
 (defun all-subjects () *subjects*)
-
-(defun subject-name (subject) (first subject))
 
 (defun subject-words (subject) (one-line (second subject)))

@@ -202,18 +202,14 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
   "True if SYMBOL is no more than the name of a restart."
   (and (null (sorts-of-symbol symbol)) (null (word-text symbol))))
 
-(defun condition-name-p (symbol)
-  (and (find-class symbol nil) (subtypep symbol 'condition)))
-
-(defun plan-function-p (symbol)
-  (and (fboundp symbol) (starts-with-subseq "RPL-" (symbol-name symbol))))
-
 (defun chapter-of-symbol (symbol)
   (cond ((member symbol (all-constructs)) :constructs)
         ((assoc symbol (all-fluent-variables)) :fluents)
-        ((plan-function-p symbol) :plan-functions)
+        ((and (fboundp symbol) (starts-with-subseq "RPL-" (symbol-name symbol))) :plan-functions)
         ((colour-p symbol) :colours)
-        ((or (condition-name-p symbol) (restart-name-p symbol)) :conditions)
+        ((or (and (find-class symbol nil) (subtypep symbol 'condition))
+             (restart-name-p symbol))
+         :conditions)
         ((definer-p symbol) :definers)
         ((string= "ARS-WORLDS" (package-name (symbol-package symbol))) :worlds-names)
         (t :names)))
@@ -282,11 +278,11 @@ checks for tests export."
 
 ;;; All.
 
-(defun chapter-rank (entry)
-  (position (entry-chapter entry) *chapters* :key #'first))
-
 (defun all-entries ()
   "Return all entries of the reference, by chapters."
-  (let ((entries (append (command-entries) (error-entries) (line-entries) (parameter-entries)
+  (let ((entries (append (mapcar #'command-entry (own-commands)) (error-entries)
+                         (mapcar #'line-entry (own-lines)) (parameter-entries)
                          (shipped-entries))))
-    (stable-sort (append entries (symbol-entries entries)) #'< :key #'chapter-rank)))
+    (stable-sort (append entries (symbol-entries entries)) #'<
+                 :key (lambda (entry)
+                        (position (entry-chapter entry) *chapters* :key #'first)))))

@@ -135,7 +135,6 @@
   (format nil "`~(~A~)`" name))
 
 (defun heading-of (keyword)
-  "Return KEYWORD as the words of a heading."
   (let ((words (substitute #\Space #\- (string-downcase keyword))))
     (string-upcase words :end 1)))
 
@@ -190,26 +189,18 @@
   "Return the commands that users see, and not those that only this Lisp has."
   (remove-if-not (lambda (command) (packages-showing (command-name command))) (all-commands)))
 
-(defun command-entries () (mapcar #'command-entry (own-commands)))
-
 ;;; Error codes.
 
-(defun commands-failing-with (keyword commands)
-  (remove-if-not (lambda (command)
-                   (find keyword (command-errors command) :key #'error-code-keyword))
-                 commands))
-
-(defun messages-of (keyword commands)
-  (remove-duplicates
-   (loop for command in commands
-         for text = (error-code-text (find keyword (command-errors command)
-                                           :key #'error-code-keyword))
-         when (stringp text) collect text)
-   :test #'string=))
+(defun error-called (keyword command)
+  (find keyword (command-errors command) :key #'error-code-keyword))
 
 (defun error-entry (keyword commands)
-  (let* ((failing (commands-failing-with keyword commands))
-         (messages (messages-of keyword failing)))
+  (let* ((failing (remove-if-not (lambda (command) (error-called keyword command)) commands))
+         (messages (remove-duplicates
+                    (loop for command in failing
+                          for text = (error-code-text (error-called keyword command))
+                          when (stringp text) collect text)
+                    :test #'string=)))
     (make-entry :name (format nil "~(~S~)" keyword) :chapter :error-codes
                 :use (format nil "~(~S~)" keyword)
                 :facts `(,@(when messages
@@ -256,5 +247,3 @@ took its robot, camera, hand or bin over, or the run ended (manual 3.1.1)."))
   (let ((others (mapcar #'command-prompt-name (set-difference (all-commands) (own-commands)))))
     (remove-if (lambda (line) (member (line-name line) others :test #'string-equal))
                (all-lines))))
-
-(defun line-entries () (mapcar #'line-entry (own-lines)))

@@ -182,9 +182,6 @@ with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found,
     (:called (example-calls example))
     (:written (if (example-lisp-p example) (example-words example) '()))))
 
-(defun shortest (examples)
-  (first (sort (copy-list examples) #'< :key (lambda (example) (length (example-text example))))))
-
 (defun examples-for (name kind examples)
   "Return those of EXAMPLES that show NAME, a string: those that name it, and true; or in a list the
 shortest that has it as a word of KIND, as WORDS-OF-KIND has it, and NIL."
@@ -196,4 +193,8 @@ shortest that has it as a word of KIND, as WORDS-OF-KIND has it, and NIL."
       (if named
           (values named t)
           (let ((using (having (lambda (example) (words-of-kind example kind)))))
-            (values (and using (list (shortest using))) nil))))))
+            (values (and using
+                         (list (first (sort (copy-list using) #'<
+                                            :key (lambda (example)
+                                                   (length (example-text example)))))))
+                    nil))))))

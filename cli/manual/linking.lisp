@@ -35,20 +35,11 @@ their names in lower case. FILES are the project's files that are copied beside 
             (t (push part parts))))
     (format nil "~{~A~^/~}" (reverse parts))))
 
-(defun name-from (source address)
-  "Return the name in the project of what ADDRESS on the page SOURCE is."
-  (without-dots (format nil "~A/~A" (subseq source 0 (or (position #\/ source :from-end t) 0))
-                        address)))
-
 (defun copied-name (name)
   "Return the name beside the pages of the copy of the project's file NAME: what browsers do not
 show by themselves is called a text."
   (format nil "files/~A~:[.txt~;~]" name
           (member (pathname-type name) '("svg" "png" "txt" "html") :test #'equal)))
-
-(defun copy-of-file (name book)
-  (pushnew name (book-files book) :test #'string=)
-  (copied-name name))
 
 (defun file-address (name book)
   "Return where the project's file NAME is in the manual: a copy; of a directory its page, or the
@@ -56,7 +47,8 @@ first page."
   (if (uiop:directory-exists-p (project-path (format nil "~A/" name)))
       (let ((page (page-of-source (format nil "~A/README.md" name) book)))
         (if page (page-file page) "index.html"))
-      (copy-of-file name book)))
+      (progn (pushnew name (book-files book) :test #'string=)
+             (copied-name name))))
 
 (defun new-address (address page book)
   "Return where ADDRESS, as PAGE of the project has it, leads in the manual."
@@ -64,7 +56,9 @@ first page."
                                       (values (subseq address 0 mark) (subseq address mark)))
     (cond ((or (search "://" address) (starts-with-subseq "mailto:" address)) address)
           ((string= "" file) place)
-          (t (let* ((name (name-from (page-source page) file))
+          (t (let* ((source (page-source page))
+                    (folder (subseq source 0 (or (position #\/ source :from-end t) 0)))
+                    (name (without-dots (format nil "~A/~A" folder file)))
                     (other (page-of-source name book)))
                (format nil "~A~A" (if other (page-file other) (file-address name book))
                        place))))))
@@ -104,23 +98,18 @@ first page."
 
 ;;; Pages of the guide.
 
-(defun linked-code (element book)
-  (let ((name (first-name (text-of element))))
-    (list (linked-name name (format nil "~{~A~}" element) book))))
-
-(defun linked-block (element book)
-  (if (equal "lisp" (block-language element))
-      (list "<pre><code>" (linked-lisp (text-of element) book) "</code></pre>")
-      element))
-
 (defun linked-tokens (tokens page book)
   "Return TOKENS, of PAGE, with addresses as they are in the manual, and names that lead to their
 entries."
   (flet ((linked-p (token) (member (tag-name token) '("pre" "code" "a") :test #'equal)))
     (loop for part in (parts-of tokens #'linked-p)
           for token = (first part)
-          append (cond ((tag-called-p "pre" token) (linked-block part book))
-                       ((tag-called-p "code" token) (linked-code part book))
+          append (cond ((and (tag-called-p "pre" token) (equal "lisp" (block-language part)))
+                        (list "<pre><code>" (linked-lisp (text-of part) book) "</code></pre>"))
+                       ((tag-called-p "pre" token) part)
+                       ((tag-called-p "code" token)
+                        (list (linked-name (first-name (text-of part)) (format nil "~{~A~}" part)
+                                           book)))
                        ((tag-called-p "a" token) (linked-anchor part page book))
                        (t (list (linked-picture token page book)))))))
 
@@ -136,22 +125,11 @@ entries."
       (with-attribute "src" (new-address (attribute-value "src" token) page book) token)
       token))
 
-(defun page-html (page book)
-  (format nil "~{~A~}" (linked-tokens (page-tokens page) page book)))
-
 ;;; Prose of docstrings: names are in capitals, or in backquotes where we write it ourselves. What
 ;;; is indented is a list, whose lines stay apart.
 
-(defparameter *about-the-manual* "about.html#the-manual-of-1992"
-  "Where the manual tells what the manual of 1992 is.")
-
 (defun word-char-p (char)
   (or (alphanumericp char) (find char "-*+!?%:./_=<>")))
-
-(defun loud-name-p (word)
-  (and (< 1 (length word))
-       (some #'alpha-char-p word)
-       (notany #'lower-case-p word)))
 
 (defun citation-address (word next book)
   "Return where WORD, if it cites NEXT, a section of the manual of 1992 or a reading, leads."
@@ -161,7 +139,7 @@ entries."
                 (format nil "readings.html#reading-~D" number)))
           ((string-equal "manual" word)
            (and (or number (and (string/= "" next) (find (char next 0) "ABCDEF")))
-                *about-the-manual*)))))
+                "about.html#the-manual-of-1992")))))
 
 (defun words-and-gaps (text)
   "Return the words in TEXT and what is between them, in a list of strings that begins with a gap."
@@ -176,8 +154,10 @@ entries."
 (defun word-html (word book own)
   "Return the HTML of WORD, in prose of something with arguments called OWN."
   (let ((name (string-right-trim ".:" word)))
-    (cond ((and (or (loud-name-p name)
-                    (and (< 1 (length name)) (char= #\: (char name 0))))
+    (cond ((and (< 1 (length name))
+                ;; In capitals, or a keyword.
+                (or (and (some #'alpha-char-p name) (notany #'lower-case-p name))
+                    (char= #\: (char name 0)))
                 (not (member name own :test #'string-equal)))
            (format nil "~A~A" (linked-name name (escaped name) book)
                    (escaped (subseq word (length name)))))

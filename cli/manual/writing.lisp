@@ -52,8 +52,9 @@
 
 (defun write-guide-page (out page book)
   (write-frame out (page-title page)
-               (format nil "~A~A~%<p class=\"source\">From <code>~A</code>.</p>"
-                       (contents-html page) (page-html page book) (escaped (page-source page)))))
+               (format nil "~A~{~A~}~%<p class=\"source\">From <code>~A</code>.</p>"
+                       (contents-html page) (linked-tokens (page-tokens page) page book)
+                       (escaped (page-source page)))))
 
 ;;; The first page.
 
@@ -152,9 +153,6 @@ defined there, further up."
           (examples-html entry book)
           (entry-file entry)))
 
-(defun sections-of (entries)
-  (remove-duplicates (mapcar #'entry-section entries) :test #'string= :from-end t))
-
 (defun section-html (section entries book)
   (format nil "~@[~A~]~A~{~A~}"
           (and (string/= "" section)
@@ -173,7 +171,8 @@ defined there, further up."
                          (escaped (chapter-title chapter))
                          (escaped (chapter-introduction chapter))
                          (escaped *about-examples*)
-                         (loop for section in (sections-of entries)
+                         (loop for section in (remove-duplicates (mapcar #'entry-section entries)
+                                                                 :test #'string= :from-end t)
                                collect (section-html
                                         section
                                         (remove section entries :key #'entry-section
@@ -200,9 +199,6 @@ defined there, further up."
 
 ;;;; The whole
 
-(defparameter *own-files* '("style.css" "search.js")
-  "The files beside this one that go with the pages as they are.")
-
 ;;; What the search looks through: names, first sentences, headings, and the words below the
 ;;; headings of the guide.
 
@@ -218,10 +214,6 @@ defined there, further up."
          when (< 1 (length bare)) collect bare)
    :test #'string= :from-end t))
 
-(defun entry-row (entry)
-  (index-row (entry-name entry) (chapter-title (entry-chapter entry)) (entry-address entry)
-             (entry-sentence entry)))
-
 (defun page-rows (page)
   "Return rows for the headings of PAGE; with the words below them if that is to be read."
   (loop for (nil id text words) in (headings (page-tokens page))
@@ -232,7 +224,10 @@ defined there, further up."
 
 (defun write-index (out book)
   (format out "var SEARCH_INDEX = [~%~{~A~^,~%~}~%];~%"
-          (append (mapcar #'entry-row (book-entries book))
+          (append (loop for entry in (book-entries book)
+                        collect (index-row (entry-name entry)
+                                           (chapter-title (entry-chapter entry))
+                                           (entry-address entry) (entry-sentence entry)))
                   (mapcan #'page-rows (copy-list (book-pages book))))))
 
 ;;; Files.
@@ -268,7 +263,7 @@ first page."
                 (make-book pages entries (read-examples pages) (table-of-entries entries)))))
     (make-directories directory)
     (write-pages book directory)
-    (dolist (name *own-files*)
+    (dolist (name '("style.css" "search.js"))
       (copy-into name (project-path (format nil "cli/manual/~A" name)) directory))
     (dolist (name (book-files book))
       (copy-into (copied-name name) (project-path name) directory))

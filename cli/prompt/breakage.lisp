@@ -61,13 +61,12 @@
 (defun awaited-answers (session)
   "Return a list of what waits for the user of SESSION to say how it goes on, in words, what is
 asked about now first. Any thread may ask."
-  (mapcar (lambda (breakage) (break-line session breakage))
-          (breaks-awaiting (session-break-state session))))
+  (mapcar (lambda (breakage) (break-line session breakage)) (breaks-awaiting session)))
 
 (defun ways-awaited (session)
   "Return in words the ways to go on that the user of SESSION can choose from now, or NIL if he is
 not asked. Any thread may ask."
-  (let ((breakage (first (breaks-awaiting (session-break-state session)))))
+  (let ((breakage (first (breaks-awaiting session))))
     (and breakage
          (format nil "~{~A~^, ~}"
                  (loop for restart in (breakage-restarts breakage)
@@ -77,7 +76,7 @@ not asked. Any thread may ask."
 (defun simulator-broken-p (session)
   "True if the user of SESSION is asked how the simulator's thread goes on. Any thread may ask."
   (some (lambda (breakage) (simulator-p session (breakage-thread breakage)))
-        (breaks-awaiting (session-break-state session))))
+        (breaks-awaiting session)))
 
 (defun asker-of-break (simulation)
   "Return in words, to follow others, that another debugger than that of the prompts asks how the
@@ -130,10 +129,7 @@ thread of SIMULATION, which has broken, goes on; or NIL."
   "True if somebody else answers what breaks, such as an editor, and the prompt is not in the thread
 in which he began it."
   (let ((hook (common-debugger-hook)))
-    (and (own-thread-p)
-         (null *hooks-at-work*)
-         hook
-         (not (disabled-hook-p hook)))))
+    (and (own-thread-p) (null *hooks-at-work*) hook (not (disabled-hook-p hook)))))
 
 (defun call-sharing (hook function)
   "Call FUNCTION, a prompt at work, while HOOK is the debugger's in this thread, and one of those

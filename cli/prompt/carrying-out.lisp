@@ -105,14 +105,12 @@ together, and what is wrong in files that it compiles, are messages."
                                                           :cause condition))))))
     (eval-quietly form)))
 
-(defun reject-value (value trouble)
-  (reject-line "The value, of type ~(~A~), cannot be printed: ~A. Perhaps a method for ~
-                PRINT-OBJECT fails."
-               (class-name (class-of value)) (one-line-text trouble)))
-
 (defun value-line (value)
   (let ((*print-circle* (or *print-circle* (not (tree-p value)))))
-    (handler-bind ((error (lambda (trouble) (reject-value value trouble))))
+    (handler-bind ((error (lambda (trouble)
+                            (reject-line "The value, of type ~(~A~), cannot be printed: ~A. ~
+                                          Perhaps a method for PRINT-OBJECT fails."
+                                         (class-name (class-of value)) (one-line-text trouble)))))
       (format nil "~S" (if (readtablep value) (readtable-name value) value)))))
 
 (defun evaluate (session form)

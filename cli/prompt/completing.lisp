@@ -281,14 +281,6 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
            (values start (matching typed (choices :command session typed)) " "))
           (t (argument-completions session (line-meant typed) text end)))))
 
-;;; Breaks.
-
-(defun break-completions (breakage text)
-  (values 0
-          (matching text (append '("backtrace" "quit")
-                                 (mapcar #'restart-name (breakage-restarts breakage))))
-          ""))
-
 (defun completions-in (session text point)
   "Return where what is to be completed begins in TEXT, typed in SESSION up to POINT, all that it
 could become, and what follows one that is the only one."
@@ -297,6 +289,11 @@ could become, and what follows one that is the only one."
     (handler-case
         (cond ((starts-with-subseq "(" (string-left-trim " " text))
                (lisp-completions session text point))
-              (breakage (break-completions breakage text))
+              (breakage
+               (values 0
+                       (matching text (append '("backtrace" "quit")
+                                              (mapcar #'restart-name
+                                                      (breakage-restarts breakage))))
+                       ""))
               (t (line-completions session text 0)))
       (ars-magna-error () nil))))

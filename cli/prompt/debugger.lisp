@@ -13,19 +13,18 @@
 
 ;;; What the user says.
 
-(defun call-ordered (session function)
-  "Call FUNCTION, ordered by SESSION, in this thread, which is not the prompt's."
-  (let ((*standard-output* (session-console session))
-        (*query-io* (make-two-way-stream (make-concatenated-stream) (session-console session))))
-    (with-simple-restart (end-line "End the line.")
-      (call-complaining session function))))
-
 (defun hand-order (session breakage function)
   "Let the thread of BREAKAGE, which is another, call FUNCTION, as soon as it can, with the package
 and syntax that are used here."
-  (setf (breakage-order breakage)
-        (spread-specials (lambda () (call-ordered session function))
-                         '*package* '*readtable* '*read-default-float-format*))
+  (flet ((call-ordered ()
+           (let* ((console (session-console session))
+                  (*standard-output* console)
+                  (*query-io* (make-two-way-stream (make-concatenated-stream) console)))
+             (with-simple-restart (end-line "End the line.")
+               (call-complaining session function)))))
+    (setf (breakage-order breakage)
+          (spread-specials #'call-ordered
+                           '*package* '*readtable* '*read-default-float-format*)))
   (signal-semaphore (breakage-ordered breakage)))
 
 (defun order (session breakage function)
@@ -58,9 +57,6 @@ user's."
                                                   call-with-care)))
                                       user-calls :key #'first))))
 
-(defun write-plan-tree ()
-  (print-plans *standard-output* t))
-
 (defun write-backtrace ()
   (dolist (call (broken-calls))
     (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300)))))
@@ -75,7 +71,8 @@ user's."
                                      (lambda () (evaluate session form)))))))
           ((says-p "quit") (setf (session-over-p session) t))
           ((says-p "backtrace") (order session breakage #'write-backtrace))
-          ((says-p "plan-tree") (order session breakage #'write-plan-tree))
+          ((says-p "plan-tree")
+           (order session breakage (lambda () (print-plans *standard-output* t))))
           (t (multiple-value-bind (word rest) (split-line text)
                (choose session breakage (restart-called word breakage) rest))))))
 
@@ -175,13 +172,9 @@ those that listen to its run, or else all; NIL if its user has left it."
          (or (remove-if-not #'can-answer-p (sessions-hearing *simulation*))
              (remove-if-not #'can-answer-p (sessions-at-work))))))
 
-(defun debug-at-heirs (session breakage)
-  "Let others than the user of SESSION, who cannot any more, say how BREAKAGE, of this thread, is to
-go on, if there are any."
-  (let ((heirs (heirs-of session)) (condition (breakage-condition breakage)))
-    (when heirs
-      (debug-elsewhere heirs (make-breakage condition (restarts-to-offer condition)
-                                            (current-thread) heirs)))))
+(defun broken-here (condition sessions)
+  "Return what CONDITION has broken in this thread, for the users of SESSIONS."
+  (make-breakage condition (restarts-to-offer condition) (current-thread) sessions))
 
 (defun debug-here (session breakage)
   (flet ((read-lines ()
@@ -194,7 +187,9 @@ go on, if there are any."
                       (if (session-visit session)
                           (call-aside #'read-lines)
                           (read-lines)))))
-  (debug-at-heirs session breakage)
+  ;; Others may say how it goes on if its user cannot any more.
+  (let ((heirs (heirs-of session)))
+    (when heirs (debug-elsewhere heirs (broken-here (breakage-condition breakage) heirs))))
   (invoke-restart 'end-line))
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
@@ -219,12 +214,6 @@ threads, until that goes on."
   "Functions, or their names, of no arguments, that are called in a thread that has broken, before
 it asks how it goes on: for those who show what stands still then.")
 
-(defun debug-breakage (sessions breakage)
-  (tell-listeners *break-hooks*)
-  (if (eq (session-thread (first sessions)) (current-thread))
-      (debug-here (first sessions) breakage)
-      (debug-elsewhere sessions breakage)))
-
 (defun others-matter-p ()
   "True if what breaks in this thread is no matter of prompts: it is a user's own, in a Lisp that
 does other things too, and no prompt runs in it."
@@ -240,11 +229,10 @@ does other things too, and no prompt runs in it."
     (cond ((others-matter-p) nil)
           (sessions
            (with-debugger-hook ('debugger-disabled-hook)
-             (debug-breakage sessions
-                             (make-breakage condition
-                                            (restarts-to-offer condition)
-                                            (current-thread)
-                                            sessions))))
+             (tell-listeners *break-hooks*)
+             (if (eq (session-thread (first sessions)) (current-thread))
+                 (debug-here (first sessions) (broken-here condition sessions))
+                 (debug-elsewhere sessions (broken-here condition sessions)))))
           ;; Without any, as when it has just ended, Lisp's own debugger comes up.
           (*session* (debugger-disabled-hook condition hook)))))
 

@@ -108,19 +108,18 @@
                  (and (null hint)
                       (nearest-name name (append (mapcar #'first *aliases*) (all-line-names)))))))
 
-(defun beginning-of-all (lines)
-  "Return the one of LINES with whose name those of all others begin, or NIL: STOP, not STOP-PLAN."
-  (find-if (lambda (line)
-             (every (lambda (other) (starts-with-subseq (line-name line) (line-name other))) lines))
-           lines))
-
 (defun complete-line (name)
   "Return the line command whose name, or else full name, begins with NAME: the only one, or the one
 that all others go on from."
   (let ((candidates (or (all-starting name (all-lines) #'line-name)
                         (all-starting name (robot-lines) #'line-full-name))))
     (cond ((null candidates) (reject-unknown name))
-          ((beginning-of-all candidates))
+          ;; STOP, not STOP-PLAN.
+          ((find-if (lambda (line) (every (lambda (other)
+                                            (starts-with-subseq (line-name line)
+                                                                (line-name other)))
+                                          candidates))
+                    candidates))
           (t (reject-ambiguous name (mapcar #'line-name candidates) (hint-for name))))))
 
 (defun find-line (name)

@@ -124,14 +124,10 @@ DETAILS, strings, what it says below the parameters, a paragraph each."
                 (t :manipulating)))
       (t type))))
 
-(defun command-slots (command)
-  (append (unless (robot-resource-p command) (list (slot-of (command-resource command))))
-          (mapcar #'slot-of (command-parameters command))))
-
 (defun error-details (command)
   (loop for code in (command-errors command)
         for text = (error-code-text code)
-        collect (format nil ":~A~:[~; -- ~:*~A~]" (symbol-name (error-code-keyword code))
+        collect (format nil ":~A~@[ -- ~A~]" (symbol-name (error-code-keyword code))
                         (and (stringp text) text))))
 
 (defun command-details (command)
@@ -153,7 +149,9 @@ DETAILS, strings, what it says below the parameters, a paragraph each."
   (make-line :name (line-name-of command)
              :full-name (string-upcase (command-name command))
              :family (part-family command)
-             :parameters (command-slots command)
+             :parameters (append (unless (robot-resource-p command)
+                                   (list (slot-of (command-resource command))))
+                                 (mapcar #'slot-of (command-parameters command)))
              :sentence (command-documentation command)
              :details (command-details command)
              :action (lambda (session &rest arguments)

@@ -158,16 +158,13 @@ told, and may recover from an error."
   "Return the ink of what is of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, of others' commands."
   (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
 
-(defun other-robot (message listener)
-  "Return the name of the robot that MESSAGE tells of, unless LISTENER has to do with that."
-  (let ((own (listener-robot-name listener)) (name (message-robot message)))
-    (and own name (not (eq own name)) name)))
-
 (defun message-words (message listener)
   "Return what LISTENER is shown of MESSAGE: whose command it tells of, if another robot's; and
 if it is an error or warning in a script, with the place of its line."
-  (let ((text (format nil "~@[~(~A~): ~]~A" (other-robot message listener) (message-text message)))
-        (account (listener-account listener)))
+  (let* ((own (listener-robot-name listener)) (name (message-robot message))
+         (text (format nil "~@[~(~A~): ~]~A" (and own (not (eq own name)) name)
+                       (message-text message)))
+         (account (listener-account listener)))
     (if (member (message-kind message) '(:error :warning))
         (placed-text account text (line-of-message account message))
         text)))

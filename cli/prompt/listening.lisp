@@ -95,19 +95,15 @@ the prompts again. One whose user is not there any more leaves them to others."
 
 ;;; Listening to a simulation.
 
-(defun show-after-changes (session simulation)
-  "Show messages when all changes of this tick are made, before programs are told of them."
-  (unless (session-news-p session)
-    (setf (session-news-p session) t)
-    (notify-later (timeline-of simulation) (lambda () (show-messages session)))))
-
 (defun hear (session simulation)
   "Show the messages of SIMULATION, of which one is new."
   (cond ((not (simulation-ticking-p simulation)) (show-messages session))
         ;; Its tick ends when somebody says how it goes on, who may need to know this.
         ((users-code-broken-p simulation) (show-messages session))
         ((or (not (live-p simulation)) (eq (simulation-thread simulation) (current-thread)))
-         (show-after-changes session simulation))
+         ;; When all changes of this tick are made, before programs are told of them.
+         (unless (shiftf (session-news-p session) t)
+           (notify-later (timeline-of simulation) (lambda () (show-messages session)))))
         (t (setf (session-news-p session) t)
            ;; The tick may have ended just now, without seeing the news.
            (unless (simulation-ticking-p simulation) (look session)))))
@@ -152,11 +148,6 @@ another, so that nobody waits for the tick to end, which it may never."
       (let ((next (or (first (sessions-hearing simulation))
                       (session-with-queue (simulation-messages simulation)))))
         (set-listener next (if next (session-simulation next) simulation))))))
-
-(defun listen-instead (session simulation)
-  "Let SESSION, which waits for a line, listen to SIMULATION from now on. Any thread may ask."
-  (stop-listening session)
-  (listen-to session simulation))
 
 (defun follow-simulation (session)
   (unless (or (session-abandoned-p session)
@@ -258,7 +249,8 @@ to that. If it listens there already, it knows. Any thread may ask."
   (unless (eq simulation (session-simulation session))
     (say-in session (format nil "From here on: ~A in ~A.~%" robot-name
                             (words-for-run simulation)))
-    (listen-instead session simulation)))
+    (stop-listening session)
+    (listen-to session simulation)))
 
 ;;; Going there.
 

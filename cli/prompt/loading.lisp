@@ -19,9 +19,6 @@ lines; or NIL."
   (let ((advice (file-advice path :lisp)))
     (and advice (format nil "~A: ~A." (native-name path) advice))))
 
-(defun script-text (path)
-  (format nil "It looks like a script of lines: ars-magna ~A." (native-name path)))
-
 (defun check-lisp-file (path)
   (let ((text (foreign-text path)))
     (when text (reject-line "~A" text))))
@@ -29,7 +26,8 @@ lines; or NIL."
 (defun check-form-of-file (form path)
   "Signal BAD-LINE if FORM, from the file PATH, which is being loaded, is the beginning of a line."
   (when (and (symbolp form) (not (boundp form)) (line-called (symbol-name form)))
-    (reject-line "~A is a command of the prompt. ~A" form (script-text path))))
+    (reject-line "~A is a command of the prompt. It looks like a script of lines: ars-magna ~A."
+                 form (native-name path))))
 
 (defun start-of-form (text start)
   "Return where, from START, the next form in TEXT begins; its length if there is none."
@@ -38,11 +36,6 @@ lines; or NIL."
         while end
         do (setf start end)
         finally (return position)))
-
-(defun first-form-of (path)
-  "Return the first form in the file PATH; NIL if there is none that can be read."
-  (ignore-errors (let ((text (file-text path)) (*read-eval* nil))
-                   (values (read-from-string text t nil :start (start-of-form text 0))))))
 
 (defun only-defines-p (path)
   (ignore-errors
@@ -63,7 +56,11 @@ lines; or NIL."
     (let ((path (existing-file (second form))))
       (when path
         (check-lisp-file path)
-        (check-form-of-file (first-form-of path) path)))))
+        (check-form-of-file (ignore-errors
+                             (let ((text (file-text path)) (*read-eval* nil))
+                               (values (read-from-string text t nil
+                                                         :start (start-of-form text 0)))))
+                            path)))))
 
 ;;;; Loading
 

@@ -39,23 +39,19 @@ be done, a list of two texts, or is NIL."
 
 ;;; A plan may end before BEGIN-PLAN has told which task it is.
 
-(defun errand-of-p (errand task)
-  (if (plan-errand-task errand)
-      (eq task (plan-errand-task errand))
-      (eq (task-name task) (plan-errand-plan errand))))
-
-(defun errand-of (task)
-  (with-lock (*plan-errands-lock*)
-    (let ((errand (find-if (lambda (errand) (errand-of-p errand task)) *plan-errands*)))
-      (when errand (setf (plan-errand-task errand) task))
-      errand)))
-
 (defun note-plan-end (task)
   "Let who waits for TASK, a plan, know that it is over. True if the prompt has started it."
-  (let ((errand (errand-of task)))
-    (when errand
-      (signal-semaphore (plan-errand-over errand))
-      t)))
+  (flet ((started-p (errand)
+           (if (plan-errand-task errand)
+               (eq task (plan-errand-task errand))
+               (eq (task-name task) (plan-errand-plan errand)))))
+    (let ((errand (with-lock (*plan-errands-lock*)
+                    (let ((errand (find-if #'started-p *plan-errands*)))
+                      (when errand (setf (plan-errand-task errand) task))
+                      errand))))
+      (when errand
+        (signal-semaphore (plan-errand-over errand))
+        t))))
 
 (attend *plan-end-hooks* note-plan-end)
 
@@ -133,8 +129,7 @@ be done, a list of two texts, or is NIL."
                                  waits advice))))))
 
 (defun close-errand (errand)
-  (with-lock (*plan-errands-lock*)
-    (setf *plan-errands* (remove errand *plan-errands*)))
+  (with-lock (*plan-errands-lock*) (removef *plan-errands* errand))
   ;; There is no task if the plan has not begun.
   (let ((task (plan-errand-task errand)))
     (end-errand errand (not (and task (eq :succeeded (task-state task))))))
@@ -158,10 +153,6 @@ ever go on; else NIL. To be called while no plan reacts."
 
 ;;; Live.
 
-(defun driving-p (errand runner)
-  (and (live-p (plan-errand-simulation errand))
-       (eq runner (plan-runner-now))))
-
 (defun tell-if-stuck (errand runner)
   "Find out whether the plan of ERRAND is stuck; tell it, unless that has been told last. Return the
 answer to the last such question."
@@ -178,24 +169,21 @@ answer to the last such question."
   (loop with stuck = nil
         until (or (plan-over-p errand) (plan-errand-let-go-p errand))
         do (cond ((wait-on-semaphore (plan-errand-over errand) 0.2))
-                 ((driving-p errand runner) (setf stuck (tell-if-stuck errand runner)))
+                 ((and (live-p (plan-errand-simulation errand)) (eq runner (plan-runner-now)))
+                  (setf stuck (tell-if-stuck errand runner)))
                  (t (return)))
         finally (unless (or (plan-errand-let-go-p errand)
                             (and stuck (session-patient-p (plan-errand-session errand))))
                   (tell-end errand)))
   (close-errand errand))
 
-(defun call-in-run (function simulation)
-  (let ((*simulation* simulation)
-        (*world* (simulation-world simulation)))
-    (funcall function)))
-
 (defun start-watching-plan (errand)
   (let ((runner (plan-runner-now)))
     ;; The thread would see the run of the terminal's prompt, and this may be that of a window.
     (start-thread (lambda ()
-                    (call-in-run (lambda () (watch-plan errand runner))
-                                 (plan-errand-simulation errand)))
+                    (let* ((*simulation* (plan-errand-simulation errand))
+                           (*world* (simulation-world *simulation*)))
+                      (watch-plan errand runner)))
                   (format nil "prompt's watch of ~A" (plan-errand-plan errand)))))
 
 ;;; Headless.

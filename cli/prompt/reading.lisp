@@ -23,19 +23,9 @@
 
 ;;;; Lines and forms
 
-(defun without-program (session text)
-  "Return TEXT, a line as typed, but an empty one if it says, as the first line of SESSION, what
-program runs a script."
-  (if (and (not (shiftf (reader-typed-p (session-reader session)) t))
-           (starts-with-subseq "#!" text))
-      ""
-      text))
-
 (defun answer-p (session line)
   "True if LINE, of SESSION, answers a program that has broken: it makes no sense later."
-  (and (breaks-awaiting (session-break-state session))
-       (not (comment-p line))
-       (not (lisp-p line))))
+  (and (breaks-awaiting session) (not (answers-break-p line))))
 
 (defun read-typed (session before)
   "Return the next line that is typed in SESSION, or NIL at the end. Whoever edits it can complete
@@ -44,7 +34,10 @@ it, and have it again; if BEFORE is a text, together with that, which it goes on
                  ;; What goes on over lines is kept whole.
                  (unless before (keep-lines (session-input session)))
                  (let ((*program-reads* nil)) (read-line (session-input session) nil))))
-         (line (and line (line-pasted (without-program session line) before))))
+         (first-p (and line (not (shiftf (reader-typed-p (session-reader session)) t))))
+         ;; The first line may say what program runs a script.
+         (line (cond ((and first-p (starts-with-subseq "#!" line)) "")
+                     (line (line-pasted line before)))))
     (unless (or (null line) (and (null before) (answer-p session line)))
       (remember-line (session-input session) line before))
     line))
@@ -114,7 +107,7 @@ and the condition that says so; NIL at the end."
 (defun skip-forms (stream)
   "Read STREAM, a growing text, until no form is open at the end of a line."
   (loop with depth = 0
-        until (and (zerop depth) (grown-out-p stream))
+        until (and (zerop depth) (<= (length (grown-text stream)) (grown-position stream)))
         do (case (skip-item stream)
              (#\( (incf depth))
              (#\) (setf depth (max 0 (1- depth)))))))

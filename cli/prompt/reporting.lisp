@@ -97,13 +97,6 @@ nothing to do in it, is about to be done, and that there were ERRORS so far."
   (dolist (waiting (reverse (shiftf (account-waiting account) '())))
     (report-line account "done" (first waiting) (second waiting) :ok :false)))
 
-(defun forget-plans-of-lines (account)
-  "Forget which plans were begun by lines of ACCOUNT that do not wait any more."
-  (setf (account-plans account)
-        (remove-if-not (lambda (plan)
-                         (find (cdr plan) (account-waiting account) :key #'first))
-                       (account-plans account))))
-
 (defun note-line-ended (account errors end)
   "Note, and report, that all that the line under way has asked for is done, and that there were
 ERRORS so far. If END is not NIL, that waits for time to pass: END returns NIL until it is done, and
@@ -116,7 +109,11 @@ then :OK or :FAILED."
       (cond (end (push (list line text good-p end) (account-waiting account))
                  (report-line account "waiting" line text))
             (t (report-line account "done" line text :ok (if good-p t :false))))
-      (forget-plans-of-lines account))))
+      ;; Of plans, those of lines that do not wait any more are forgotten.
+      (setf (account-plans account)
+            (remove-if-not (lambda (plan)
+                             (find (cdr plan) (account-waiting account) :key #'first))
+                           (account-plans account))))))
 
 (defun report-asking (account)
   (when account (report-object account "asking" :line (line-under-way account))))

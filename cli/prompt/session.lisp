@@ -63,13 +63,6 @@ reads lines for it, or is NIL; OTHERS have in other threads, the oldest first."
   (own nil :type (or null breakage))
   (others '() :type list))
 
-(defun breaks-awaiting (state)
-  "Return what waits in STATE, what is asked about now first."
-  (let ((own (break-state-own state)) (others (break-state-others state)))
-    (cond ((null own) others)
-          ((breakage-told-p own) (cons own others))
-          (t (append others (list own))))))
-
 ;;;; Sessions
 
 (defstruct (reader (:copier nil))
@@ -167,6 +160,13 @@ whether it writes in colours: by default on a terminal, unless the environment h
   "Return what has broken in other threads and waits for SESSION, the oldest first."
   (break-state-others (session-break-state session)))
 
+(defun breaks-awaiting (session)
+  "Return what waits for SESSION, what is asked about now first."
+  (let ((own (break-state-own (session-break-state session))) (others (session-breaks session)))
+    (cond ((null own) others)
+          ((breakage-told-p own) (cons own others))
+          (t (append others (list own))))))
+
 (defun check-run ()
   (when (and *simulation* (simulation-over *simulation*))
     (let ((name (simulation-name *simulation*)))
@@ -185,7 +185,7 @@ or NIL. Where Lisp at the prompt runs a simulation of its own, that has perhaps 
 over."
   (check-run)
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
-    (or (find *prompt-robot* robots :key #'robot-name)
+    (or (and robots (robot-commanded))
         (first robots)
         (reject-line "There is no robot here. WORLD lists the worlds, WORLD name starts one."))))
 

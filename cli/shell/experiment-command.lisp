@@ -172,11 +172,6 @@ of what has been interrupted."
   '(("--out" :out parse-path) ("--plot" :plot nil))
   "The options of the command MERGE, as in *OPTIONS*.")
 
-(defun tables-in (directory)
-  "Return the names of the directories with rows at and below DIRECTORY. Signals BAD-LINE."
-  (or (directories-with-rows directory)
-      (reject-line "There are no rows in ~A, nor in shards below it." directory)))
-
 (defun merge-command (arguments)
   (let* ((options (parse-options arguments :table *merge-options* :others t))
          (directories (option-values :other options))
@@ -184,7 +179,10 @@ of what has been interrupted."
     (unless (and directories out)
       (reject-usage "merge takes directories with results, and --out DIR."))
     (report-results (merge-results (loop for directory in directories
-                                         append (tables-in directory))
+                                         append (or (directories-with-rows directory)
+                                                    (reject-line "There are no rows in ~A, nor ~
+                                                                  in shards below it."
+                                                                 directory)))
                                    :to out)
                     (option-value :plot options))
     0))
@@ -205,13 +203,11 @@ of what has been interrupted."
         ((and (plusp (length word)) (every #'digit-char-p word)) (parse-integer word))
         (t word)))
 
-(defun results-directory-p (word)
-  (and (uiop:directory-exists-p (native-path-of-directory word))
-       (directories-with-rows word)))
-
 (defun results-meant (words options)
   "Return the results that WORDS stand for: a directory with them, or an experiment, which is run."
-  (if (and (null (rest words)) (results-directory-p (first words)))
+  (if (and (null (rest words))
+           (uiop:directory-exists-p (native-path-of-directory (first words)))
+           (directories-with-rows (first words)))
       (read-results (first words))
       (results-of (known-experiment words) options)))
 

@@ -17,17 +17,16 @@ returns the status to exit with. What it does is said in usage-NAME.txt.")
                     (nearest-name name (mapcar #'first *shell-commands*))
                     (mapcar #'first *shell-commands*))))
 
-(defun usage-of-command (name)
-  "Return the text of usage for the command NAME, or for all if that is NIL or none."
-  (or (and name (text-called (format nil "usage-~A.txt" name)))
-      (text-called "usage.txt")))
-
 (defun run-command-called (name arguments)
   "Do the command NAME with ARGUMENTS. Return the status to exit with."
   (let ((command (find-command-called name)) (*error-output* (text-output 2)))
     (unwind-protect (funcall (second command) arguments)
       ;; What Lisp itself writes there, such as warnings, stays in the stream until then.
       (ignore-errors (finish-output *error-output*)))))
+
+(defun usage-of-command (name)
+  "Return the text of usage for the command NAME, or for all if that is NIL or none."
+  (or (text-called (format nil "usage-~A.txt" name)) (text-called "usage.txt")))
 
 ;;; The prompt.
 
@@ -77,7 +76,6 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
   (session-next-robot session))
 
 (defun run-batch (session robot-name seed)
-  "Run the lines of SESSION, beginning with ROBOT-NAME."
   (loop for name = robot-name then next
         for next = (run-headless session name seed)
         while next))
@@ -207,13 +205,11 @@ value."
          (format nil "~A only defines things. It was run as a script of lines; for the robot in ~
                       it: ars-magna --world ~:*~A." script))))))
 
-(defun print-usage (arguments)
-  (write-string (usage-of-command (first arguments)))
-  0)
-
 (defun run-arguments (arguments)
   "Do what ARGUMENTS, a list of strings, say. Return the status to exit with."
-  (cond ((intersection arguments '("--help" "-h") :test #'string=) (print-usage arguments))
+  (cond ((intersection arguments '("--help" "-h") :test #'string=)
+         (write-string (usage-of-command (first arguments)))
+         0)
         ((equal arguments '("--version"))
          (format t "ARS MAGNA ~A~%" *version*)
          0)

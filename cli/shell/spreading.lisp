@@ -61,10 +61,6 @@ of one, stand for. Signals BAD-LINE."
 (defun trials-of (experiment options)
   (option-value :trials options (experiment-trials experiment)))
 
-(defun place-for (directory)
-  "Return what the directory for DIRECTORY is called on other machines."
-  (format nil "ars-magna-~A-~36R" (machine-instance) (text-checksum (native-name directory))))
-
 (defun common-settings (experiment options script)
   (let ((trials (trials-of experiment options)))
     `(("experiment" ,(string-downcase (experiment-name experiment)) "what is run")
@@ -80,7 +76,9 @@ of one, stand for. Signals BAD-LINE."
           `(("jobs" ,(option-value :workers options "100%") "at a time on each machine")
             ("hosts" ,(option-value :parallel options)
                      "for --sshlogin: 8/alice,bob ...; empty: this machine")
-            ("place" ,(place-for directory) "the directory on other machines"))))
+            ("place" ,(format nil "ars-magna-~A-~36R" (machine-instance)
+                              (text-checksum (native-name directory)))
+                     "the directory on other machines"))))
 
 (defun slurm-settings (experiment options directory)
   (declare (ignore directory))

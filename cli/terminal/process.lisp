@@ -37,7 +37,6 @@ can, or is.")
   "How often control C may come while this process ends before it ends at once.")
 
 (defun end-interrupted ()
-  "End this process at once, as control C wants."
   (say-on-error-output "stopped.")
   (end-process 130))
 

@@ -170,14 +170,11 @@ too."
 
 ;;; As a text.
 
-(defun text-in (package form)
-  "Return FORM as its author, in PACKAGE, would write it, on one line if it is short."
-  (let* ((text (form-text form package))
+(defun text-of (form check)
+  "Return FORM as the author of CHECK would write it, on one line if it is short."
+  (let* ((text (form-text form (experiment-package (check-experiment check))))
          (line (one-line text)))
     (if (< (length line) 90) line text)))
-
-(defun text-of (form check)
-  (text-in (experiment-package (check-experiment check)) form))
 
 (defun literal (value)
   "Return a form that returns VALUE."
