@@ -242,21 +242,14 @@
   :serial t
   :components
   ((:module "src/clim" :serial t
-    :components ((:file "package") (:file "progress") (:file "plan-look") (:file "watcher")
+    :components ((:file "package") (:file "plan-look") (:file "watcher")
                  (:file "arrangement") (:file "magnification") (:file "canvas")
-                 (:file "guarding") (:file "buffering")
-                 (:file "panes") (:file "scrolling") (:file "selection")
-                 (:file "view") (:file "world-pane") (:file "transcript")
-                 (:file "clipboard") (:file "transcript-pane")
-                 (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
-                 (:file "bar") (:file "strip")
-                 (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
-                 (:file "plan-mouse") (:file "world-mouse") (:file "keys")
-                 (:file "keyboard")
-                 (:file "help")
-                 (:file "window") (:file "commands")
-                 (:file "menus") (:file "habits")
-                 (:file "opening") (:file "x-server")
+                 (:file "panes") (:file "world-pane") (:file "transcript")
+                 (:file "clipboard") (:file "transcript-pane") (:file "prompt")
+                 (:file "bar") (:file "popup") (:file "pointing") (:file "interactor")
+                 (:file "offers") (:file "plan-pane") (:file "world-mouse")
+                 (:file "layout-pane") (:file "keyboard") (:file "window") (:file "commands")
+                 (:file "menus") (:file "opening") (:file "x-server")
                  (:file "following")))))
 
 (defsystem "ars-magna/fiveam"

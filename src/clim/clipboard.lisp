@@ -109,7 +109,6 @@ start): what is handed over in pieces, and from where on the next is."
   (xlib:change-property window property octets :utf8_string 8 :transform #'char-code))
 
 (defun begin-pieces (held window property)
-  "Begin to hand over what HELD has in PROPERTY of WINDOW, in pieces."
   (setf (xlib:window-event-mask window) '(:property-change))
   (push (list window property 0) (held-transfers held))
   (xlib:change-property window property (list (length (held-octets held))) :incr 32))

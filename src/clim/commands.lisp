@@ -141,14 +141,11 @@ does."
 
 ;;; Pictures.
 
-(defun picture-file (window type)
-  (format nil "~(~A~)-~6,'0D.~A" (watcher-robot (window-watcher window))
-          (snapshot-tick (window-snapshot window)) type))
-
 (defun save-window (window type)
   "Save a picture of the displays as they are in WINDOW in a file of TYPE in the current directory."
   (let ((file (save-snapshot (window-snapshot window) (window-robot window)
-                             (picture-file window type)
+                             (format nil "~(~A~)-~6,'0D.~A" (shown-robot window)
+                                     (snapshot-tick (window-snapshot window)) type)
                              :layers (window-layers window)
                              :in-color (window-color-p window)
                              :scale (pane-scale (pane-named window 'world)))))

@@ -37,7 +37,7 @@
 (defun row-above (conversation text)
   "Return what is said above TEXT, which is being typed, and its ink."
   (let ((reading (asked-by conversation))
-        (asked (asked-text (answers-awaited conversation)))
+        (asked (asked-text (ars-magna.cli:awaited-answers (conversation-session conversation))))
         (lines (1+ (count #\Newline text))))
     (cond (reading (list (line-text "~A waits for your answer" reading) :red))
           (asked (list asked :red))
@@ -181,19 +181,15 @@
   (let ((sheet (clim:port-keyboard-input-focus port)))
     (and sheet (robot-window-of sheet))))
 
-(defun give-keys-to-window (port window)
-  (let ((before (window-with-keys port)))
-    (unless (eq window before)
+(defun give-keys-by (port event)
+  "Let keys of PORT go to the window that EVENT is of, if it is one."
+  (let ((window (robot-window-of (clim:event-sheet event))) (before (window-with-keys port)))
+    (unless (member window (list before nil))
       (setf (clim:port-keyboard-input-focus port)
             (or (window-focus window) (clim:frame-top-level-sheet window)))
       ;; The cursor says where keys go.
       (when before (request-refresh before))
       (request-refresh window))))
-
-(defun give-keys-by (port event)
-  "Let keys of PORT go to the window that EVENT is of, if it is one."
-  (let ((window (robot-window-of (clim:event-sheet event))))
-    (when window (give-keys-to-window port window))))
 
 (defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:keyboard-event))
   (give-keys-by port event))

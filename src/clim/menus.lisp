@@ -24,10 +24,8 @@
   (loop for line in (sort (copy-list (ars-magna.cli:all-lines)) #'string<
                           :key #'ars-magna.cli:line-name)
         when (string= group (line-group line))
-          collect (line-item (ars-magna.cli:line-name line))))
-
-(defun line-item (name)
-  (list name (lambda () (choose-line clim:*application-frame* name))))
+          collect (let ((name (ars-magna.cli:line-name line)))
+                    (list name (lambda () (choose-line clim:*application-frame* name))))))
 
 (defun choose-line (window name)
   "Give the prompt the line command called NAME, or let the user add its arguments."
@@ -88,18 +86,15 @@ and NIL for a gap."
         (t (destructuring-bind (title command) item
              (make-row title :action (lambda () (funcall command)))))))
 
-(defun way-back (window outer x y)
-  (and outer
-       (list (make-row (format nil "< ~A" (menu-title outer))
-                       :action (lambda () (open-menu window outer x y))))))
-
 (defun open-menu (window menu x y &optional outer)
   "Show MENU at X, Y of WINDOW; OUTER is the menu that it is part of."
-  (open-popup window
-              (append (way-back window outer x y)
-                      (loop for item in (menu-items-now menu)
-                            collect (item-row window item menu x y)))
-              x y (or outer menu)))
+  (let ((rows (loop for item in (menu-items-now menu)
+                    collect (item-row window item menu x y))))
+    (when outer
+      (push (make-row (format nil "< ~A" (menu-title outer))
+                      :action (lambda () (open-menu window outer x y)))
+            rows))
+    (open-popup window rows x y (or outer menu))))
 
 ;;; The bar.
 

@@ -2,6 +2,62 @@
 
 (in-package :ars-magna.clim)
 
+;;; Kept as long as this Lisp runs. The last window that closes counts; what was said there comes
+;;; back in a window of the same robot.
+
+(defvar *habits-lock* (make-lock "habits"))
+(defvar *habits* '()
+  "Layers, whether in colour, and wishes of the window that closed last, in a list; or NIL.")
+
+(defstruct (legacy (:copier nil))
+  "What a window leaves to the next of its robot: the LINES that it said, newest first; what had
+been TYPED there, or NIL; AWAY-P if it was in a trial or fork, which it has left; QUIET-P if its
+prompt did not tell of plans' commands."
+  (lines '() :type list :read-only t)
+  (typed nil :type (or null string) :read-only t)
+  (away-p nil :read-only t)
+  (quiet-p nil :read-only t))
+
+(defvar *said* '()
+  "An alist from the names of robots to the legacy of the last window that has shown each.")
+
+(defun take-legacy (window legacy)
+  (let ((conversation (window-conversation window)) (transcript (window-transcript window)))
+    (setf (ars-magna.cli:session-quiet-p (window-session window)) (legacy-quiet-p legacy))
+    (go-on-from transcript (legacy-lines legacy))
+    (when (legacy-away-p legacy)
+      (say transcript (format nil "From here on: ~A in ~A.~%" (shown-robot window)
+                              (ars-magna.cli:words-for-run (window-simulation window)))))
+    (when (legacy-typed legacy) (give-key conversation (legacy-typed legacy)))))
+
+(defun keep-habits (window)
+  (let* ((habits (list (window-layers window) (window-color-p window) (window-wishes window)))
+         (session (window-session window))
+         (legacy (make-legacy :lines (transcript-lines (window-transcript window))
+                              :typed (being-typed (window-conversation window))
+                              :away-p (and (ars-magna.cli:away-p session) t)
+                              :quiet-p (ars-magna.cli:session-quiet-p session))))
+    (with-lock (*habits-lock*)
+      (setf *habits* habits)
+      (dolist (name (window-robots-shown window))
+        (setf *said* (acons name legacy (remove name *said* :key #'first)))))))
+
+(defun take-habits (window)
+  "Let WINDOW, which is new, be as the user has chosen before, and go on from what was said."
+  (destructuring-bind (habits legacy)
+      (with-lock (*habits-lock*)
+        (list *habits* (rest (assoc (shown-robot window) *said*))))
+    (when habits
+      (destructuring-bind (layers color-p wishes) habits
+        (setf (window-layers window) layers
+              (window-color-p window) color-p
+              (window-wishes window) (copy-wishes wishes))))
+    (if legacy
+        (take-legacy window legacy)
+        (ars-magna.cli:tell-first-messages (window-session window)))))
+
+;;;; Coming and going
+
 ;;; Each window has a thread of its own. Whatever goes wrong in it, the loss of the X server
 ;;; included, closes the window with a warning, and nothing else.
 
@@ -85,7 +141,6 @@ goes on, if it does, and how it is seen again."
   (pushnew name (window-robots-shown window)))
 
 (defun show-robot-called (window name simulation)
-  "Let WINDOW show the robot called NAME of SIMULATION from now on."
   (note-shown window name)
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
@@ -134,15 +189,12 @@ others show all there is."
            (close-window window))
           (t (stay-when-over window reason)))))
 
-(defun leave-run-if-over (window)
-  (let ((reason (simulation-over (window-simulation window))))
-    (when reason (leave-run window reason))))
-
 (defun agree-on-robot (window)
   "See to it that the prompt of WINDOW, in whose thread this is, commands the robot shown there; or
 else, if its user has chosen another one of the same run, that that is shown."
   (when (window-simulation window)
-    (leave-run-if-over window)
+    (let ((reason (simulation-over (window-simulation window))))
+      (when reason (leave-run window reason)))
     (let ((simulation (window-simulation window)) (watcher (window-watcher window)))
       (cond ((not (eq simulation *simulation*))
              (ars-magna.cli:go-to-run simulation)
@@ -151,11 +203,6 @@ else, if its user has chosen another one of the same run, that that is shown."
              (show-robot-called window ars-magna.cli:*prompt-robot* simulation)
              (say-in-window window "~A in ~A.~%" ars-magna.cli:*prompt-robot*
                             (simulation-name simulation)))))))
-
-(defun discard (window)
-  (forget-terrain (pane-named window 'world))
-  (mapc #'forget-buffer (cons (window-popup window) (display-panes window)))
-  (clim:disown-frame (clim:frame-manager window) window))
 
 ;;; When the X server goes, the thread that reads the events notices, or that of a window which
 ;;; paints just then.
@@ -188,10 +235,13 @@ else, if its user has chosen another one of the same run, that that is shown."
            (:no-error (&rest values) (declare (ignore values)) (forget-window window)))
       (warn-of-closing window "its thread was ended")
       (keep-habits window)
-      (end-conversation (window-conversation window))
+      (ars-magna.cli:end-session (window-session window))
       (stop-watching (window-watcher window))
       ;; The X server may have gone.
-      (ignore-errors (discard window)))))
+      (ignore-errors
+       (forget-terrain (pane-named window 'world))
+       (mapc #'forget-buffer (cons (window-popup window) (display-panes window)))
+       (clim:disown-frame (clim:frame-manager window) window)))))
 
 (defmethod clim:run-frame-top-level :before ((window robot-window) &key &allow-other-keys)
   (painted (window-watcher window)))

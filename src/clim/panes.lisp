@@ -1,6 +1,50 @@
-;;;; panes.lisp -- one display in a part of the window.
+;;;; panes.lisp -- a pane: painted out of sight, scrolled, with what is picked marked.
 
 (in-package :ars-magna.clim)
+
+;;; CLIM's own buffers ask the X server several questions for each pane and picture. While ticks
+;;; pass as fast as they can, each answer comes late, and pictures with them. So a pane has a pixmap
+;;; of its own, as large as it is; nothing is asked. It takes a pane that the X server knows as a
+;;; window, as CLIM's port to it makes them; others are painted by CLIM's buffers.
+
+(defclass buffered-pane ()
+  ((buffer :initform nil :accessor pane-buffer)
+   ;; Its width and height, in pixels of the screen.
+   (buffer-size :initform nil :accessor pane-buffer-size))
+  (:documentation "What a pane needs in order to be painted out of sight."))
+
+(defun forget-buffer (pane)
+  (let ((old (shiftf (pane-buffer pane) nil)))
+    (when old (clim:deallocate-pixmap old))))
+
+(defun buffer-of (pane width height)
+  "Return a pixmap of WIDTH times HEIGHT of the screen's pixels for PANE."
+  (let ((size (list width height)))
+    (unless (and (pane-buffer pane) (equal size (pane-buffer-size pane)))
+      (forget-buffer pane)
+      (setf (pane-buffer pane) (clim:allocate-pixmap pane width height)
+            (pane-buffer-size pane) size))
+    (pane-buffer pane)))
+
+(defun call-in-buffer (function pane width height)
+  "Call FUNCTION, which paints PANE, of WIDTH times HEIGHT of the screen's pixels; show all of that
+at once."
+  (let ((buffer (buffer-of pane width height)) (medium (clim:sheet-medium pane)))
+    (setf (clim:medium-drawable medium) buffer)
+    (unwind-protect (funcall function)
+      (setf (clim:medium-drawable medium) nil))
+    (clim:copy-from-pixmap buffer 0 0 width height pane 0 0)
+    (clim:medium-force-output medium)))
+
+(defun call-buffered (function pane)
+  "Call FUNCTION, which paints PANE; nothing is seen of that before it returns."
+  (multiple-value-bind (width height) (size-on-screen pane)
+    (flet ((paint () (call-magnified function pane (magnification pane))))
+      (cond ((not (and (plusp width) (plusp height))))
+            ((clim:sheet-direct-mirror pane) (call-in-buffer #'paint pane width height))
+            (t (clim:with-output-buffered (pane) (paint)))))))
+
+;;;; Panes
 
 ;;; A pane paints all of itself, from the window's last snapshot, whenever CLIM or a new snapshot
 ;;; asks for it; it does so only when what it shows has changed. Painting records nothing.
@@ -155,3 +199,120 @@ would be cut; remember what was painted where."
                 (nth-value 1 (draw-display canvas (pane-display pane) (window-snapshot window)
                                            (window-robot window)
                                            :width (content-width pane)))))))))
+
+;;;; Scrolling
+
+(defconstant +scroll-bar+ 10 "How wide scroll bars are, in pixels.")
+
+(defgeneric scroll-state (pane)
+  (:documentation "Return how far down PANE begins in what it shows, how much is in view, and how
+much there is, all in the same unit.")
+  (:method (pane)
+    (values (pane-offset pane) (nth-value 1 (pane-size pane)) (pane-extent pane))))
+
+(defgeneric scroll-to (pane position)
+  (:documentation "Let PANE begin at POSITION, in the unit of SCROLL-STATE.")
+  (:method (pane position)
+    (setf (pane-offset pane) (max 0 (round position)))
+    (limit-offset pane)
+    (repaint-if-changed pane)))
+
+(defun scrollable-p (pane)
+  (multiple-value-bind (position page total) (scroll-state pane)
+    (declare (ignore position))
+    (> total page)))
+
+(defun content-width (pane)
+  "Return how many pixels of the width of PANE are not the scroll bar's."
+  (max 1 (- (pane-size pane) +scroll-bar+)))
+
+(defgeneric limit-offset (pane)
+  (:documentation
+   "Let PANE begin no further down than there is something. True if that was mended.")
+  (:method (pane)
+    (let ((room (max 0 (- (pane-extent pane) (nth-value 1 (pane-size pane))))))
+      (when (> (pane-offset pane) room)
+        (setf (pane-offset pane) room)
+        t))))
+
+(defun scroll (pane pixels)
+  "Show what is PIXELS further down in the picture in PANE, but not more than there is."
+  (scroll-to pane (+ (scroll-state pane) pixels)))
+
+;;; The bar.
+
+(defun thumb (pane)
+  "Return where the movable part of the scroll bar of PANE begins and ends, from the top."
+  (multiple-value-bind (position page total) (scroll-state pane)
+    (let* ((height (nth-value 1 (pane-size pane)))
+           (length (clamp (round (* height page) (max 1 total)) (min 12 height) height))
+           (top (round (* (- height length) position) (max 1 (- total page)))))
+      (values top (+ top length)))))
+
+(defun paint-scroll-bar (pane)
+  (when (scrollable-p pane)
+    (multiple-value-bind (width height) (pane-size pane)
+      (multiple-value-bind (top bottom) (thumb pane)
+        (clim:draw-rectangle* pane (- width +scroll-bar+) 0 width height :ink clim:+gray90+)
+        (clim:draw-rectangle* pane (- width +scroll-bar+ -2) top (- width 2) bottom
+                              :ink clim:+gray55+)))))
+
+(defun on-scroll-bar-p (pane x)
+  (and (scrollable-p pane) (>= x (content-width pane))))
+
+(defun drag-scroll-bar (pane y)
+  "Scroll PANE so that the middle of the bar's movable part is at Y, as far as that goes."
+  (multiple-value-bind (position page total) (scroll-state pane)
+    (declare (ignore position))
+    (multiple-value-bind (top bottom) (thumb pane)
+      (let ((length (- bottom top)) (height (nth-value 1 (pane-size pane))))
+        (scroll-to pane (* (- total page)
+                           (/ (clamp (- y (/ length 2)) 0 (max 0 (- height length)))
+                              (max 1 (- height length)))))))))
+
+;;;; What is picked
+
+(defgeneric subject-key (subject)
+  (:documentation "Return what stays the same, for EQUAL, of SUBJECT from snapshot to snapshot; NIL
+of what cannot be picked.")
+  (:method (subject) (declare (ignore subject)) nil)
+  (:method ((image thing-image)) (list :thing (thing-image-thing image)))
+  (:method ((image robot-image)) (list :robot (robot-image-name image)))
+  (:method ((image designator-image)) (list :designator (designator-image-number image)))
+  (:method ((cell cell)) (list :cell (cell-x cell) (cell-y cell))))
+
+(defun same-subject-p (one other)
+  (or (eq one other)
+      (let ((key (subject-key one))) (and key (equal key (subject-key other))))))
+
+(defgeneric subjects-under (pane x y)
+  (:documentation "Return what lies at X, Y of PANE, what is meant most likely first.")
+  (:method (pane x y)
+    (remove-duplicates (subjects-at (pane-subjects pane) x y)
+                       :test #'same-subject-p :from-end t)))
+
+(defun picked-first (window subjects)
+  "Return SUBJECTS in turn from the one on that is picked in WINDOW, if one of them is."
+  (let* ((key (window-selection window))
+         (picked (and key (member key subjects :key #'subject-key :test #'equal))))
+    (append picked (ldiff subjects picked))))
+
+(defun selected-boxes (pane)
+  "Return the boxes, (left top right bottom), in which what is picked was painted in PANE."
+  (let ((key (window-selection (window-of pane))))
+    (and key
+         (loop for (subject . box) in (pane-subjects pane)
+               when (equal key (subject-key subject)) collect box))))
+
+(defun mark-box (pane left top right bottom)
+  (clim:draw-rectangle* pane (- left 2) (- top 2) (+ right 2) (+ bottom 2)
+                        :filled nil :ink clim:+dark-orange+ :line-thickness 2))
+
+(defgeneric paint-selection (pane)
+  (:documentation "Mark in PANE what is picked.")
+  (:method (pane)
+    (loop for box in (selected-boxes pane) do (apply #'mark-box pane box))))
+
+(defun select (window subject)
+  (setf (window-selection window) (subject-key subject))
+  (refresh window))

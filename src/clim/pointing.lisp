@@ -75,15 +75,12 @@ or was being dragged, has gone."
 (defun beyond-shake-p (x y from-x from-y)
   (> (max (abs (- x from-x)) (abs (- y from-y))) +shake+))
 
-(defun clicked-before-p (pane x y)
-  "True if the click before in PANE was at X, Y, too. Note that there is one now."
-  (let ((before (shiftf (pane-clicked pane) (list x y))))
-    (and before (not (apply #'beyond-shake-p x y before)))))
-
 (defun pick-next (pane x y)
   "Pick what lies at X, Y of PANE; if it was clicked there before, what lies there, too."
   (let* ((window (window-of pane)) (subjects (subjects-under pane x y))
-         (picked (and (clicked-before-p pane x y)
+         (before (shiftf (pane-clicked pane) (list x y)))
+         (picked (and before
+                      (not (apply #'beyond-shake-p x y before))
                       (member (window-selection window) subjects
                               :key #'subject-key :test #'equal))))
     (pick window (or (second picked) (first subjects)))))

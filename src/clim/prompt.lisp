@@ -162,16 +162,7 @@ this thread."
   (let ((console (conversation-console conversation)))
     (and (ars-magna.cli:console-asked-p console) (console-entered console))))
 
-(defun answers-awaited (conversation)
-  "Return a list of what waits for the user to say how it goes on, in words, what is asked about now
-first."
-  (ars-magna.cli:awaited-answers (conversation-session conversation)))
-
 (defun waiting-in (conversation)
   "Return how many lines wait for the one that is under way to end, and what is being typed after
 them: its text, and where in it the cursor is."
   (ars-magna.cli:typed-ahead (ars-magna.cli:session-input (conversation-session conversation))))
-
-(defun end-conversation (conversation)
-  (ars-magna.cli:end-session (conversation-session conversation))
-  (values))

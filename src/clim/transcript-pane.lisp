@@ -145,18 +145,16 @@ that is the newest: no line that is no longer kept, and a whole page of them."
         (draw-rectangle canvas draw-gcontext* (column-x (- start (text-row-start row))) (- y 12)
                         (* (- stop start) +character-width+) +line-height+ t)))))
 
-(defun paint-rows (canvas pane)
-  (multiple-value-bind (from to) (selection pane)
-    (loop for row in (pane-rows pane)
-          for y from 14 by +line-height+
-          do (when from (paint-selected canvas row y from to))
-             (paint-row canvas row y))))
-
 (defmethod paint ((pane transcript-pane))
   (multiple-value-bind (columns rows) (columns-and-rows pane)
     (setf (window-text-size (window-of pane)) (list columns rows)
           (pane-rows pane) (rows-in-view pane rows columns)))
-  (painting (canvas pane) (paint-rows canvas pane)))
+  (painting (canvas pane)
+    (multiple-value-bind (from to) (selection pane)
+      (loop for row in (pane-rows pane)
+            for y from 14 by +line-height+
+            do (when from (paint-selected canvas row y from to))
+               (paint-row canvas row y)))))
 
 ;;; Scrolling.
 

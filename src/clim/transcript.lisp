@@ -1,6 +1,32 @@
-;;;; transcript.lisp -- what was said in the window: lines typed, answers, messages.
+;;;; transcript.lisp -- what a window has said, also of what goes wrong in it.
 
 (in-package :ars-magna.clim)
+
+;;; The thread of a window handles its mouse and its keys: were it to wait in a debugger, nobody
+;;; could answer that there.
+
+(defun refuse-debugger (condition hook)
+  "Signal MISUSE, as CONDITION calls for a debugger in the thread of a window."
+  (declare (ignore hook))
+  (reject-use "It calls for the debugger (~A), and a window does not wait for that. SAVE-PICTURE ~
+               at the prompt draws it where the debugger answers."
+              (one-line-text condition)))
+
+(defmacro without-debugger (&body body)
+  "Run BODY, in which what calls for a debugger is an error."
+  `(let ((*break-on-user-error* nil) (*debugger-refused-p* t))
+     (with-debugger-hook (#'refuse-debugger) ,@body)))
+
+(defun call-guarded-command (window title function)
+  (handler-case (funcall function)
+    (error (condition)
+      (say-in-window window "*ERROR* -> ~A: ~A.~%" title (one-line-text condition)))))
+
+(defmacro with-guarded-command ((window title) &body body)
+  "Run BODY, the work of the command TITLE; what goes wrong is said in WINDOW."
+  `(call-guarded-command ,window ,title (lambda () ,@body)))
+
+;;;; The transcript
 
 ;;; Any thread may say something; lines are kept newest first, the last few thousand of them. Each
 ;;; has a number, counted from the first there was. Lines have colours in them as at a terminal.
@@ -26,18 +52,16 @@
   (incf (transcript-count transcript))
   (incf (transcript-newest transcript)))
 
-(defun extend-line (transcript text)
-  (when (< +longest-line+ (length (first (transcript-lines transcript))))
-    (begin-line-of transcript))
-  (setf (first (transcript-lines transcript))
-        (concatenate 'string (first (transcript-lines transcript)) text)))
-
 (defun add-part (transcript part)
   "Add PART, of a line, to the last line of TRANSCRIPT; a return goes back to its beginning, as
 where something is counted."
   (let ((return (position #\Return part :from-end t)))
     (when return (setf (first (transcript-lines transcript)) ""))
-    (extend-line transcript (subseq part (if return (1+ return) 0)))))
+    (when (< +longest-line+ (length (first (transcript-lines transcript))))
+      (begin-line-of transcript))
+    (setf (first (transcript-lines transcript))
+          (uiop:strcat (first (transcript-lines transcript))
+                       (subseq part (if return (1+ return) 0))))))
 
 (defun add-text (transcript text)
   (loop for (part . more) on (uiop:split-string text :separator '(#\Newline))
@@ -68,7 +92,6 @@ where something is counted."
   (say (window-transcript window) (apply #'format nil arguments)))
 
 (defun say-entered (transcript text)
-  "Add TEXT, a line that the user has entered, to TRANSCRIPT."
   (call-changing-transcript transcript (lambda ()
                                          (incf (transcript-entered transcript))
                                          (add-text transcript text))))

@@ -39,7 +39,6 @@
 ;;; Dragging.
 
 (defun at-middle-p (pane image x y)
-  "True if X, Y of PANE is at the middle of the robot that IMAGE is of."
   (multiple-value-bind (to-x to-y) (point-at pane x y)
     (let ((reach (/ (with-canvas ((make-instance 'canvas) :scale (pane-scale pane))
                       (robot-radius))
