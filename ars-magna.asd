@@ -205,35 +205,23 @@
       :components ((:file "process") (:file "layout") (:file "input") (:file "escapes")
                    (:file "drawn-line") (:file "console") (:file "screen") (:file "json")))
      (:module "editing" :serial t
-      :components ((:file "keys") (:file "changes") (:file "history")
-                   (:file "kinds-of-lines") (:file "editor") (:file "typing")))
+      :components ((:file "keys") (:file "changes") (:file "history") (:file "kinds-of-lines")
+                   (:file "editor") (:file "typing")))
      (:module "prompt" :serial t
-      :components ((:file "reporting")
-                   (:file "listener")
-                   (:file "session") (:file "visit")
-                   (:file "listening")
-                   (:file "line")
-                   (:file "quantities") (:file "arguments") (:file "errands")
-                   (:file "reading") (:file "finding")
-                   (:file "loading")
-                   (:file "carrying-out") (:file "guarding")
-                   (:file "plans") (:file "worlds")
-                   (:file "breakage") (:file "debugger")
-                   (:file "clx") (:file "completing")
+      :components ((:file "reporting") (:file "listener") (:file "session") (:file "visit")
+                   (:file "listening") (:file "line") (:file "quantities") (:file "arguments")
+                   (:file "errands") (:file "reading") (:file "finding") (:file "loading")
+                   (:file "carrying-out") (:file "guarding") (:file "plans") (:file "worlds")
+                   (:file "breakage") (:file "debugger") (:file "clx") (:file "completing")
                    (:file "prompt")))
      (:module "lines" :serial t
-      :components ((:file "own-lines")
-                   (:file "running-lines") (:file "status-lines")
-                   (:file "map-lines") (:file "world-lines")
-                   (:file "plan-lines")
-                   (:file "acting-lines")
-                   (:file "topics") (:file "help")
+      :components ((:file "own-lines") (:file "running-lines") (:file "status-lines")
+                   (:file "map-lines") (:file "world-lines") (:file "plan-lines")
+                   (:file "acting-lines") (:file "topics") (:file "help")
                    (:file "picture-lines") (:file "other-runs")))
      (:module "shell" :serial t
-      :components ((:file "options") (:file "experiments")
-                   (:file "spreading") (:file "experiment-command")
-                   (:file "scripts")
-                   (:file "main")))))))
+      :components ((:file "options") (:file "experiments") (:file "spreading")
+                   (:file "experiment-command") (:file "scripts") (:file "main")))))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -242,15 +230,14 @@
   :serial t
   :components
   ((:module "src/clim" :serial t
-    :components ((:file "package") (:file "plan-look") (:file "watcher")
-                 (:file "arrangement") (:file "magnification") (:file "canvas")
-                 (:file "panes") (:file "world-pane") (:file "transcript")
-                 (:file "clipboard") (:file "transcript-pane") (:file "prompt")
-                 (:file "bar") (:file "popup") (:file "pointing") (:file "interactor")
-                 (:file "offers") (:file "plan-pane") (:file "world-mouse")
-                 (:file "layout-pane") (:file "keyboard") (:file "window") (:file "commands")
-                 (:file "menus") (:file "opening") (:file "x-server")
-                 (:file "following")))))
+    :components ((:file "package") (:file "plan-look") (:file "watcher") (:file "arrangement")
+                 (:file "magnification") (:file "canvas") (:file "panes") (:file "world-pane")
+                 (:file "transcript") (:file "clipboard") (:file "transcript-pane")
+                 (:file "prompt") (:file "bar") (:file "popup") (:file "pointing")
+                 (:file "interactor") (:file "offers") (:file "plan-pane")
+                 (:file "world-mouse") (:file "layout-pane") (:file "keyboard")
+                 (:file "window") (:file "commands") (:file "menus") (:file "opening")
+                 (:file "x-server") (:file "following")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."
@@ -258,8 +245,7 @@
   :serial t
   :components
   ((:module "src/fiveam" :serial t
-    :components ((:file "package") (:file "deciding") (:file "trying")
-                 (:file "checking")))))
+    :components ((:file "package") (:file "deciding") (:file "trying") (:file "checking")))))
 
 ;;; Loaded by ./cli/ars-magna --manual.
 (defsystem "ars-magna/manual"
@@ -268,10 +254,9 @@
   :serial t
   :components
   ((:module "cli/manual" :serial t
-    :components ((:file "package") (:file "html") (:file "guide")
-                 (:file "examples") (:file "entries")
-                 (:file "definition-entries")
-                 (:file "linking") (:file "writing")))))
+    :components ((:file "package") (:file "html") (:file "guide") (:file "examples")
+                 (:file "entries") (:file "definition-entries") (:file "linking")
+                 (:file "writing")))))
 
 ;;; Loaded after the tests where McCLIM is found: see load-tests in cli/build.lisp.
 (defsystem "ars-magna/clim-tests"

@@ -138,8 +138,6 @@
   (let ((words (substitute #\Space #\- (string-downcase keyword))))
     (string-upcase words :end 1)))
 
-;;; Commands.
-
 (defun argument-facts (specifications)
   (loop for spec in specifications
         collect (list (string-downcase (spec-name spec))
