@@ -75,12 +75,9 @@ What else may be signalled is not caught."
   "Load the saved run in FILE, whatever its digest, and pass some ticks. Return :RAN, or the
 condition of ours that loading signals."
   (handler-case
-      (run::reading-file (file :run 'run:damaged-simulation)
-        (run::call-with-saved-text
-         (lambda (in)
-           (let* ((reading (run::make-reading in 0 0)) (head (run::read-head reading)))
-             (run::simulation-from reading head (file-length in))))
-         file))
+      (run::reading-file (in file :run 'run:damaged-simulation)
+        (let* ((reading (run::make-reading in 0 0)) (head (run::read-head reading)))
+          (run::simulation-from reading head (file-length in))))
     (base:ars-magna-error (trouble) trouble)
     (:no-error (simulation) (run:run-ticks 30 simulation) :ran)))
 

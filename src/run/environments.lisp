@@ -34,16 +34,6 @@ ends with it and simulations side by side do not meet.")
           when (boundp symbol)
             collect (cons symbol (funcall value-of symbol)))))
 
-(defun known-environment (simulation)
-  "Return a list (symbol . value) of what the variables of SIMULATION were when a thread at work in
-it last said so. Can be set."
-  (if (fork-p simulation) (simulation-environment simulation) (simulation-left simulation)))
-
-(defun (setf known-environment) (environment simulation)
-  (if (fork-p simulation)
-      (setf (simulation-environment simulation) environment)
-      (setf (simulation-left simulation) environment)))
-
 ;;; A live run that is started inside of WITH-SIMULATION is current there only. When that ends, the
 ;;; one that is current outside has its variables again.
 
@@ -81,7 +71,7 @@ simulation around it may have bound them."
 
 (defun note-environment (simulation)
   "Let SIMULATION, in which this thread works, know what its variables are."
-  (setf (known-environment simulation) (environment-here simulation))
+  (setf (simulation-environment simulation) (environment-here simulation))
   (publish-variables simulation))
 
 (defun environment-with-dice (simulation)
@@ -95,20 +85,20 @@ simulation around it may have bound them."
   "Return a list (symbol . value) of what the variables of SIMULATION are, wherever this is."
   (or (and (headless-p simulation)
            (not (eq simulation *simulation*))
-           (known-environment simulation))
+           (simulation-environment simulation))
       (environment-with-dice simulation)))
 
 (defun take-up-environment (simulation)
   "Set the variables of SIMULATION, to which this thread comes back, to what they have become."
   (when (headless-p simulation)
-    (loop for (symbol . value) in (known-environment simulation)
+    (loop for (symbol . value) in (simulation-environment simulation)
           do (unless (eq value (symbol-value symbol)) (setf (symbol-value symbol) value)))))
 
 (defun keep-environment (simulation environment)
   "Let what the variables in ENVIRONMENT, a list (symbol . value), have become here be what
 SIMULATION, in which this thread does not work, has."
   (if (headless-p simulation)
-      (setf (known-environment simulation)
+      (setf (simulation-environment simulation)
             (loop for (symbol) in environment collect (cons symbol (symbol-value symbol))))
       (loop for (symbol . value) in environment
             do (unless (eq value (symbol-value symbol))

@@ -23,9 +23,6 @@
         (cons :part *object-kinds*) (cons :command *commands*))
   "The kinds of definitions, and the registry of each. Manipulations have methods instead.")
 
-(defun registry-of (kind)
-  (cdr (assoc kind *definition-kinds* :test #'same-name-p)))
-
 (defun qualified-name (symbol)
   "Return a string that names SYMBOL with its package, for FIND-ROBOT and kin."
   (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
@@ -76,9 +73,6 @@
                             (and entry (users-p entry))))
                         (remove-duplicates (mapcar #'second (journal-newest-first journal)))))))
 
-(defun name-of-place-type (type)
-  (if (place-type-p type) (place-type-name type) type))
-
 (defun names-in-use (kind simulation)
   (let ((map (world-map (simulation-world simulation))))
     (ecase kind
@@ -86,8 +80,8 @@
       (:map-clause (map-clause-kinds map))
       (:robot (mapcar #'robot-name (simulation-robots simulation)))
       (:kicker (append (kickers-at-work simulation) (asked-for 'set-kicker 1 simulation)))
-      (:place-type (mapcar #'name-of-place-type
-                           (elements-in-use (map-places map) (map-place-types map))))
+      (:place-type (loop for type in (elements-in-use (map-places map) (map-place-types map))
+                         collect (if (place-type-p type) (place-type-name type) type)))
       (:attribute (attributes-at-work simulation))
       (:part (sensor-kinds simulation))
       (:command (users-commands simulation))
@@ -108,7 +102,7 @@
 
 (defun definition-entry (definition)
   "Return the registry entry of DEFINITION, (kind name ...), or NIL."
-  (let ((registry (registry-of (first definition))))
+  (let ((registry (cdr (assoc (first definition) *definition-kinds* :test #'same-name-p))))
     (and registry (lookup-entry (second definition) registry))))
 
 (defun methods-of (definition)

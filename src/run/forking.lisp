@@ -45,11 +45,6 @@
           (timeline-fork-p (simulation-timeline copy)) t)
     copy))
 
-(defun place-among-participants (value simulation)
-  "Return a text that says which of those who take part in SIMULATION has VALUE, and where, or NIL."
-  (some (lambda (participant) (participant-place participant value))
-        (simulation-participants simulation)))
-
 (defun fork-options (simulation continuations decisions)
   "Return what a copier must know to fork SIMULATION. CONTINUATIONS says whether it copies those of
 commands under way, DECISIONS, an alist, what the fork is to have for what cannot be copied."
@@ -58,7 +53,9 @@ commands under way, DECISIONS, an alist, what the fork is to have for what canno
         :participants (simulation-participants simulation)
         :continuations continuations
         :decisions decisions
-        :place-of (lambda (value) (place-among-participants value simulation))))
+        :place-of (lambda (value)
+                    (some (lambda (participant) (participant-place participant value))
+                          (simulation-participants simulation)))))
 
 (defun copy-alone (simulation)
   "Return a copy of SIMULATION, which stands still here, without anything that takes part in it."
@@ -104,26 +101,19 @@ tick, and CANNOT-FORK."
 
 ;;; Whoever takes part may be busy just now, in another thread.
 
-(defun call-at-rest (participants function)
-  "Call FUNCTION while none of PARTICIPANTS does anything. Return its value, or :BUSY."
+(defun call-around (caller participants function)
+  "Call FUNCTION within calls of CALLER, such as PARTICIPANT-AT-REST, for all PARTICIPANTS. Return
+what it returns."
   (if participants
-      (participant-at-rest (first participants)
-                           (lambda () (call-at-rest (rest participants) function)))
-      (funcall function)))
-
-(defun call-as-all-make-way (participants function)
-  "Call FUNCTION, and return its value. Meanwhile PARTICIPANTS come to rest as soon as they can."
-  (if participants
-      (call-as-participant-makes-way (first participants)
-                                     (lambda ()
-                                       (call-as-all-make-way (rest participants) function)))
+      (funcall caller (first participants)
+               (lambda () (call-around caller (rest participants) function)))
       (funcall function)))
 
 (defun try-to-fork (simulation continuations decisions)
   "Return a fork of SIMULATION, see FORK-NOW, or :BUSY if somebody who takes part in it is."
   (asking (simulation)
-    (call-at-rest (simulation-participants simulation)
-                  (lambda () (fork-now simulation continuations decisions)))))
+    (call-around #'participant-at-rest (simulation-participants simulation)
+                 (lambda () (fork-now simulation continuations decisions)))))
 
 (defconstant +patience+ 2000 "How often in a row a fork tries to find all at rest, once a tick or
 once in some milliseconds.")
@@ -144,8 +134,8 @@ once in some milliseconds.")
 FORK-NOW."
   (let ((fork (try-to-fork simulation continuations decisions)))
     (if (eq :busy fork)
-        (call-as-all-make-way
-         (simulation-participants simulation)
+        (call-around
+         #'call-as-participant-makes-way (simulation-participants simulation)
          (lambda () (keep-trying-to-fork simulation continuations decisions)))
         fork)))
 
@@ -189,11 +179,6 @@ and false if there is to be no fork."
     (unless (typep seed '(or null integer))
       (reject-argument *fork-asker* 'seed seed "an integer, or NIL"))))
 
-(defun inherit-error-policy (simulation fork)
-  "Let what becomes of errors in users' code be in FORK as in SIMULATION."
-  (setf (message-queue-error-policy (simulation-messages fork))
-        (message-queue-error-policy (simulation-messages simulation))))
-
 (addition fork-simulation)
 (defun fork-simulation (&rest arguments)
   "Return a fork of a run: a headless twin at the same tick that goes on by itself, with a world,
@@ -218,7 +203,9 @@ of the world outside, with restarts; MAKE-NO-FORK returns NIL."
     (setf (simulation-forked-p simulation) t)
     (let ((fork (fork-deciding simulation (getf options :continuations)))
           (seed (getf options :seed)))
-      (when fork (inherit-error-policy simulation fork))
+      (when fork
+        (setf (message-queue-error-policy (simulation-messages fork))
+              (message-queue-error-policy (simulation-messages simulation))))
       (when (and fork seed) (call-inside fork (lambda () (set-seed seed fork))))
       fork)))
 

@@ -38,16 +38,11 @@
   "Return ENTRY as it stands in a file: the operator by name."
   (list* (first entry) (make-keyword (symbol-name (second entry))) (cddr entry)))
 
-(defun header-with-remarks (journal)
-  (append (journal-header journal)
-          (and (journal-remarks journal) (list :remarks (reverse (journal-remarks journal))))))
-
-(defun without-remarks (header)
-  (loop for (key value) on header by #'cddr
-        unless (eq key :remarks) append (list key value)))
-
 (defun journal-data (journal)
-  (append (list (list :ars-magna-journal +journal-version+ (header-with-remarks journal)))
+  (append (list (list :ars-magna-journal +journal-version+
+                      (append (journal-header journal)
+                              (and (journal-remarks journal)
+                                   (list :remarks (reverse (journal-remarks journal)))))))
           (mapcar #'entry-datum (journal-entries journal))
           (list (list :end (journal-end journal)))))
 
@@ -61,11 +56,11 @@
 
 (defun check-head-line (line)
   "Signal an error unless LINE begins as the head of a journal of this version does."
-  (when (or (begins-with-p "(:ars-magna-journal 1 " line)
-            (begins-with-p "(ars-magna-journal 1 " line))
-    (error "it is of the old format 1, whose entries could call any function, and is not read any ~
-            more: repeat the run, with the version that recorded it, or record it anew"))
-  (unless (begins-with-p "(ars-magna-journal " line) (error "it does not begin like one")))
+  (flet ((begins-p (text) (starts-with-subseq text line :test #'char-equal)))
+    (when (or (begins-p "(:ars-magna-journal 1 ") (begins-p "(ars-magna-journal 1 "))
+      (error "it is of the old format 1, whose entries could call any function, and is not read ~
+              any more: repeat the run, with the version that recorded it, or record it anew"))
+    (unless (begins-p "(ars-magna-journal ") (error "it does not begin like one"))))
 
 (defun numbered-datum (number line sum)
   "Return what CHECKED-DATUM does. Signals an error that names the entry by its NUMBER."
@@ -92,29 +87,21 @@ is wrong, and in which entry."
        (evenp (length object))
        (loop for key in object by #'cddr always (keywordp key))))
 
-(defun strings-p (object)
-  (and (listp object) (every #'stringp object)))
+(defun list-of-p (type object)
+  (proper-list-of-p (lambda (element) (typep element type)) object))
 
 (defun settings-p (object)
-  (and (listp object)
-       (every (lambda (setting) (typep setting '(cons string (cons (or real boolean) null))))
-              object)))
+  (list-of-p '(cons string (cons (or real boolean) null)) object))
 
 (defun definitions-p (object)
-  (and (listp object)
-       (every (lambda (definition)
-                (typep definition '(cons symbol (cons string (cons (or integer symbol) null)))))
-              object)))
+  (list-of-p '(cons symbol (cons string (cons (or integer symbol) null))) object))
 
 (defun remarks-p (object)
-  (and (listp object)
-       (every (lambda (remark)
-                (typep remark '(cons tick-count
-                                (cons keyword
-                                 (cons string
-                                  (cons (or null string)
-                                   (cons (or null real) (cons (or null real) null))))))))
-              object)))
+  (list-of-p '(cons tick-count
+               (cons keyword
+                (cons string
+                 (cons (or null string) (cons (or null real) (cons (or null real) null))))))
+             object))
 
 (defun settings-trouble (settings)
   "Return what is wrong with SETTINGS of parameters, lists (name value), or NIL."
@@ -130,7 +117,8 @@ is wrong, and in which entry."
   (flet ((wrong-p (key predicate) (not (funcall predicate (getf header key)))))
     (cond ((not (plist-p header)) "it is no list of names and values")
           ((wrong-p :map #'stringp) "it names no map")
-          ((or (wrong-p :robots #'consp) (wrong-p :robots #'strings-p)) "it names no robots")
+          ((not (and (getf header :robots) (list-of-p 'string (getf header :robots))))
+           "it names no robots")
           ((twice-p (getf header :robots)) "it names a robot twice")
           ((wrong-p :seed #'integerp) "its seed is no integer")
           ((not (thinking-mode-p (getf header :thinking :free))) "its thinking mode makes no sense")
@@ -156,10 +144,6 @@ is wrong, and in which entry."
          (format nil "nothing that can be asked of a run is called ~A"
                  (short-text (plain-name (second entry)))))))
 
-(defun operator-entry (entry)
-  "Return ENTRY with the name of its operator as that was defined."
-  (list* (first entry) (operator-name (find-operator (second entry))) (cddr entry)))
-
 (defun entries-of (data)
   "Return DATA, the entries of a journal, checked. Signals an error that names the entry."
   (loop with tick = 0
@@ -168,7 +152,8 @@ is wrong, and in which entry."
         for trouble = (entry-trouble entry tick)
         when trouble do (error "entry ~D makes no sense: ~A" number trouble)
         do (setf tick (first entry))
-        collect (operator-entry entry)))
+        ;; With the name of the operator as that was defined.
+        collect (list* tick (operator-name (find-operator (second entry))) (cddr entry))))
 
 (defun check-head (head)
   (unless (typep head '(cons (eql :ars-magna-journal) (cons t (cons t null))))
@@ -188,7 +173,7 @@ is wrong, and in which entry."
 (defun journal-from (data)
   "Return the journal that DATA, all that its file has, come to. Signals an error if it is none."
   (check-head (first data))
-  (let ((journal (make-journal (without-remarks (third (first data)))))
+  (let ((journal (make-journal (uiop:remove-plist-key :remarks (third (first data)))))
         (entries (entries-of (butlast (rest data))))
         (end (first (last (rest data)))))
     (check-end end entries)
@@ -198,15 +183,12 @@ is wrong, and in which entry."
           (journal-end journal) (second end))
     journal))
 
-(defun read-journal-file (file)
-  (call-with-saved-text (lambda (in) (journal-from (read-data in))) file))
-
 (defun read-journal (file &optional (operator 'read-journal))
   "Return the journal in FILE, an argument of OPERATOR. Signals DAMAGED-JOURNAL if it is none, or
 incomplete, and says which entry is to blame; WRONG-ARGUMENT unless FILE is a name."
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file "a journal, or the name of a file that holds one"))
-  (reading-file (file :journal 'damaged-journal) (read-journal-file file)))
+  (reading-file (in file :journal 'damaged-journal) (journal-from (read-data in))))
 
 ;;; Writing, and reading on trial: so saving refuses what loading would refuse, by the same checks.
 

@@ -108,12 +108,6 @@ is true and it keeps none. With SEED, all chance in it comes from that."
           (t (when seed (start-seed simulation seed))
              simulation))))
 
-(defun passing-ticks-p ()
-  "True if this thread is one that passes the ticks of the current simulation, also if it has been
-told to stop."
-  (and *simulation*
-       (pacer-p (simulation-timeline *simulation*))))
-
 (defun call-as-starter (custody function)
   "Call FUNCTION, which starts the world in CUSTODY, which this thread has. Signals MISUSE if that
 is what it is doing already, and FUNCTION has been called on the way."
@@ -166,7 +160,9 @@ Return the run."
 
 (defun start-live (robot rate seed journal keep thinking)
   "Run the world of ROBOT as START-WORLD does. True unless ROBOT has been replaced meanwhile."
-  (let ((world (robot-world robot)) (everywhere (passing-ticks-p)))
+  (let ((world (robot-world robot))
+        ;; This thread may pass the ticks of the current simulation, also if told to stop.
+        (everywhere (and *simulation* (pacer-p (simulation-timeline *simulation*)))))
     (call-starting world (lambda ()
                            (when (in-replaced-map-p robot)
                              (retire-robot robot "its map has been defined anew"))

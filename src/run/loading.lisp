@@ -193,18 +193,13 @@
 
 (defun saved-head (file)
   "Return the head of the saved run in FILE. Signals DAMAGED-SIMULATION."
-  (reading-file (file :run 'damaged-simulation)
-    (call-with-saved-text (lambda (in) (read-head (make-reading in 0 0))) file)))
+  (reading-file (in file :run 'damaged-simulation) (read-head (make-reading in 0 0))))
 
 (defun read-simulation (file)
   "Return the simulation that is saved in FILE. Signals DAMAGED-SIMULATION and UNKNOWN-NAME."
-  (reading-file (file :run 'damaged-simulation)
-    (call-with-saved-text (lambda (in)
-                            (let* ((reading (make-reading in 0 0)) (head (read-head reading)))
-                              (check-tick-and-digest
-                               (simulation-from reading head (file-length in))
-                               head)))
-                          file)))
+  (reading-file (in file :run 'damaged-simulation)
+    (let* ((reading (make-reading in 0 0)) (head (read-head reading)))
+      (check-tick-and-digest (simulation-from reading head (file-length in)) head))))
 
 (defun check-saved-definitions (head)
   "Signal UNKNOWN-NAME if a robot that HEAD of a saved run names is not defined, and

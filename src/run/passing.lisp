@@ -23,13 +23,11 @@
 (defun await-free (simulation)
   "Wait a moment for another thread that has SIMULATION in custody only to look at it. Signals
 MISUSE if it passes its ticks."
-  (when (timeline-passing-p (simulation-timeline simulation)) (reject-busy simulation))
+  (when (timeline-passing-p (simulation-timeline simulation))
+    (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. One at a time can."
+                (simulation-name simulation)))
   (answer-meanwhile)
   (yield-thread))
-
-(defun reject-busy (simulation)
-  (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. One at a time can."
-              (simulation-name simulation)))
 
 (defun pass-freely (count simulation)
   "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
@@ -114,19 +112,16 @@ restart CONTINUE that lets the other ticks pass."
         until (or (simulation-over simulation) (<= last (simulation-tick simulation))))
   (simulation-tick simulation))
 
-(defun tell-of-limit (limit simulation)
-  "Say once in the run of SIMULATION that RUN-UNTIL has met LIMIT, which nobody has asked for."
-  (warn-once '(:limit :run-until) (simulation-world simulation)
-             (format nil "run-until: its test was still false after ~D ticks, at tick ~D, and it ~
-                          returned NIL. ~D is the default; (run-until TEST :limit TICKS) sets ~
-                          another."
-                     limit (simulation-tick simulation) limit)))
-
 (defun note-how-met (answer limit-p limit simulation)
   "Note that RUN-UNTIL has come to an end in SIMULATION: by ANSWER, or if that is NIL by LIMIT,
-which the program has given if LIMIT-P."
+which the program has given if LIMIT-P. If it has not, say so once in the run."
   (cond (answer (note-looked-after (simulation-world simulation)))
-        ((not (or limit-p (simulation-over simulation))) (tell-of-limit limit simulation))))
+        ((not (or limit-p (simulation-over simulation)))
+         (warn-once '(:limit :run-until) (simulation-world simulation)
+                    (format nil "run-until: its test was still false after ~D ticks, at tick ~D, ~
+                                 and it returned NIL. ~D is the default; (run-until TEST :limit ~
+                                 TICKS) sets another."
+                            limit (simulation-tick simulation) limit)))))
 
 (addition run-until)
 (define-with-keywords run-until (predicate &key (limit 100000 limit-p)

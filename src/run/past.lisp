@@ -71,20 +71,18 @@ are externalized and memorized."
               (timeline-moments timeline)
               (goes-on-in-forks-p) operator arguments nil)))
 
-;; Whoever acts may be in any thread.
-(defun add-act (past act)
-  (atomic-push act (past-acts past))
-  (incf (past-count past)))
-
 (defun remember (simulation operator arguments &optional request)
   "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, which are
 externalized or OPERATOR is a function, see ACT; by REQUEST, if that is given."
   (let ((past (simulation-past simulation)))
     (when past
       (let ((arguments (memorized arguments)))
-        (add-act past (if request
-                          (request-act request simulation operator arguments)
-                          (change-act simulation operator arguments)))))))
+        ;; Whoever acts may be in any thread.
+        (atomic-push (if request
+                         (request-act request simulation operator arguments)
+                         (change-act simulation operator arguments))
+                     (past-acts past))
+        (incf (past-count past))))))
 
 (defun pending-acts (simulation)
   "Return what is asked of SIMULATION and waits for the next tick, as acts, the newest first."
@@ -92,11 +90,6 @@ externalized or OPERATOR is a function, see ACT; by REQUEST, if that is given."
         for (operator . arguments) = (request-entry request)
         collect (request-act request simulation operator
                              (memorized (externalize arguments)))))
-
-;; In these phases only what a fork has too can act.
-(defun changing-inside-p (simulation)
-  "True in the phases of a tick of SIMULATION in which the world changes."
-  (changing-phase-p (phase-here (simulation-timeline simulation))))
 
 ;;; Programs around the run, and continuations, roll dice that plans roll too; and are not repeated.
 
@@ -122,7 +115,8 @@ has: FUNCTION, of ARGUMENTS, does it again. What a fork does by itself does not 
 nothing."
   (when (and (simulation-past simulation)
              (not (goes-on-in-forks-p))
-             (not (changing-inside-p simulation)))
+             ;; In these phases only what a fork has too can act.
+             (not (changing-phase-p (phase-here (simulation-timeline simulation)))))
     (when (eq simulation *simulation*) (note-dice simulation))
     (remember simulation function arguments))
   (values))
@@ -177,13 +171,10 @@ can go back; T for a usual number, NIL for none. The prompt sets it to T.")
 (defparameter *most-kept-octets* (expt 2 28)
   "How many octets the kept forks of a run may take, as far as that can be foreseen.")
 
-(defun octets-of-fork (simulation)
-  "Return roughly how many octets a fork of SIMULATION takes."
-  (+ 50000 (octets-of-copy (simulation-world simulation))))
-
 (defun room-for-forks (simulation past)
   "Return how many forks SIMULATION, of PAST, may keep."
-  (clamp (floor *most-kept-octets* (octets-of-fork simulation)) 3 (max 3 (past-limit past))))
+  (let ((octets (+ 50000 (octets-of-copy (simulation-world simulation))))) ; of a fork, roughly
+    (clamp (floor *most-kept-octets* octets) 3 (max 3 (past-limit past)))))
 
 (defun least-needed (forks)
   "Return the one of FORKS, the newest first, without which the gap is smallest for its age. The
@@ -214,8 +205,8 @@ first and the last are needed."
 
 (defun fork-to-keep (simulation past)
   "Return a fork of SIMULATION, of PAST; :BUSY if somebody is at work in it, NIL if it cannot be."
-  (handler-case (call-at-rest (simulation-participants simulation)
-                              (lambda () (fork-now simulation nil '())))
+  (handler-case (call-around #'participant-at-rest (simulation-participants simulation)
+                             (lambda () (fork-now simulation nil '())))
     (misuse () :busy)
     (error (condition) (warn-of-no-fork simulation past condition))))
 

@@ -99,15 +99,12 @@ it, and the tick at which plans strayed on the way, or NIL."
 
 ;;; Its place.
 
-(defun set-everywhere (symbol value)
-  (setf (global-value symbol) value
-        (symbol-value symbol) value))
-
 (defun variable-setter (old)
   "Return the function of a symbol and a value that sets what is bound, or global, for OLD."
   (cond ((headless-p old) #'set)
         ((not (eq old *simulation*)) (lambda (symbol value) (setf (global-value symbol) value)))
-        ((eq old (global-value '*simulation*)) #'set-everywhere)
+        ((eq old (global-value '*simulation*))
+         (lambda (symbol value) (setf (global-value symbol) value (symbol-value symbol) value)))
         (t #'set)))
 
 (defun set-variables (new old)

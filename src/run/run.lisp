@@ -25,8 +25,8 @@
                 "what DIRTY-SIMULATION would restore, as the journal knows it")
    (journal nil t "the journal that the simulation keeps, or NIL" :addition)
    (variables '() list "the symbols that are bound for the headless simulation")
-   (environment '() list "what they are, a list (symbol . value), in a fork")
-   (left '() list "what they were when a thread at work in the simulation last said so")
+   (environment '() list "what they are in a fork, a list (symbol . value), or else what they were
+when a thread at work in the simulation last said so")
    (dice nil (or null random-state)
          "what its programs roll by CL:RANDOM, if it comes from a file that says that, or NIL")
    (plans-dice-p nil boolean "its plans roll dice of their own by CL:RANDOM: a run that is or was

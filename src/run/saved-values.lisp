@@ -20,29 +20,23 @@
     (write-string " . " out)
     (write-value tail inventory out)))
 
-(defun write-elements (list inventory out)
-  "Write the elements of LIST, a space before each, up to where it has a number or ends."
+(defun write-elements (list inventory out &optional (beginning #\Space))
+  "Write the elements of LIST, BEGINNING before the first and a space before each other, up to where
+it has a number or ends."
   (loop for tail = list then (cdr tail)
+        for separator = beginning then #\Space
         while (and (consp tail)
                    (or (eq tail list) (null (number-of tail inventory))))
-        do (write-char #\Space out)
+        do (write-char separator out)
            (write-value (car tail) inventory out)
         finally (write-tail tail inventory out)))
-
-(defun write-short-list (list inventory out)
-  "Write LIST, which has no number, in parentheses."
-  (write-char #\( out)
-  (write-value (car list) inventory out)
-  (if (and (consp (cdr list)) (null (number-of (cdr list) inventory)))
-      (write-elements (cdr list) inventory out)
-      (write-tail (cdr list) inventory out))
-  (write-char #\) out))
 
 (defun write-value (value inventory out)
   "Write VALUE to OUT: its number in INVENTORY, if it has one."
   (let ((number (and (not (typep value '(or symbol fixnum))) (number-of value inventory))))
     (cond (number (write-number number out))
-          ((consp value) (write-short-list value inventory out))
+          ((consp value) (write-elements value inventory out #\()
+           (write-char #\) out))
           (t (write-datum value out)))))
 
 ;;; Lines.

@@ -70,14 +70,10 @@ hold."
     (setf (timeline-inbox timeline) (remove-if #'functional-p (timeline-inbox timeline)))
     copy))
 
-(defun journal-to-save (simulation)
-  "Return the journal of SIMULATION, reaching to now, or NIL."
-  (and (simulation-journal simulation) (end-of-journal simulation)))
-
 (defun call-with-savable (function simulation without-p)
   "Call FUNCTION with SIMULATION and its journal or, where these have what no file can hold, if
 WITHOUT-P with a copy of SIMULATION without that. Signals UNSAVABLE otherwise."
-  (let* ((journal (journal-to-save simulation))
+  (let* ((journal (and (simulation-journal simulation) (end-of-journal simulation)))
          (texts (unsavable-texts simulation journal)))
     (cond ((null texts) (funcall function simulation journal))
           (without-p

@@ -71,10 +71,6 @@ before."
   (let ((text (string-left-trim '(#\Space #\Tab #.(code-char #xFEFF)) line)))
     (or (string= "" text) (char= #\; (char text 0)))))
 
-(defun begins-with-p (text line)
-  (and (<= (length text) (length line))
-       (string-equal text line :end2 (length text))))
-
 (defun line-checksum (line start)
   "Return the check sum that stands in LINE from START on, or NIL."
   (and (<= 0 start)
@@ -110,9 +106,9 @@ file of bytes, or too long."
     (with-homeless-symbols () (funcall function in))))
 
 (defun call-reading-file (function file kind damage)
-  "Return what FUNCTION returns; if it signals an error other than UNKNOWN-NAME, signal one of the
-class DAMAGE, which says that FILE, to be of KIND, is to blame."
-  (handler-case (funcall function)
+  "Do as CALL-WITH-SAVED-TEXT does; if that signals an error other than UNKNOWN-NAME, signal one of
+the class DAMAGE, which says that FILE, to be of KIND, is to blame."
+  (handler-case (call-with-saved-text function file)
     (unknown-name (trouble) (error trouble))
     (stream-error ()
       (error damage :file file :reason "the system does not let it be read"))
@@ -126,9 +122,9 @@ class DAMAGE, which says that FILE, to be of KIND, is to blame."
       (damaged-file-reason trouble)
       (string-right-trim "." (one-line-text trouble))))
 
-(defmacro reading-file ((file kind damage) &body body)
-  "Run BODY as CALL-READING-FILE would a function."
-  `(call-reading-file (lambda () ,@body) ,file ,kind ,damage))
+(defmacro reading-file ((in file kind damage) &body body)
+  "Run BODY, in which IN is a stream of FILE, as CALL-READING-FILE would a function."
+  `(call-reading-file (lambda (,in) ,@body) ,file ,kind ,damage))
 
 (defun check-format (found expected)
   "Signal an error unless FOUND, the number of a file's format, is EXPECTED."
