@@ -111,11 +111,6 @@ that their widths are in proportion.")
                              (thing-image-thing image) x y +object-width+ +object-height+)
                (wipe canvas x y +object-width+ +object-height+))))))
 
-(defun wipe (canvas x y width height)
-  "Draw over what is in a box. Return NIL."
-  (with-gcontext (draw-gcontext* :foreground white*)
-    (draw-rectangle canvas draw-gcontext* x y width height t)))
-
 (defun draw-object (canvas image x y width)
   (with-subject (canvas image)
     (let ((wide (cond ((draw-by-itself canvas image x y) +object-width+)
@@ -214,14 +209,11 @@ anew; a display does not, lest it show what the robot cannot know."
                      left (+ next +line-height+) width))
     (+ +margin+ (max (+ y (* 2 +dial+)) (+ next (* 2 +line-height+))))))
 
-(defun draw-cameras (canvas robot width)
-  (reduce (lambda (y camera) (draw-camera canvas robot camera y width))
-          (robot-image-cameras robot) :initial-value +margin+))
-
 ;;; Hands.
 
-(defun draw-hand (canvas hand y width)
+(defun draw-hand (canvas robot hand y width)
   "Draw HAND from Y; return where its picture ends."
+  (declare (ignore robot))
   (let ((left (+ +margin+ (* 10 +character-width+)))
         (contents (hand-image-contents hand)))
     (with-subject (canvas hand)
@@ -232,14 +224,11 @@ anew; a display does not, lest it show what the robot cannot know."
       (draw-location canvas (hand-image-location hand) left (+ y +line-height+) width)))
   (+ y (* +line-height+ (if (hand-image-location hand) 2 1))))
 
-(defun draw-hands (canvas robot width)
-  (reduce (lambda (y hand) (draw-hand canvas hand y width))
-          (robot-image-hands robot) :initial-value +margin+))
-
 ;;; Storage bins.
 
-(defun draw-bin (canvas bin y width)
+(defun draw-bin (canvas robot bin y width)
   "Draw BIN from Y; return where its picture ends."
+  (declare (ignore robot))
   (with-subject (canvas bin)
     (draw-line-of-text canvas +margin+ y width
                        (format nil "~A: ~:[open~;closed~]" (subject-title bin)
@@ -249,18 +238,15 @@ anew; a display does not, lest it show what the robot cannot know."
           do (draw-object canvas thing (+ (* 4 +margin+)) (+ top 2) width)
           finally (return top))))
 
-(defun draw-bins (canvas robot width)
-  (reduce (lambda (y bin) (draw-bin canvas bin y width))
-          (robot-image-bins robot) :initial-value +margin+))
-
 ;;;; The displays by name, and all in one picture
 
 (define-constant +details+
     '((:state "Robot state" draw-state) (:designators "Robot designators" draw-designators)
-      (:cameras "Cameras" draw-cameras) (:hands "Hands" draw-hands)
-      (:bins "Storage bins" draw-bins))
+      (:cameras "Cameras" draw-camera robot-image-cameras)
+      (:hands "Hands" draw-hand robot-image-hands) (:bins "Storage bins" draw-bin robot-image-bins))
   :test #'cl:equal
-  :documentation "Lists (name title function): the displays but that of the world.")
+  :documentation "The displays but that of the world: lists (name title function), or of those of
+parts (name title function parts), in which FUNCTION draws one of what PARTS returns.")
 
 ;; As reading 27 says.
 (define-constant +displays+ (cons :world (mapcar #'first +details+))
@@ -277,8 +263,12 @@ storage bins.")
 
 (defun draw-detail (canvas display robot width)
   "Draw one of the displays of ROBOT, WIDTH pixels wide; return its height."
-  (let ((*size-unit* (size-unit robot)))
-    (funcall (third (assoc display +details+)) canvas robot width)))
+  (destructuring-bind (draw &optional parts) (cddr (assoc display +details+))
+    (let ((*size-unit* (size-unit robot)))
+      (if parts
+          (reduce (lambda (y part) (funcall draw canvas robot part y width))
+                  (funcall parts robot) :initial-value +margin+)
+          (funcall draw canvas robot width)))))
 
 (defun draw-titled (canvas display robot x y)
   "Draw a display of ROBOT with its title and a frame, its upper left corner at X, Y; return its

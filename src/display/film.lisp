@@ -63,17 +63,16 @@ a vector of such numbers."
 
 (defun write-frames (frames out)
   "Write FRAMES, in order: the first whole, others by what changes, if they are as long."
-  (write-char #\[ out)
-  (loop for before = nil then frame
-        for frame in frames
-        do (when before (write-char #\, out))
-           (cond ((and before (= (length frame) (length before)))
-                  (write-string "{\"changes\":" out)
-                  (write-array #'write-number (changes-in frame before) out))
-                 (t (write-string "{\"all\":" out)
-                    (write-array #'write-number frame out)))
-           (write-char #\} out))
-  (write-char #\] out))
+  (let ((before nil))
+    (flet ((write-frame (frame out)
+             (cond ((and before (= (length frame) (length before)))
+                    (write-string "{\"changes\":" out)
+                    (write-array #'write-number (changes-in frame before) out))
+                   (t (write-string "{\"all\":" out)
+                      (write-array #'write-number frame out)))
+             (write-char #\} out)
+             (setf before frame)))
+      (write-array #'write-frame frames out))))
 
 (defun frame-at (tick ticks)
   "Return the number of the first frame that shows what was so at TICK; TICKS are those of all."
@@ -154,3 +153,116 @@ cannot play; LEGEND the items of a list. SEVERAL-P: say of which robot MOMENTS a
   (format out "<script>~%")
   (write-data reel ticks rate moments several-p out)
   (format out "</script>~%<script>~%~A</script>~%</body></html>~%" *film-script*))
+
+;;; Making one. Its legend stands beside the picture, so that this can be as large as there is room;
+;;; and has what is to be seen in any of the frames.
+
+(defun movers-text (snapshot layers in-color scale)
+  (with-output-to-string (out)
+    (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
+      (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
+
+(defun still-text (snapshot movers layers in-color scale)
+  "Return an SVG document of the map of SNAPSHOT and LAYERS, with a group called movers over it, of
+the lines of SVG MOVERS."
+  (with-output-to-string (out)
+    (with-svg (canvas out :color-p in-color)
+      (with-canvas (canvas :scale scale)
+        (draw-framed canvas snapshot layers
+                     (lambda ()
+                       (draw-terrain canvas (snapshot-map snapshot) :layers layers)
+                       (write-svg canvas "<g id=\"movers\">
+" movers "</g>
+")))))))
+
+(defun film-title (journal ticks)
+  (format nil "~A, tick~P ~D~@[ to ~D~]" (title-of-journal journal)
+          (length ticks) (first ticks) (and (rest ticks) (first (last ticks)))))
+
+(defstruct (cast (:constructor make-cast (opening)) (:copier nil))
+  "What is to be seen in a film that begins as the snapshot OPENING shows: the images of things, by
+these, the images of robots, and the entries of lines, of both the latest first."
+  (opening nil :type snapshot :read-only t)
+  (robots '() :type list)
+  (things (make-hash-table :test #'eq) :type hash-table :read-only t)
+  (lines '() :type list))
+
+(defun add-to-cast (snapshot layers cast)
+  "Let CAST know what is to be seen in SNAPSHOT with LAYERS."
+  (let ((things (cast-things cast)))
+    (loop for image across (snapshot-things snapshot)
+          do (unless (gethash (thing-image-thing image) things)
+               (setf (gethash (thing-image-thing image) things) image)))
+    (dolist (image (snapshot-robots snapshot))
+      (pushnew image (cast-robots cast) :key #'robot-image-position))
+    (dolist (entry (line-entries snapshot layers))
+      (pushnew entry (cast-lines cast) :key #'entry-text :test #'string=))))
+
+(defun cast-entries (cast layers)
+  (let ((opening (cast-opening cast)))
+    (legend-entries (make-snapshot :map (snapshot-map opening) :part (snapshot-part opening)
+                                   :robots (sort (copy-list (cast-robots cast)) #'<
+                                                 :key #'robot-image-position)
+                                   :things (sort (coerce (hash-table-values (cast-things cast))
+                                                         'simple-vector)
+                                                 #'< :key #'image-serial))
+                    layers :lines (reverse (cast-lines cast)))))
+
+(defun write-whole-name (entry out)
+  "Write, as an attribute in HTML, what ENTRY is short for, if it is."
+  (when (entry-whole entry)
+    (format out " title=\"")
+    (write-text (entry-whole entry) out)
+    (format out "\"")))
+
+(defun legend-text (cast layers in-color)
+  "Return the legend of a film as items of a list in HTML."
+  (with-output-to-string (out)
+    (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
+      (with-canvas (canvas)
+        (dolist (entry (cast-entries cast layers))
+          (format out "<li")
+          (write-whole-name entry out)
+          (format out "><svg width=\"20\" height=\"18\" viewBox=\"0 0 20 18\">~%")
+          (funcall (entry-sample entry) canvas 10 9)
+          (format out "</svg> ")
+          (write-text (entry-text entry) out)
+          (format out "</li>~%"))))))
+
+(defun film-scale (scale snapshot layers)
+  "Return how many pixels a cell has in a film that begins as SNAPSHOT shows. The page magnifies the
+picture itself, as far as there is room: more than suits the map would only make its text small."
+  (min (suitable-scale scale snapshot layers) (fitting-scale snapshot layers)))
+
+(defun shoot (journal every until watch part layers in-color scale)
+  "Replay JOURNAL. Return the reel of it, the ticks of its frames, stills of the first and the last
+frame, and the cast; WATCH is called with the simulation after each tick."
+  (let ((reel (make-reel)) (ticks '()) (cast nil) (first nil) (last nil)
+        ;; The legend and the title of a page are HTML.
+        (shown (set-difference layers '(:legend :title))))
+    (call-with-frames (lambda (snapshot)
+                        (unless cast
+                          (setf cast (make-cast snapshot)
+                                scale (film-scale scale snapshot shown)))
+                        (add-to-cast snapshot layers cast)
+                        (setf last (movers-text snapshot shown in-color scale)
+                              first (or first last))
+                        (push (snapshot-tick snapshot) ticks)
+                        (add-frame last reel))
+                      journal (frame-step journal every until) until :part part :watch watch)
+    (flet ((still (movers) (still-text (cast-opening cast) movers shown in-color scale)))
+      (values reel (reverse ticks) (still first) (still last) cast))))
+
+(defun film-text (journal moments &key every until rate kinds layers in-color scale title part)
+  "Return the page of a film of JOURNAL, with MOMENTS besides those that are seen in it."
+  (multiple-value-bind (watch seen) (moments-watcher)
+    (multiple-value-bind (reel ticks first last cast)
+        (shoot journal every until watch part layers in-color scale)
+      (with-output-to-string (out)
+        (write-film out (or title (film-title journal ticks)) first last
+                    (if (member :legend layers) (legend-text cast layers in-color) "")
+                    reel ticks rate
+                    (in-order (append (of-kinds kinds (append (funcall seen)
+                                                              (remarked-moments journal until)))
+                                      moments))
+                    (and (rest (snapshot-robots (cast-opening cast))) t))))))

@@ -86,9 +86,13 @@ wide, with DASHES."
   "Return how wide TEXT is, in pixels."
   (* +character-width+ (length text)))
 
-(defun draw-text-on-plate (canvas x y text)
+(defun wipe (canvas x y width height)
+  "Draw over what is in a box. Return NIL."
   (with-gcontext (draw-gcontext* :foreground white*)
-    (draw-rectangle canvas draw-gcontext* (- x 1) (- y 10) (+ 2 (words-width text)) 13 t))
+    (draw-rectangle canvas draw-gcontext* x y width height t)))
+
+(defun draw-text-on-plate (canvas x y text)
+  (wipe canvas (- x 1) (- y 10) (+ 2 (words-width text)) 13)
   (draw-text canvas x y text))
 
 (define-constant +ray-inks+ '(#x10308C #x4A2480 #x801850 #x8A3010 #x604800)
@@ -131,7 +135,7 @@ wide, with DASHES."
 
 (defun substance-ink (name)
   (let ((position (substance-position name)))
-    (and position (nth (mod position (length +substance-inks+)) +substance-inks+))))
+    (and position (in-turn position +substance-inks+))))
 
 ;;; Lightness.
 
@@ -164,10 +168,9 @@ wide, with DASHES."
 
 (defun free-texture (name taken)
   "Return the texture for the substance called NAME in a map in which others have TAKEN theirs."
-  (let* ((count (length +wall-textures+))
-         (first (mod (or (substance-position name) 0) count))
-         (all (loop for step below count
-                    collect (nth (mod (+ first step) count) +wall-textures+))))
+  (let* ((first (or (substance-position name) 0))
+         (all (loop for position from first repeat (length +wall-textures+)
+                    collect (in-turn position +wall-textures+))))
     (or (find-if-not (lambda (texture) (member texture taken)) all)
         (first all))))
 

@@ -221,8 +221,7 @@ than the line."
 (defun trail-jump-entries (snapshot)
   "Return the entry that says how jumps look, as a list, if one is to be seen in SNAPSHOT."
   (let ((trails (mapcar #'robot-image-trail (snapshot-robots snapshot))))
-    (and (some #'jumps-p trails)
-         (jumps-seen-p (mapcar #'pieces-of-trail trails) (pixels-of (shown-part snapshot)))
+    (and (jumps-seen-p (mapcar #'pieces-of-trail trails) (pixels-of (shown-part snapshot)))
          (list (jump-entry (turn-ink 0))))))
 
 (defun reading-entries (snapshot)

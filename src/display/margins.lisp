@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(users-scale drawn-scale lines-within draw-framed with-map-svg))
+(export '(users-scale drawn-scale lines-within draw-framed with-map-svg framed-text))
 
 (define-constant +usual-scale+ 8 :documentation "What GRAPHICS-SCALE* is until a user sets it.")
 
@@ -50,12 +50,6 @@ legend."
 
 ;;; The scale bar, which may be wider than a small map.
 
-(defun round-numbers (limit)
-  "Return 1, 2, 5, 10 and so on up to LIMIT."
-  (loop for unit = 1 then (* 10 unit)
-        while (<= unit limit)
-        append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
-
 (defun bar-metres (width)
   "Return how many metres a scale bar below WIDTH metres is long."
   (or (first (last (round-numbers (min width (/ 140 graphics-scale*)))))
@@ -68,10 +62,6 @@ legend."
   "Return how wide the scale bar below WIDTH metres is with its text, in pixels."
   (let ((metres (bar-metres width)))
     (+ (to-pixels metres) 8 (words-width (metres-text metres)))))
-
-(defun right-edge (width layers)
-  "Return how far right a map WIDTH metres wide and the scale bar below it reach, in pixels."
-  (max (to-pixels width) (if (member :scale-bar layers) (scale-bar-width width) 0)))
 
 ;;; Scales.
 
@@ -155,8 +145,10 @@ as ROOM-FOR has it."
 the least room."
   (multiple-value-bind (width height) (shown-size snapshot)
     (flet ((with (columns below-p)
-             (arrangement-with (room-for layers) (right-edge width layers) (to-pixels height)
-                               columns below-p)))
+             (arrangement-with (room-for layers)
+                               (max (to-pixels width)
+                                    (if (member :scale-bar layers) (scale-bar-width width) 0))
+                               (to-pixels height) columns below-p)))
       (let ((beside (with (columns-of entries (max 8 (floor (to-pixels height) +line-height+)))
                           nil))
             (below (with (columns-below entries (max (to-pixels width) 480)) t)))
@@ -328,3 +320,11 @@ return width and height of that."
   "Run BODY, which draws a picture of SNAPSHOT on CANVAS and returns its width and height in pixels,
 as two values, then write that to STREAM as an SVG document. OPTIONS: :layers, :in-color, :scale."
   `(call-with-map-svg (lambda (,canvas) ,@body) ,stream ,snapshot ,@options))
+
+(defun framed-text (snapshot draw &key layers in-color scale title subtitle more legend)
+  "Return an SVG document of SNAPSHOT in which DRAW, a function of a canvas, draws the map and what
+is on it; the other arguments are those of WITH-MAP-SVG and DRAW-FRAMED."
+  (with-output-to-string (out)
+    (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
+      (draw-framed canvas snapshot layers (lambda () (funcall draw canvas))
+                   :title title :subtitle subtitle :more more :legend legend))))

@@ -223,11 +223,9 @@ can be, one to which a clear line leads; that of a thing must be clear."
 (defun write-name (canvas name box)
   "Write NAME in BOX, on white: what lines lie there end before it."
   (destructuring-bind (left top right bottom) box
-    (with-gcontext (draw-gcontext* :foreground white*)
-      (draw-rectangle canvas draw-gcontext* left top (- right left) (- bottom top) t)))
-  (with-color black*
-    (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
-                :size +name-size+)))
+    (wipe canvas left top (- right left) (- bottom top))
+    (with-color black*
+      (draw-words canvas draw-gcontext* (+ 1 left) (- bottom 2) name :size +name-size+))))
 
 ;;; SPOTS are those of what has a name, as an index.
 

@@ -131,19 +131,21 @@ SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE with
 ;;; Ways as points.
 
 (defun coordinates-of (point)
-  "Return the coordinates of POINT, a PT or a list (x y), as a list in pixels."
-  (list (to-pixels (if (pt-p point) (pt-x point) (first point)))
-        (to-pixels (if (pt-p point) (pt-y point) (second point)))))
+  "Return the coordinates of POINT, a PT or a list (x y), as a list."
+  (if (pt-p point) (list (pt-x point) (pt-y point)) point))
+
+(defun in-pixels (point)
+  (pixels-of (coordinates-of point)))
 
 (defun draw-ways-on-map (canvas ways)
   (draw-way-lines canvas (loop for way in ways for position from 0
                                collect (make-way-line position
-                                                      (list (mapcan #'coordinates-of way)))))
+                                                      (list (mapcan #'in-pixels way)))))
   (draw-way-marks canvas
                   (loop for way in ways for position from 0
                         for color = (turn-ink position)
-                        collect `(draw-start ,@(coordinates-of (first way)) ,color)
-                        collect `(draw-goal ,@(coordinates-of (first (last way))) ,color))))
+                        collect `(draw-start ,@(in-pixels (first way)) ,color)
+                        collect `(draw-goal ,@(in-pixels (first (last way))) ,color))))
 
 (defun way-p (way)
   (and (consp way) (proper-list-p way)
@@ -158,7 +160,7 @@ SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE with
                   "a list of ways, each a list of PTs or of lists (x y)"))
 
 (defun point-on-map-p (point map)
-  (destructuring-bind (x y) (if (pt-p point) (list (pt-x point) (pt-y point)) point)
+  (destructuring-bind (x y) (coordinates-of point)
     (and (<= 0 x (map-width map)) (<= 0 y (map-height map)))))
 
 (defun check-ways-on (map ways)
@@ -186,16 +188,13 @@ SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE with
         (asking (simulation) (take-snapshot (simulation-world simulation)))
         (make-snapshot :map map))))
 
-(defun way-picture-text (snapshot ways &key layers in-color scale title)
-  (let ((more (ways-entries ways)))
-    (with-output-to-string (stream)
-      (with-map-svg (canvas stream snapshot :layers layers :in-color in-color :scale scale)
-        (draw-framed canvas snapshot layers
-                     (lambda ()
-                       (draw-terrain canvas (snapshot-map snapshot) :layers layers)
-                       (draw-ways-on-map canvas ways)
-                       (draw-movers canvas snapshot layers))
-                     :title title :more more)))))
+(defun way-picture-text (snapshot ways &rest look &key layers &allow-other-keys)
+  (apply #'framed-text snapshot
+         (lambda (canvas)
+           (draw-terrain canvas (snapshot-map snapshot) :layers layers)
+           (draw-ways-on-map canvas ways)
+           (draw-movers canvas snapshot layers))
+         :more (ways-entries ways) look))
 
 (addition save-way-picture)
 (define-with-keywords save-way-picture

@@ -186,12 +186,16 @@ which the last two are outside; NIL means to the edge."
 
 ;;; The grid: on the floor only, so that it lies on white.
 
+(defun round-numbers (limit)
+  "Return 1, 2, 5, 10 and so on up to LIMIT."
+  (loop for unit = 1 then (* 10 unit)
+        while (<= unit limit)
+        append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
+
 (defun steps-apart (pixels)
   "Return how many cells marks are apart, 1, 2, 5, 10 and so on, that are PIXELS apart at least."
-  (loop for unit = 1 then (* 10 unit)
-        do (dolist (factor '(1 2 5))
-             (when (<= pixels (* factor unit graphics-scale*))
-               (return-from steps-apart (* factor unit))))))
+  (find-if (lambda (step) (<= pixels (to-pixels step)))
+           (round-numbers (* 10 (max 1 (/ pixels graphics-scale*))))))
 
 (defun marks-between (start end pixels)
   "Return the numbers of metres from START to END at which there are marks, PIXELS apart at least."

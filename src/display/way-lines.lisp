@@ -241,11 +241,6 @@ go along a way."
          (push (to-pixels y) (first pieces)))
     (nreverse (mapcar #'nreverse pieces))))
 
-(defun jumps-p (points)
-  "True if POINTS, of a trail, are in pieces."
-  (do-trail (points nil nil nil placements)
-    thereis (/= placements (fourth points))))
-
 (defun robots-with-trails (snapshot)
   (remove-if-not (lambda (robot) (cddddr (robot-image-trail robot))) (snapshot-robots snapshot)))
 

@@ -49,10 +49,10 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
 
 (defun resolution-in (file entry)
   "Return how many metres a pixel is wide, as ENTRY has it: what the frame of a map may have."
-  (let ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9"))
-    (let ((number (number-in file entry 0 1000000000 expected)))
-      (unless (< 1d-9 (double number)) (reject-entry file entry expected))
-      number)))
+  (let* ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9")
+         (number (number-in file entry 0 1000000000 expected)))
+    (unless (< 1d-9 (double number)) (reject-entry file entry expected))
+    number))
 
 (defun threshold-in (file entry)
   (number-in file entry 0 1 "a probability from 0 to 1"))

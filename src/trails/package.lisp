@@ -23,7 +23,7 @@
                 #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:make-way-line
                 #:draw-way-lines #:draw-way-sample #:draw-arrows #:draw-way-marks #:jumps-seen-p
                 #:jumps-of #:way-seen-p
-                #:call-along
+                #:call-along #:framed-text
                 #:draw-jump-dots #:jump-entry
                 #:draw-start #:draw-ring #:robot-entry #:sample-of-name #:turn-ink
                 #:to-pixels #:box-around

@@ -129,15 +129,11 @@ and things where these end."
       (with-opacity (canvas +end-opacity+) (draw-end canvas way)))
     (when (member :names layers) (draw-names canvas snapshot layers))))
 
-(defun bundle-text (snapshot ways &key what title subtitle layers in-color scale)
-  "Return an SVG document of SNAPSHOT and WAYS in it, each of a WHAT, under TITLE and SUBTITLE."
-  (let ((more (bundle-entries snapshot ways what)))
-    (with-output-to-string (out)
-      (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
-        (draw-framed canvas snapshot layers
-                     (lambda () (draw-bundle canvas snapshot ways layers))
-                     :title title :subtitle subtitle :more more
-                     :legend (list :opacity (map-opacity in-color)))))))
+(defun bundle-text (snapshot ways what &rest look &key layers in-color &allow-other-keys)
+  "Return an SVG document of SNAPSHOT and WAYS in it, each of a WHAT; LOOK as for FRAMED-TEXT."
+  (apply #'framed-text snapshot (lambda (canvas) (draw-bundle canvas snapshot ways layers))
+         :more (bundle-entries snapshot ways what)
+         :legend (list :opacity (map-opacity in-color)) look))
 
 (defun ways-in (part ways)
   "Return those of WAYS of which something is in PART (left top right bottom), in cells; all if that
@@ -169,8 +165,8 @@ truename. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
            (all (funcall ways-of))
            (ways (ways-in part all)))
       (save-svg (telling-what-breaks
-                  (bundle-text snapshot ways
-                               :what what :title (or title own-title)
+                  (bundle-text snapshot ways what
+                               :title (or title own-title)
                                :subtitle (concatenate 'string subtitle
                                                       (unseen-words what all ways))
                                :layers layers :in-color in-color :scale scale))
