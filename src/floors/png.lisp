@@ -14,18 +14,12 @@
 (defun inflate-into (buffer end inflater)
   "Put what comes next of INFLATER into BUFFER, up to END. Return how many octets these are, fewer
 if there are no more; NIL if the data are damaged."
-  (handler-case
-      (multiple-value-bind (used made)
-          (chipz:decompress buffer (inflater-state inflater) (inflater-octets inflater)
-                            :input-start (inflater-position inflater) :output-end end)
-        (incf (inflater-position inflater) used)
-        made)
-    (error () nil)))
-
-(defun inflated-p (inflater)
-  "True if INFLATER is at the end of its data, and their check sum was right."
-  (handler-case (chipz:finish-dstate (inflater-state inflater))
-    (error () nil)))
+  (ignore-errors
+   (multiple-value-bind (used made)
+       (chipz:decompress buffer (inflater-state inflater) (inflater-octets inflater)
+                         :input-start (inflater-position inflater) :output-end end)
+     (incf (inflater-position inflater) used)
+     made)))
 
 ;;;; Rows
 
@@ -102,7 +96,7 @@ filter."
   "Signal UNUSABLE-FLOOR unless INFLATER, of PNG, ends behind the last row."
   (when (eql 1 (inflate-into (make-octets 1) 1 inflater))
     (reject-damaged (png-tape png) "its pixels go on behind the last row"))
-  (unless (inflated-p inflater)
+  (unless (ignore-errors (chipz:finish-dstate (inflater-state inflater)))
     (reject-damaged (png-tape png) "the check sum of its pixels is missing or wrong")))
 
 (defun call-with-row (function png buffer start y row above)
