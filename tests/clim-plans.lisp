@@ -121,7 +121,7 @@
       (window::publish (window::window-watcher window) (time:current-simulation))
       (let* ((pane (seen-plans window :timeline))
              (page (window::plan-look-page (window::plan-look-of pane)))
-             (x (ars-magna.rpl-pictures::place
+             (x (ars-magna.rpl-pictures::x-of-tick
                  10 (ars-magna.rpl-pictures:scale-for page (window::content-width pane)))))
         (is (mentions-p (window::hover-text pane x 60) "Tick 10"))
         (window::click pane :left x 60)

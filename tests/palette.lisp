@@ -175,13 +175,13 @@ VISIONS."
 
 (defun seen-p (color &rest backgrounds)
   (loop for background in backgrounds
-        always (<= canvas:+least-contrast+ (canvas:contrast color background))))
+        always (<= canvas:+least-contrast+ (canvas:color-contrast color background))))
 
 (test contrast.is-that-of-the-guidelines
   "Black on white has 21, by definition; #767676 is known as the lightest grey that has 4.5."
-  (is (near 21 (canvas:contrast canvas:black* canvas:white*) 1d-9))
-  (is (near 4.54 (canvas:contrast #x767676 canvas:white*) .01))
-  (is (= 1 (canvas:contrast #x123456 #x123456))))
+  (is (near 21 (canvas:color-contrast canvas:black* canvas:white*) 1d-9))
+  (is (near 4.54 (canvas:color-contrast #x767676 canvas:white*) .01))
+  (is (= 1 (canvas:color-contrast #x123456 #x123456))))
 
 (test contrast.outlines-of-things-are-seen-on-everything
   "Of the black outline and its white halo at least one is, on the floor, marks, walls and things."

@@ -103,7 +103,7 @@
     (let ((task (rpl:start-plan runner (rpl:interp-lambda () (rpl:wait-time 9)))))
       (rpl:react-to-all runner)
       (rpl:evaporate task)
-      (is (not (rpl:idle-p runner)))
+      (is (not (rpl:runner-idle-p runner)))
       (rpl:react-to-all runner)
       (is (eq :evaporated (rpl:task-state task))))))
 

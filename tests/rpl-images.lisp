@@ -87,11 +87,11 @@
 
 (test timeline.fits-a-narrow-place
   (let* ((runner (seen-until 30))
-         (page (ars-magna.rpl-pictures:make-page (rpl:bars (rpl:plan-trace runner)) 100))
+         (page (ars-magna.rpl-pictures:make-timeline-page (rpl:bars (rpl:plan-trace runner)) 100))
          (scale (ars-magna.rpl-pictures:scale-for page 360)))
     (is (= 0 (ars-magna.rpl-pictures:page-start page)))
     (is (= 22 (ars-magna.rpl-pictures:page-end page)))
     (is (null (ars-magna.rpl-pictures:tick-at 20 scale)))
-    (is (= 11 (ars-magna.rpl-pictures:tick-at (ars-magna.rpl-pictures::place 11 scale) scale)))
-    (is (<= (ars-magna.rpl-pictures::place 22 scale) 340))
+    (is (= 11 (ars-magna.rpl-pictures:tick-at (ars-magna.rpl-pictures::x-of-tick 11 scale) scale)))
+    (is (<= (ars-magna.rpl-pictures::x-of-tick 22 scale) 340))
     (is (null (ars-magna.rpl-pictures:tick-at 359 scale)))))

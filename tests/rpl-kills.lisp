@@ -130,7 +130,7 @@
                       (find-if #'rpl:valve-owner valves)
                       (find-if #'constructs::valve-requests valves)
                       (plusp (tasks::runner-blocks runner))
-                      (and (not (rpl:idle-p runner)) :ready)))))
+                      (and (not (rpl:runner-idle-p runner)) :ready)))))
 
 (defun trouble-with-kills (plans kills seed)
   "Return a list of (form seed left) for what was left of random PLANS, each killed KILLS times."

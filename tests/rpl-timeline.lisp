@@ -140,7 +140,7 @@
   (with-traced-turns ()
     (is-true (has-words-p (timeline-text nil) ">robot-turn 1<")))
   (flet ((name (text)
-           (ars-magna.rpl-pictures::command-name
+           (ars-magna.rpl-pictures::name-of-span
             (ars-magna.rpl.seeing::make-span :command 0 text))))
     (is (string= "robot-turn -0.05 nil" (name "(rpl-robot-turn -0.058755822d0 nil)")))
     (is (string= "camera-track 1 #<Designator 0>" (name "(rpl-camera-track 1 #<Designator 0>)")))))

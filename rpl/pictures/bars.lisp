@@ -44,7 +44,7 @@ grey: tests/palette.lisp measures it.")
 (defun scale-span (scale)
   (max 1 (- (scale-end scale) (scale-start scale))))
 
-(defun place (tick scale)
+(defun x-of-tick (tick scale)
   "Return where TICK is, in pixels from the left."
   (+ (scale-left scale)
      (* (scale-width scale) (/ (- tick (scale-start scale)) (scale-span scale)))))
@@ -67,7 +67,7 @@ grey: tests/palette.lisp measures it.")
   (with-color color
     (draw-rectangle canvas draw-gcontext* x y (max 1 width) height t)))
 
-(defun frame (canvas x y width height)
+(defun draw-frame (canvas x y width height)
   "Draw an outline in black, a thick one where there is room, around white."
   (with-color black* (draw-rectangle canvas draw-gcontext* x y width height t))
   (let ((thick (if (< width 7) 1 2)))
@@ -96,7 +96,7 @@ grey: tests/palette.lisp measures it.")
   "Draw a box that TEXTURE, one of *LOOKS*, tells from others without colours."
   (case texture
     (:solid (box canvas black* x y width height))
-    (:frame (frame canvas x y width height))
+    (:frame (draw-frame canvas x y width height))
     (:wedge (wedge canvas x y width height))
     (t (textured-box canvas texture x y width height))))
 
@@ -123,19 +123,19 @@ grey: tests/palette.lisp measures it.")
           :initial-value (bar-end bar)))
 
 (defun span-width (span scale)
-  (- (place (span-end span) scale) (place (span-start span) scale)))
+  (- (x-of-tick (span-end span) scale) (x-of-tick (span-start span) scale)))
 
 (defun draw-span (canvas span y scale)
-  (let ((x (place (span-start span) scale)))
+  (let ((x (x-of-tick (span-start span) scale)))
     (look-box canvas (span-kind span) x y (span-width span scale) +bar-height+)
     (box canvas #xA8B4C8 x y 1 +bar-height+)))
 
 (defun write-span (canvas span next y scale)
   "Write what was waited for in SPAN where there is room before NEXT, a span or NIL, begins."
-  (let* ((x (place (span-start span) scale))
+  (let* ((x (x-of-tick (span-start span) scale))
          (end (if next
-                  (min (place (span-end span) scale) (place (span-start next) scale))
-                  (place (span-end span) scale)))
+                  (min (x-of-tick (span-end span) scale) (x-of-tick (span-start next) scale))
+                  (x-of-tick (span-end span) scale)))
          (text (and (span-text span) (fitted (span-text span) (- end x 6)))))
     (when text (write-at canvas (+ x 3) (+ y 11) text #x505868))))
 
@@ -158,7 +158,7 @@ grey: tests/palette.lisp measures it.")
         (subseq token 0 (min (or end (length token)) (+ dot 3))))
       token))
 
-(defun command-name (span)
+(defun name-of-span (span)
   "Return the command of SPAN as it is written in a lane: without parentheses and prefix, numbers
 cut to two decimals; of a long one its beginning."
   (let* ((text (string-trim "()" (span-text span)))
@@ -184,7 +184,7 @@ nowhere is room."
 (defun write-command (canvas span x y width from to)
   "Write the command of SPAN, which is WIDTH pixels wide from X on, where there is room between FROM
 and TO; or its beginning on it. Return where that ends."
-  (let* ((name (command-name span))
+  (let* ((name (name-of-span span))
          (per-character (character-width canvas +command-size+))
          (length (* per-character (length name)))
          (fitting (floor (- width 4) per-character)))
@@ -206,10 +206,10 @@ and TO; or its beginning on it. Return where that ends."
 (defun draw-command (canvas span next from y scale)
   "Draw SPAN, a command, in a lane at Y in which NEXT, a command or NIL, comes after it, and which
 is free from FROM on. Return from where on it is free then."
-  (let ((x (place (span-start span) scale)) (width (span-width span scale))
+  (let ((x (x-of-tick (span-start span) scale)) (width (span-width span scale))
         (to (if next
-                (place (span-start next) scale)
-                (+ 40 (place (scale-end scale) scale)))))
+                (x-of-tick (span-start next) scale)
+                (+ 40 (x-of-tick (scale-end scale) scale)))))
     (with-subject (canvas (command-title span))
       (look-box canvas (if (trouble-p (span-error span)) :trouble :command) x y width +lane-height+)
       (write-command canvas span x y width from to))))
@@ -224,7 +224,8 @@ is free from FROM on. Return from where on it is free then."
   (with-subject (canvas (format nil "failed at tick ~D: ~A" (span-start span)
                                 (cut (one-line (span-text span)) 200)))
     (let ((half (if in-color* 2 4)))
-      (look-box canvas :failure (- (place (span-start span) scale) half) y (* 2 half) (* 3 half)))))
+      (look-box canvas :failure (- (x-of-tick (span-start span) scale) half) y
+                (* 2 half) (* 3 half)))))
 
 (defun draw-mark (canvas outcome x y)
   "Draw how a task ended: a line, crossed if it failed, struck through if ended. NIL: it goes on."
@@ -248,10 +249,10 @@ is free from FROM on. Return from where on it is free then."
 
 (defun draw-bar (canvas bar y scale)
   "Draw BAR with its upper edge at Y."
-  (let ((x (place (bar-start bar) scale)))
+  (let ((x (x-of-tick (bar-start bar) scale)))
     (with-subject (canvas bar)
       (look-box canvas (if (bar-call-p bar) :call :parts)
-                x y (- (place (bar-end bar) scale) x) +bar-height+)
+                x y (- (x-of-tick (bar-end bar) scale) x) +bar-height+)
       (draw-waits canvas (spans-of-kind bar :waiting) y scale)
       (dolist (kind '(:cleaning :blocked))
         (dolist (span (spans-of-kind bar kind)) (draw-span canvas span y scale))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-pictures)
 
-(export '(make-page scale-for draw-page))
+(export '(make-timeline-page scale-for draw-page))
 
 ;;; The parts of a task stand below it. Parts that run the same expression one after the other, as
 ;;; the turns of a loop do, share a row, so that a long run needs no more rows than a short one.
@@ -43,7 +43,7 @@
   "Draw lines at round ticks from TOP down to BOTTOM, and the numbers of these above and below."
   (loop with step = (nice-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
         for tick from (* step (ceiling (scale-start scale) step)) to (scale-end scale) by step
-        for x = (place tick scale)
+        for x = (x-of-tick tick scale)
         for text = (princ-to-string tick)
         for left = (- x (/ (* +character-width+ (length text)) 2))
         do (with-color #xDCDCDC
@@ -121,7 +121,7 @@ for them to be WIDTH pixels wide; and how high these are together."
   (draw-lane canvas (mapcan (lambda (bar) (copy-list (bar-commands bar))) (row-bars row))
              (+ y +bar-height+ 1) scale)
   (dolist (bar (row-bars row))
-    (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y)))
+    (draw-mark canvas (bar-outcome bar) (x-of-tick (bar-end bar) scale) y)))
 
 (defun draw-rows (canvas rows scale top &key (from 0) to)
   "Draw ROWS from TOP down, but for those that end above FROM or begin below TO."
@@ -140,7 +140,7 @@ for them to be WIDTH pixels wide; and how high these are together."
   (start 0 real "the tick with which a page begins" :export)
   (end 0 real "the tick with which a page ends" :export))
 
-(defun make-page (bars most)
+(defun make-timeline-page (bars most)
   "Return a page of BARS, of top-level tasks, with at most MOST rows."
   (let* ((all (rows bars)) (unseen (max 0 (- (length all) most))))
     (%make-page (subseq all 0 (- (length all) unseen)) unseen
@@ -161,7 +161,7 @@ for them to be WIDTH pixels wide; and how high these are together."
 (defun draw-timeline (canvas bars most &optional title)
   "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows, below TITLE or, if it is NIL,
 from when to when they are. Return width and height in pixels."
-  (let* ((page (make-page bars most)) (rows (page-rows page))
+  (let* ((page (make-timeline-page bars most)) (rows (page-rows page))
          (left (labels-width rows 120 +label-width+))
          (scale (make-scale (page-start page) (page-end page) left
                             (clamp (* +tick-width+ (- (page-end page) (page-start page)))

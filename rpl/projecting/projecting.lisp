@@ -55,7 +55,7 @@ believed in, which does not know it."
         (reject-use "There is no run to be projected: plans are projected by those that run on a ~
                      robot, see RUN-PLAN."))))
 
-(defun ask (question task)
+(defun pose-question (question task)
   "Let TASK wait for the answer to QUESTION. Return what a step returns."
   (park task question)
   (add-wish question)
@@ -101,7 +101,7 @@ run cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
    (begin
     (next answered)
     (destructuring-bind (plan arguments . options) (funcall request environment)
-      (ask (setf memory (question-of-plan task plan arguments options)) task)))
+      (pose-question (setf memory (question-of-plan task plan arguments options)) task)))
    (answered
     (cond ((eq value :do-it)
            (next inside)
@@ -192,7 +192,7 @@ run cannot be forked (ours)."
    (begin
     (next chosen)
     (setf memory (question-of-branches task forms (funcall request environment)))
-    (if memory (ask memory task) (values frame 0)))
+    (if memory (pose-question memory task) (values frame 0)))
    (chosen
     (next inside)
     (enter (svref branches value) environment frame))

@@ -92,7 +92,7 @@ been told since which robot it commands")
   "Tell other threads when the plans of INTERFACE, which this thread holds, next go on."
   (let ((runner (interface-runner interface)))
     (setf (interface-next-tick interface)
-          (and runner (if (idle-p runner) (next-wake-time runner) :ready)))))
+          (and runner (if (runner-idle-p runner) (next-wake-time runner) :ready)))))
 
 (defun call-holding (function interface)
   "Call FUNCTION, holding the plans of INTERFACE, locked by this thread. It can be interrupted."
@@ -186,7 +186,7 @@ known to be at Lisp code that does not return. One that waits in a debugger can 
 
 ;;; The thread of live plans; see thread.lisp.
 
-(defun wake (interface)
+(defun wake-plans (interface)
   (when (interface-thread interface)
     (signal-semaphore (interface-wake-up interface))))
 
@@ -200,7 +200,7 @@ known to be at Lisp code that does not return. One that waits in a debugger can 
 (defun call-to-plans (interface)
   (let ((simulation (interface-simulation interface)))
     (if (thread-of interface)
-        (wake interface)
+        (wake-plans interface)
         (when (live-p simulation) (wake-owner (simulation-timeline simulation))))))
 
 ;;; Which interface.

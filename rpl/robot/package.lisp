@@ -41,7 +41,7 @@
                 #:apply-settings #:looked-at-p #:forget-looks
                 #:*interface* #:home-in-use #:note-outside-change #:*runner* #:post #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
-                #:next-wake-time #:heard-from-outside-p #:idle-p #:set-charges
+                #:next-wake-time #:heard-from-outside-p #:runner-idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:runner-steps #:plan-runner-tick
                 #:runner-note #:fail #:current-task #:task #:task-p

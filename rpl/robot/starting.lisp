@@ -23,7 +23,7 @@ another thread or around this call, when they get to it."
         (remove-participant interface (interface-simulation interface))
         (removef (robot-enders (interface-robot interface)) (interface-ender interface))
         (cond ((holding-p interface) (stop-plan (interface-runner interface)))
-              ((thread-of interface) (wake interface))
+              ((thread-of interface) (wake-plans interface))
               (t (end-plans-here interface)))))))
 
 (defun attach (interface)
@@ -43,7 +43,7 @@ if there is none.")
   "Return the robot that the prompt commands in which this thread is, or NIL."
   (and *simulation* (funcall *robot-to-drive*)))
 
-(defun check-world (robot)
+(defun check-world-to-drive (robot)
   (let ((world (robot-world robot)))
     (unless (or (null *world*) (eq world *world*))
       (reject-use "rpl-init-robot: ~A is not in the world that we are in, ~
@@ -94,7 +94,7 @@ as one of them says so itself."
       interface)))
 
 (defun init-robot (robot)
-  (check-world robot)
+  (check-world-to-drive robot)
   (drive-in-eras robot (list (cons (gensym "ERA") 0))))
 
 (public rpl-init-robot)
@@ -150,7 +150,7 @@ wait, and for something else. True if so. Most ticks are like that."
   (look-for-outside interface)
   (cond ((thread-of interface)
          (when (or (time-to-wake-p interface) (not (thread-wanted-p interface)))
-           (wake interface)))
+           (wake-plans interface)))
         ((not (thread-wanted-p interface))
          (begin-moment (simulation-timeline simulation))
          (if (live-p simulation)
@@ -192,7 +192,7 @@ wait, and for something else. True if so. Most ticks are like that."
 
 ;; A thread of plans has nothing to do while no ticks pass; nor is it there for ever.
 (defmethod participant-clock-stopped ((interface interface))
-  (wake interface))
+  (wake-plans interface))
 
 (defmethod participant-end ((interface interface) simulation)
   (declare (ignore simulation))

@@ -112,7 +112,7 @@ that is a leaf; NIL if it begins none, or one that has a step of its own.")
                (and (eq task (course-within course))
                     (eq :next (course-until course)))))))
 
-(defun go-on (course mode &optional task until)
+(defun resume-stepping (course mode &optional task until)
   (setf (course-mode course) mode
         (course-within course) task
         (course-until course) until))
@@ -128,20 +128,20 @@ this task."
       (progn (enter-break (make-condition 'plan-break
                                           :task task :frame frame
                                           :text (format nil "Next: ~A" (form-text form 70))))
-             (go-on course :run))       ; nobody was there
+             (resume-stepping course :run))       ; nobody was there
     (continue ()
       :report "Go on without stopping."
-      (go-on course :run))
+      (resume-stepping course :run))
     (step ()
       :report "Do this, and stop before the next expression."
-      (go-on course :step))
+      (resume-stepping course :step))
     (next ()
       :report "Do all of this, and stop before the next expression of this task."
-      (go-on course :over task (if leaf-p :next (frame-up frame))))
+      (resume-stepping course :over task (if leaf-p :next (frame-up frame))))
     (out ()
       :report "Finish what this is a part of, and stop after that."
       (let ((outer (if leaf-p frame (frame-up frame))))
-        (go-on course :over task (and outer (frame-up outer)))))))
+        (resume-stepping course :over task (and outer (frame-up outer)))))))
 
 (defun consider-stop (courses task frame)
   "Stop TASK before its step at FRAME, if one of COURSES says so."

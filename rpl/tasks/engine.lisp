@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(advance-timers note-tick apply-next-batch close-runner digest-runner idle-p
+(export '(advance-timers note-tick apply-next-batch close-runner digest-runner runner-idle-p
           make-plan-runner next-wake-time heard-from-outside-p plan-deadlocked-p rest-in-tick
           react-to-all reseed-runner start-plan stop-plan))
 
@@ -206,7 +206,7 @@ and nothing heard."
   "True if something was posted to RUNNER, or tasks of it are to end. For any thread."
   (and (or (runner-doomed runner) (posted-p runner)) t))
 
-(defun idle-p (runner)
+(defun runner-idle-p (runner)
   "True if no task of RUNNER is ready and nothing is posted: only time or a post can change that."
   (not (or (any-ready-p runner) (heard-from-outside-p runner))))
 
@@ -215,7 +215,7 @@ and nothing heard."
 so."
   (let ((wake (next-wake-time runner)))
     (unless (or (and wake (<= wake tick))
-                (not (idle-p runner))
+                (not (runner-idle-p runner))
                 (runner-courtesies runner)
                 (runner-charged-p runner)
                 (runner-budget runner)
@@ -226,7 +226,7 @@ so."
 (defun plan-deadlocked-p (runner)
   "True if tasks of RUNNER wait and nothing can ever wake them: no timer, and nobody who may post."
   (and (runner-roots runner)
-       (idle-p runner)
+       (runner-idle-p runner)
        (null (next-wake-time runner))
        (not (funcall (runner-busy-p runner)))))
 
@@ -252,7 +252,9 @@ so."
   "Run the plans of RUNNER until TASK is over. Return its state, :deadlock, or :limit past LIMIT."
   (loop
     (react-to-all runner)
-    (let ((wake (next-wake-time runner)) (idle-p (idle-p runner)) (tick (runner-tick runner)))
+    (let ((wake (next-wake-time runner))
+          (idle-p (runner-idle-p runner))
+          (tick (runner-tick runner)))
       (cond ((task-over-p task) (return (task-state task)))
             ((and idle-p (null wake)) (return :deadlock))
             ((and limit (> (or wake tick) limit))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.canvas)
 
 (export '(color shade color-called mix +least-contrast+ primaries color-of-primaries luminance
-          contrast ink-on tinted +textures+ draw-texture))
+          color-contrast ink-on tinted +textures+ draw-texture))
 
 ;;; A colour is an integer, as a pixel is to CLX: #xRRGGBB. Vectors run from dark to light. The
 ;;; manual names the vectors; their values are ours. Shade 9 of each is its plain colour. The eight
@@ -110,14 +110,14 @@ attribute. Black if NAME is none (manual B; reading 212)."
   "Return the relative luminance of COLOR, from 0 to 1."
   (reduce #'+ (mapcar #'* '(0.2126d0 0.7152d0 0.0722d0) (primaries color))))
 
-(defun contrast (color other)
+(defun color-contrast (color other)
   "Return the contrast of COLOR to OTHER, from 1 to 21."
   (let ((a (+ 0.05d0 (luminance color))) (b (+ 0.05d0 (luminance other))))
     (/ (max a b) (min a b))))
 
 (defun ink-on (color)
   "Return that of black and white which is seen better on COLOR; its contrast is at least 4.5."
-  (if (< (contrast white* color) (contrast black* color)) black* white*))
+  (if (< (color-contrast white* color) (color-contrast black* color)) black* white*))
 
 (defun tinted (grey hue fraction)
   "Return GREY, a colour, with as much of HUE, a colour, as FRACTION says, 0 to 1, and of the same

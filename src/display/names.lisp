@@ -172,7 +172,7 @@ within a ring a line leads out of that."
                   (or (spot-robot spot) (<= 2 (gap rival (spot-box spot)))))
           collect (spot-robot rival)))
 
-(defun blocked-p (spot at taken)
+(defun spot-blocked-p (spot at taken)
   "True if the box AT of a line from SPOT meets a box of the index TAKEN, off SPOT; if that is of a
 thing, of a box that does not meet it, either."
   (let ((own (spot-box spot)))
@@ -188,7 +188,7 @@ the index TAKEN but that of SPOT."
       (loop for step from 0 to 8
             for at-x = (+ x (* step 1/8 (- to-x x))) and at-y = (+ y (* step 1/8 (- to-y y)))
             always (and (every (lambda (robot) (< 2 (off-ring robot at-x at-y))) robots)
-                        (not (blocked-p spot (box-around at-x at-y 1) taken)))))))
+                        (not (spot-blocked-p spot (box-around at-x at-y 1) taken)))))))
 
 (defun led-box (snapshot layers spot width taken rivals)
   "Return the box farther off where the name of SPOT, WIDTH pixels wide, hides least, or NIL: if it

@@ -12,5 +12,5 @@ experiments to their rates of success. Use it beside FIVEAM.")
                 #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions
                 #:experiment-trials #:experiment-limit #:experiment-package #:doubt-nested-run
                 #:find-condition #:condition-name
-                #:run-guarded #:replay-trial #:call-in-silence #:call-by-workers #:form-text
+                #:run-guarded #:replay-trial #:call-in-silence #:call-by-workers #:form-in-package
                 #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error))

@@ -172,7 +172,7 @@ too."
 
 (defun text-of (form check)
   "Return FORM as the author of CHECK would write it, on one line if it is short."
-  (let* ((text (form-text form (experiment-package (check-experiment check))))
+  (let* ((text (form-in-package form (experiment-package (check-experiment check))))
          (line (one-line text)))
     (if (< (length line) 90) line text)))
 

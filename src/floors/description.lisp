@@ -42,7 +42,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
                 (if (equal "" (entry-value entry)) "empty" (entry-value entry))
                 expected))
 
-(defun number-in (file entry least most expected)
+(defun number-in-entry (file entry least most expected)
   (let ((number (and (stringp (entry-value entry)) (read-decimal (entry-value entry)))))
     (unless (and number (<= least number most)) (reject-entry file entry expected))
     number))
@@ -50,12 +50,12 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
 (defun resolution-in (file entry)
   "Return how many metres a pixel is wide, as ENTRY has it: what the frame of a map may have."
   (let* ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9")
-         (number (number-in file entry 0 1000000000 expected)))
+         (number (number-in-entry file entry 0 1000000000 expected)))
     (unless (< 1d-9 (double number)) (reject-entry file entry expected))
     number))
 
 (defun threshold-in (file entry)
-  (number-in file entry 0 1 "a probability from 0 to 1"))
+  (number-in-entry file entry 0 1 "a probability from 0 to 1"))
 
 (defun origin-in (file entry)
   (let ((numbers (and (consp (entry-value entry)) (mapcar #'read-decimal (entry-value entry)))))

@@ -26,7 +26,7 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
   (multiple-value-bind (power rest) (floor spot)
     (* (expt 10 power) (rational (power 10 rest)))))
 
-(defun place (value axis)
+(defun axis-place (value axis)
   (let ((low (axis-low axis)))
     (+ (axis-from axis)
        (* (- (axis-to axis) (axis-from axis))
@@ -69,7 +69,7 @@ these, but no more than a sixth of it."
   (loop for (mark next) on (axis-marks axis)
         while next
         always (<= (+ 12 (/ (+ (max least (mark-width mark)) (max least (mark-width next))) 2))
-                   (- (place (first next) axis) (place (first mark) axis)))))
+                   (- (axis-place (first next) axis) (axis-place (first mark) axis)))))
 
 (defun fit-marks (axis candidates least)
   "Give AXIS the first of CANDIDATES, lists of marks, whose texts fit; one mark alone, which says
@@ -169,7 +169,7 @@ fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixe
 
 (defun draw-marks-across (canvas axis y)
   (loop for (value . lines) in (axis-marks axis)
-        for x = (place value axis)
+        for x = (axis-place value axis)
         do (with-ink (+line-ink+)
              (draw-line canvas draw-gcontext* x y x (+ y 4)))
            (if (axis-upward-p axis)

@@ -128,29 +128,29 @@ on an axis that begins at FROM."
       (with-look ((series-index series) 1.8)
         (draw-lines canvas draw-gcontext*
                     (loop for spot in run
-                          collect (+ shift (place (spot-x spot) (plane-across plane)))
-                          collect (place (spot-y spot) (plane-upward plane))))))))
+                          collect (+ shift (axis-place (spot-x spot) (plane-across plane)))
+                          collect (axis-place (spot-y spot) (plane-upward plane))))))))
 
 (defun draw-intervals (canvas series plane shift)
   (with-ink ((look-color (series-index series)) 1.2)
     (dolist (spot (series-spots series))
       (when (and (spot-low spot) (spot-high spot))
-        (draw-interval canvas (+ shift (place (spot-x spot) (plane-across plane)))
-                       (place (spot-low spot) (plane-upward plane))
-                       (place (spot-high spot) (plane-upward plane)))))))
+        (draw-interval canvas (+ shift (axis-place (spot-x spot) (plane-across plane)))
+                       (axis-place (spot-low spot) (plane-upward plane))
+                       (axis-place (spot-high spot) (plane-upward plane)))))))
 
 (defun draw-spots (canvas series plane shift words percent)
   (dolist (spot (series-spots series))
     (when (spot-y spot)
       (with-subject (canvas (spot-title series spot words percent))
         (draw-marker canvas (series-index series)
-                     (+ shift (place (spot-x spot) (plane-across plane)))
-                     (place (spot-y spot) (plane-upward plane)))))))
+                     (+ shift (axis-place (spot-x spot) (plane-across plane)))
+                     (axis-place (spot-y spot) (plane-upward plane)))))))
 
 (defun draw-series (canvas all plane words percent)
   "Draw ALL series: lines, above them intervals, above them markers."
   (let ((shifts (sideways all
-                          (mapcar (lambda (x) (place x (plane-across plane))) (all-x all))
+                          (mapcar (lambda (x) (axis-place x (plane-across plane))) (all-x all))
                           (axis-from (plane-across plane)))))
     (flet ((each (function)
              (dolist (series all)

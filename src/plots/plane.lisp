@@ -94,7 +94,7 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
 (defun draw-upward (canvas plane)
   (loop with left = (plane-left plane)
         for (value . lines) in (axis-marks (plane-upward plane))
-        for y = (place value (plane-upward plane))
+        for y = (axis-place value (plane-upward plane))
         do (with-ink (+grid-ink+)
              (draw-line canvas draw-gcontext* left y (plane-right plane) y))
            (write-lines canvas (- left 8) (+ y 4) lines :anchor :end)))

@@ -65,7 +65,7 @@ LEAST pixels high. The page becomes wider than WIDTH if it must."
         (bottom (table-bottom table)) (across (table-across table)))
     (with-ink (+grid-ink+)
       (loop for (value) in (axis-marks across)
-            for x = (place value across)
+            for x = (axis-place value across)
             do (draw-line canvas draw-gcontext* x top x bottom)))
     (with-ink (+line-ink+ 1.2)
       (draw-line canvas draw-gcontext* left bottom right bottom))
@@ -111,12 +111,12 @@ interval, any of which may be NIL, and what else is said of it."
   "Draw VALUE with its interval along the axis ACROSS at Y, with the look of INDEX."
   (when (and low high)
     (with-ink ((look-color index) 1.8)
-      (draw-interval-across canvas y (place low across) (place high across))))
+      (draw-interval-across canvas y (axis-place low across) (axis-place high across))))
   (when value
-    (draw-marker canvas index (place value across) y 5)))
+    (draw-marker canvas index (axis-place value across) y 5)))
 
 (defun draw-zero (canvas table)
-  (let ((x (place 0 (table-across table))))
+  (let ((x (axis-place 0 (table-across table))))
     (with-ink (+line-ink+ 1.2)
       (draw-line canvas draw-gcontext* x (table-top table) x (table-bottom table)))))
 
@@ -170,7 +170,8 @@ an interval."
   "Return an alist from columns, counted from where AXIS begins, to how many NUMBERS are in each."
   (let ((counts (make-hash-table)))
     (dolist (number numbers)
-      (incf (gethash (floor (- (place number axis) (axis-from axis)) +column-width+) counts 0)))
+      (incf (gethash (floor (- (axis-place number axis) (axis-from axis)) +column-width+)
+                     counts 0)))
     (sort (loop for column being the hash-keys of counts using (hash-value count)
                 collect (cons column count))
           #'< :key #'car)))

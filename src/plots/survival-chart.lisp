@@ -62,10 +62,10 @@ which somebody left, TIMES those at which anybody did."
 (defun stairs (steps end reader plane)
   "Return points x y ... along STEPS until the time END, whose heights READER reads."
   (loop for (step next) on steps
-        for y = (place (funcall reader step) (plane-upward plane))
-        collect (place (first step) (plane-across plane))
+        for y = (axis-place (funcall reader step) (plane-upward plane))
+        collect (axis-place (first step) (plane-across plane))
         collect y
-        collect (place (if next (first next) end) (plane-across plane))
+        collect (axis-place (if next (first next) end) (plane-across plane))
         collect y))
 
 (defun backward (points)
@@ -95,8 +95,9 @@ time END."
   "Draw a short line upward where somebody has left CURVE, one for each pixel."
   (let ((places (remove-duplicates
                  (loop for time in (remove-duplicates (curve-censored curve))
-                       collect (list (round (place time (plane-across plane)))
-                                     (place (second (step-at time curve)) (plane-upward plane))))
+                       collect (list (round (axis-place time (plane-across plane)))
+                                     (axis-place (second (step-at time curve))
+                                                 (plane-upward plane))))
                  :test #'equal)))
     (with-ink ((look-color (curve-index curve)) 1.4)
       (loop for (x y) in places
@@ -108,8 +109,8 @@ time END."
         for turn below 4
         for time = (* end 1/4 (+ turn (/ (+ 1/2 (curve-index curve)) (length curves))))
         while (<= time (curve-end curve))
-        do (draw-marker canvas (curve-index curve) (place time (plane-across plane))
-                        (place (second (step-at time curve)) (plane-upward plane)))))
+        do (draw-marker canvas (curve-index curve) (axis-place time (plane-across plane))
+                        (axis-place (second (step-at time curve)) (plane-upward plane)))))
 
 (defun draw-curves (canvas curves plane)
   (let ((known (remove-if-not #'known-p curves)))
@@ -135,7 +136,7 @@ time END."
       (incf y +text-step+)
       (draw-sample canvas (curve-index curve) +margin+ (- y 4) t)
       (dolist (mark (axis-marks (plane-across plane)))
-        (write-lines canvas (place (first mark) (plane-across plane)) y
+        (write-lines canvas (axis-place (first mark) (plane-across plane)) y
                      (list (format nil "~D" (at-risk (first mark) curve)))
                      :anchor :middle)))))
 

@@ -141,7 +141,7 @@ FORK-NOW."
 
 ;; The restarts are here, where whoever asks for the fork can see them: another thread may have the
 ;; run in its hands.
-(defun decide (condition)
+(defun decide-on-fork (condition)
   "Signal CONDITION, a CANNOT-FORK. Return what the fork is to have for its value, and true; or NIL
 and false if there is to be no fork."
   (restart-case (error condition)
@@ -158,7 +158,7 @@ and false if there is to be no fork."
     (loop
       (handler-case (return (await-fork simulation continuations decisions))
         (cannot-fork (condition)
-          (multiple-value-bind (replacement decided-p) (decide condition)
+          (multiple-value-bind (replacement decided-p) (decide-on-fork condition)
             (unless decided-p (return nil))
             (push (cons (cannot-fork-value condition) replacement) decisions)))))))
 

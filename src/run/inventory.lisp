@@ -148,7 +148,7 @@ if it is to have one."
     (reject-object table "a table with a test of its own" inventory))
   (list :table (hash-table-test table) (hash-table-count table)))
 
-(defun shape-of (object inventory)
+(defun shape-in-inventory (object inventory)
   "Return what must be known of OBJECT before what is in it: a list of a keyword and plain data.
 Signals MISUSE."
   (typecase object
@@ -168,7 +168,7 @@ Signals MISUSE."
 
 (defun enlist (object inventory)
   "Give OBJECT a place in its batch in INVENTORY."
-  (let* ((shape (shape-of object inventory))
+  (let* ((shape (shape-in-inventory object inventory))
          (batch (or (gethash shape (inventory-batches inventory))
                     (progn (push shape (inventory-shapes inventory))
                            (setf (gethash shape (inventory-batches inventory))
@@ -239,7 +239,7 @@ Signals MISUSE."
 ;;; Looking at what was met.
 
 (defun survey-fields (object inventory)
-  (let ((batch (gethash (shape-of object inventory) (inventory-batches inventory))))
+  (let ((batch (gethash (shape-in-inventory object inventory) (inventory-batches inventory))))
     (dolist (field (batch-fields batch))
       (setf (inventory-field inventory) field)
       (survey (funcall (kind-slot-reader field) object) 0 inventory))))

@@ -145,7 +145,7 @@
   "Return what REQUEST, an operation or one with a resource as its argument, is to occupy or free."
   (if (operation-p request) (operation-resource request) (first (request-arguments request))))
 
-(defun complete (simulation head loaded requests)
+(defun complete-loading (simulation head loaded requests)
   "Let SIMULATION, which is all that was LOADED, be ready to go on, with REQUESTS waiting."
   (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
     (destructuring-bind (agenda tick . events) (loaded-agenda loaded)
@@ -182,7 +182,7 @@
       (sole-object 'world loaded)
       (sole-object 'timeline loaded)
       (setf (simulation-journal simulation) (read-journal-of reading head))
-      (complete simulation head loaded requests))))
+      (complete-loading simulation head loaded requests))))
 
 (defun read-head (reading)
   (let ((datum (next-datum reading)))

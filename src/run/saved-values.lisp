@@ -11,7 +11,7 @@
 ;;; then at least one line for each that is new: its number, and what is in it. Of arrays that is
 ;;; how often an element stands there, the element, and so on.
 
-(defun write-number (number out)
+(defun write-saved-number (number out)
   (write-char #\@ out)
   (prin1 number out))
 
@@ -34,7 +34,7 @@ it has a number or ends."
 (defun write-value (value inventory out)
   "Write VALUE to OUT: its number in INVENTORY, if it has one."
   (let ((number (and (not (typep value '(or symbol fixnum))) (number-of value inventory))))
-    (cond (number (write-number number out))
+    (cond (number (write-saved-number number out))
           ((consp value) (write-elements value inventory out #\()
            (write-char #\) out))
           (t (write-datum value out)))))
@@ -103,7 +103,7 @@ was left before: values, or where in an array."
                 (t (values-in object fields)))))
     (loop do (funcall seal (with-output-to-string (out)
                              (write-char #\( out)
-                             (write-number (number-of object inventory) out)
+                             (write-saved-number (number-of object inventory) out)
                              (setf more (write-line-of object more inventory out))
                              (write-char #\) out)))
           while more)))

@@ -26,7 +26,7 @@
   "True if the live SIMULATION is paused, and passes no ticks that somebody has let it pass."
   (if-paced (pacing simulation) (held-p pacing)))
 
-(defun standing-still-p (pacing)
+(defun clock-standing-still-p (pacing)
   "True if no tick may pass, as somebody has told PACING to pause or to stop."
   (or (pacing-stopping-p pacing) (held-p pacing)))
 
@@ -42,7 +42,7 @@
         (seconds-now)
         (loop for left = (- due (seconds-now))
               while (and (plusp left)
-                         (not (standing-still-p pacing))
+                         (not (clock-standing-still-p pacing))
                          (eql rate (pacing-rate pacing)))
               do (sleep-until-woken custody left)
                  (answer-questions custody)
@@ -77,7 +77,7 @@
                   (setf due (seconds-now)))
                  (t (setf due (keep-pace custody pacing due))
                     ;; It may have been paused while it waited.
-                    (unless (standing-still-p pacing)
+                    (unless (clock-standing-still-p pacing)
                       (pass-tick pacing))))))
 
 (defun tell-of-ending ()

@@ -48,7 +48,7 @@ what users' code the thread is in."
 (defun pacing-custody (pacing)
   (timeline-custody (pacing-timeline pacing)))
 
-(defun wake (pacing)
+(defun wake-clock (pacing)
   (signal-semaphore (custody-wake-up (pacing-custody pacing))))
 
 (defun seconds-now ()
@@ -106,7 +106,7 @@ what users' code the thread is in."
     (setf (pacing-steps pacing) steps
           (pacing-paused-p pacing) paused-p
           (pacing-trouble pacing) nil)
-    (wake pacing))
+    (wake-clock pacing))
   (values))
 
 (addition pause)
@@ -130,7 +130,7 @@ RATE. Signals WRONG-ARGUMENT."
   (check-rate rate)
   (if-paced (pacing simulation)
     (setf (pacing-rate pacing) rate)
-    (wake pacing))
+    (wake-clock pacing))
   rate)
 
 ;;; The thread ends by itself after its tick. Users' code that keeps it from ending is aborted, but
@@ -170,7 +170,7 @@ again if it does not go. Signals MISUSE if that does not help either."
 (defun stop (pacing)
   "End the thread of PACING after its current tick, and wait for that if it is another than this."
   (swap-if (pacing-stopping-p pacing) nil t)
-  (wake pacing)
+  (wake-clock pacing)
   (unless (eq (pacing-thread pacing) (current-thread))
     (await-end pacing)))
 

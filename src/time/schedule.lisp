@@ -54,7 +54,7 @@
            (call-user-code (scheduled-body event) "a scheduled event"))
           ((plusp left) (queue-again (scheduled-agenda event) event 1)))))
 
-(defun enter (event agenda)
+(defun enter-event (event agenda)
   (setf (scheduled-agenda event) agenda
         (scheduled-deadline event) (and (scheduled-test event) (scheduled-timeout event)
                                         (+ (agenda-tick agenda) (scheduled-timeout event))))
@@ -71,7 +71,7 @@
           (t (when rival
                (note-interruption rival event (1+ (agenda-tick agenda)))
                (interrupt-event agenda rival))
-             (enter event agenda)))))
+             (enter-event event agenda)))))
 
 (defun call-scheduled (function resource
                        &key (priority 0) interrupt when timeout (timer 1)

@@ -171,7 +171,7 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
           (request-phase request) (phase-here timeline))
     (atomic-push request (timeline-inbox timeline))
     ;; It may have ended just now, and its inbox may have been emptied for the last time.
-    (when (and (timeline-over timeline) (withdraw request timeline))
+    (when (and (timeline-over timeline) (withdraw-request request timeline))
       (check-not-over timeline))
     (wake-owner timeline))
   (values))
@@ -180,7 +180,7 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
   "Have REQUEST, taken from TIMELINE, performed after those posted before. Called by the owner."
   (atomic-push request (timeline-inbox timeline)))
 
-(defun withdraw (request timeline)
+(defun withdraw-request (request timeline)
   "Take REQUEST out of the inbox of TIMELINE again. True unless somebody else has taken it."
   (loop for inbox = (timeline-inbox timeline)
         unless (member request inbox) return nil

@@ -74,7 +74,7 @@ list of (name cost), what that says, from 1 to 1000. Signals WRONG-ARGUMENT and 
 (defun node-of-point (operator chart point)
   "Return the number of the cell with POINT. Signals WRONG-ARGUMENT, by OPERATOR, unless it is a
 point inside the map."
-  (unless (and (point-p point) (inside-p (chart-map chart) (point-x point) (point-y point)))
+  (unless (and (point-p point) (in-map-p (chart-map chart) (point-x point) (point-y point)))
     (reject-argument operator 'point point
                      (let ((map (chart-map chart)))
                        (format nil "a PT or a list (x y) inside ~A: x from 0 and below ~D, y ~

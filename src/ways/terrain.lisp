@@ -85,7 +85,7 @@ altered" :writable)
   (declare (type node node))
   (1- (floor node (terrain-columns terrain))))
 
-(defun inside-p (map x y)
+(defun in-map-p (map x y)
   "True if the point (X,Y) is inside MAP."
   (and (<= 0 x) (< x (map-width map)) (<= 0 y) (< y (map-height map))))
 

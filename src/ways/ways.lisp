@@ -8,7 +8,7 @@
 
 (defun free-node-p (chart x y)
   "True if the cell (X Y) is on the map of CHART and can be crossed."
-  (and (inside-p (chart-map chart) x y)
+  (and (in-map-p (chart-map chart) x y)
        (< (cost-of-node chart (cell-node (chart-terrain chart) x y)) +barred+)))
 
 (defun nearest-free-middle (chart x y)

@@ -120,7 +120,7 @@
     (when (or (null test) (test-holds-p kicker test thing))
       (funcall (the function (kicker-body kicker)) thing))))
 
-(defun run-again (origin)
+(defun kick-again (origin)
   "Run the member that is said to be to blame in ORIGIN once more."
   (let ((attachment (origin-attachment origin)))
     (setf self attachment)
@@ -165,7 +165,7 @@ large group, memory is read ahead if the first that runs moves its thing."
   (let ((origin (group-origin group)) (curious (>= end +large-group+)) (ahead end)
         (outlook nil))
     (declare (type (unsigned-byte 50) ahead))
-    (when (origin-attachment origin) (run-again origin))
+    (when (origin-attachment origin) (kick-again origin))
     (loop for index of-type (unsigned-byte 50) = (group-skip group)
           while (< index end)
           do (when (>= index ahead)

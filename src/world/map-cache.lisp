@@ -122,7 +122,7 @@ type with that. Signals an error if there is none; 0 is of none."
                (= 1 (read-sequence words in))
                (= +cache-magic+ (aref words 0)))))))
 
-(defun foreign-p (path)
+(defun foreign-cache-p (path)
   "True if what is at PATH, perhaps a link, is no map's cache, damaged or not, or cannot be told."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (plain-file-p path) (begins-as-cache-p path))))))
@@ -168,7 +168,7 @@ the definition at hand stands in, or from the current directory if that was type
   (let ((path (and (notany #'place-type-checker (registry-objects *place-types*))
                    (map-cache map))))
     (cond ((null path) nil)
-          ((foreign-p path)
+          ((foreign-cache-p path)
            (warning-set "The file " (native-name path)
                         " is no cache of a map; it is left as it is, and " (map-name map)
                         " is not kept. Give :cache another name.")

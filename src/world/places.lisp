@@ -236,7 +236,7 @@ with a warning. Return MAP, and true if no type was left out. See reading 70."
       (and (< -1 column width) (< -1 row height)
            (eq t (nth column (nth row (rule-form rule))))))))
 
-(defun form-text (form)
+(defun match-form-text (form)
   "Return FORM in the abbreviations of manual 5.1.1."
   (format nil "(~{(~{~A~^ ~})~^ ~})"
           (loop for row in form
@@ -248,7 +248,7 @@ with a warning. Return MAP, and true if no type was left out. See reading 70."
     (warn-of-definition "~A: the match form ~A can never fit a place, as ~A is a wall, and only ~
                          free cells are places; write - there, or give the free cell beside it ~
                          that is the place: (match-form direction dx dy)"
-                        definition (form-text (rule-form rule))
+                        definition (match-form-text (rule-form rule))
                         (if (= 0 dx dy)
                             "its middle"
                             (format nil "the cell ~D ~D from its middle" dx dy)))))

@@ -20,7 +20,7 @@
           (aref (map-substances map) index) substance
           (aref (map-parameters map) index) parameter)))
 
-(defun draw-line (map x0 y0 x1 y1 substance from to)
+(defun build-line (map x0 y0 x1 y1 substance from to)
   "Fill the cells of a line (Bresenham); the parameter goes from FROM to TO (reading 57)."
   (let* ((dx (abs (- x1 x0))) (dy (- (abs (- y1 y0))))
          (step-x (signum (- x1 x0))) (step-y (signum (- y1 y0)))
@@ -34,9 +34,9 @@
                (when (<= twice dx) (incf slack dx) (incf y0 step-y))))))
 
 (defun draw-wall (map start end type from &optional (to from))
-  (draw-line map (column-in map (first start)) (row-in map (second start))
-             (column-in map (first end)) (row-in map (second end))
-             (substance-number map type) (double from) (double to)))
+  (build-line map (column-in map (first start)) (row-in map (second start))
+              (column-in map (first end)) (row-in map (second end))
+              (substance-number map type) (double from) (double to)))
 
 (defun draw-rect (map corner opposite type p0 &optional (p1 p0) (p2 p0) (p3 p0))
   "Draw the outline; the second corner is beside the first, the third opposite
@@ -48,7 +48,7 @@ it (readings 55 and 56)."
     (draw-wall map opposite last type p2 p3)
     (draw-wall map last corner type p3 p0)))
 
-(defun draw-circle (map center radius type parameter)
+(defun build-circle (map center radius type parameter)
   "Draw the digitised outline (midpoint algorithm), pressed against the map's edges (reading 22)."
   (let ((cx (floor (first center))) (cy (floor (second center))))
     (if (encloses-map-p map cx cy radius)
@@ -102,7 +102,7 @@ to 1e15"
   :corners (destructuring-bind (x y) center
              (list (list (- x radius) (- y radius)) (list (+ x radius) (+ y radius))))
   :substance type
-  :cells (draw-circle map center radius type parameter))
+  :cells (build-circle map center radius type parameter))
 
 ;;; Building.
 

@@ -106,7 +106,7 @@ will do; how small this can be does not depend on these."
   (if (null firsts)
       (make-difference measure kind 0 nil nil nil nil nil)
       (let* ((differences (mapcar (lambda (a b) (- (rational a) (rational b))) firsts seconds))
-             (scale (scale-for differences))
+             (scale (scale-of-numbers differences))
              (numbers (mapcar (lambda (number) (scaled number scale)) differences))
              (rounding (rounding-of firsts seconds)))
         (multiple-value-bind (low high) (student-interval numbers)

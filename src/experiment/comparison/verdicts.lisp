@@ -42,7 +42,7 @@
   "Return a function that writes the numbers of DIFFERENCE, without units."
   (cond ((eq :rate (paired-kind difference))
          (lambda (value) (hundredths-text value (paired-trials difference))))
-        ((plusp (or (paired-rounding difference) 0)) #'number-text)
+        ((plusp (or (paired-rounding difference) 0)) #'number-in-words)
         (t (let ((decimals (if (paired-first difference) (decimals-known difference) 0)))
              (lambda (value) (mean-text value decimals))))))
 

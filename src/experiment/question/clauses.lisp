@@ -29,7 +29,7 @@
       (mapcar #'first (design-ranges part))
       (list (first part))))
 
-(defun range-p (form)
+(defun range-form-p (form)
   (and (proper-list-p form)
        (or (= 3 (length form))
            (and (= 4 (length form)) (member (fourth form) *scales*)))))
@@ -190,7 +190,7 @@ true of; or about CLAUSE if there is none at all."
 
 (defun check-range (definition range)
   "Signal MALFORMED-DEFINITION unless RANGE can be one, of something whose values are numbers."
-  (unless (range-p range)
+  (unless (range-form-p range)
     (reject-clause definition range "a range (what low high), perhaps with :integer or :log"))
   (when (surrounding-p (first range))
     (reject-clause definition range "a parameter, or a variable, whose values are numbers"))

@@ -75,7 +75,7 @@ and is the same in each run."
 (defun integer-text (integer)
   (format nil "~D" integer))
 
-(defun number-text (number)
+(defun number-in-words (number)
   (etypecase number
     (integer (integer-text number))
     (ratio (float-text (float number 1d0)))
@@ -86,7 +86,7 @@ and is the same in each run."
 (defun json-text (value)
   (typecase value
     (boolean (if value "true" "false"))
-    (number (number-text value))
+    (number (number-in-words value))
     (cons (format nil "[~{~A~^, ~}]" (mapcar #'json-text value)))
     (string (quoted-text value))
     (t (quoted-text (bare-text value)))))
@@ -96,7 +96,7 @@ and is the same in each run."
 
 (defun plain-value-text (value)
   (typecase value
-    (number (number-text value))
+    (number (number-in-words value))
     (cons (plain-text (json-text value)))
     (string (plain-text value))
     (t (plain-text (bare-text value)))))

@@ -15,7 +15,7 @@
       (- a b)
       (nearest-float (- (rational a) (rational b)))))
 
-(defun scale-for (numbers)
+(defun scale-of-numbers (numbers)
   "Return by which power of two to multiply NUMBERS so that none is above 5e14 either way."
   (let ((largest (reduce #'max numbers :key #'abs :initial-value 0)))
     (if (<= largest (/ +largest-quantity+ 2))
@@ -106,7 +106,7 @@ that has one of this, too, in a column beside its own. Return KIND."
       (values (/ true trials) low high))))
 
 (define-statistic :mean (numbers confidence) (:heading ", mean")
-  (let* ((scale (scale-for numbers))
+  (let* ((scale (scale-of-numbers numbers))
          (sample (cl:map 'vector (lambda (number) (scaled number scale)) numbers)))
     (multiple-value-bind (low high) (student-interval sample :confidence confidence)
       (values (unscaled (mean sample) scale) (unscaled low scale) (unscaled high scale)))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(experiment-file form-text))
+(export '(experiment-file form-in-package))
 
 ;;; None of it decides a trial, so it is in no fingerprint.
 
@@ -64,7 +64,7 @@ is no git, or DIRECTORY is in no tree of it."
 ;;; It is for people, and nothing is read back but the parts of the fingerprints, to say which of
 ;;; them have changed, and until when trials were added.
 
-(defun form-text (form package)
+(defun form-in-package (form package)
   "Return FORM as its author, in PACKAGE, would write it."
   (printing-plainly ()
     (let ((*package* package) (*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 90))
@@ -90,7 +90,7 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
                   ARS MAGNA ~A.~%~{~A~%~}~%~A~2%"
           (experiment-seed experiment) (experiment-limit experiment) *simulator-version*
           (origin-lines experiment)
-          (form-text (experiment-form experiment) (experiment-package experiment)))
+          (form-in-package (experiment-form experiment) (experiment-package experiment)))
   (format stream "What decides the trials of each condition:~%")
   (loop for condition in (experiment-conditions experiment)
         for its in parts

@@ -64,7 +64,7 @@ begin and end, and on which line."
              for other across line
              always (char= char other))))
 
-(defun tick-at (line start)
+(defun tick-in-line (line start)
   "Return the number of the tick in the cell of LINE that begins at START, or NIL."
   (let ((end (position #\, line :start start)))
     (and end (integer-in (subseq line start end)))))
@@ -84,7 +84,7 @@ lines."
   (let ((block (scan-block scan)) (beginning (scan-beginning scan)))
     (and block
          (begins-with-p beginning line)
-         (eql (+ (block-first block) (block-count block)) (tick-at line (length beginning))))))
+         (eql (+ (block-first block) (block-count block)) (tick-in-line line (length beginning))))))
 
 (defun check-series-cells (texts seed file number)
   "Signal DAMAGED-TABLE unless TEXTS, from SEED on, of the line NUMBER of FILE, can be so."

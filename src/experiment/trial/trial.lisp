@@ -73,7 +73,7 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
 :measure. NIL if it did not return, and before it has."
   *trial-values*)
 
-(defun pass-until (function condition)
+(defun pass-ticks-until (function condition)
   (loop until (truth-of :until function condition) do (run-ticks 1))
   t)
 
@@ -87,7 +87,7 @@ and :LIMIT if too few ticks were left."
         (signal-trouble *message-queue*)
         (check-run-something values)
         (if (experiment-until experiment)
-            (list (pass-until (experiment-until experiment) condition))
+            (list (pass-ticks-until (experiment-until experiment) condition))
             values))))
   (list nil :limit))
 
@@ -109,7 +109,7 @@ what RUN-PLAN would have returned of it. Enter it into RESULT as well."
                            (return-from run (list failure :failed)))))))
       (run-forms experiment condition))))
 
-(defun decide (experiment condition outcome reason)
+(defun decide-trial (experiment condition outcome reason)
   "Return outcome and reason of a trial of CONDITION that so far are OUTCOME and REASON. What :run
 took for a success and :success does not is one that was only believed."
   (let ((success (experiment-success experiment)))
@@ -181,7 +181,7 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
                    (run-noting-failures experiment condition result))))
     (multiple-value-bind (outcome reason) (outcome-so-far experiment values)
       (setf (values (result-outcome result) (result-reason result))
-            (decide experiment condition outcome reason))
+            (decide-trial experiment condition outcome reason))
       (add-error result (error-in-plan values))
       (note-plans-passed-over result values (reverse failed))
       (note-unfinished result values)
