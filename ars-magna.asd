@@ -13,10 +13,9 @@
                  (:file "compiler") (:file "debugger") (:file "threads") (:file "streams")))
    (:module "src/basics" :serial t
     :components ((:file "package") (:file "text") (:file "records") (:file "names")
-                 (:file "conditions") (:file "arguments") (:file "lisp-errors")
-                 (:file "telling") (:file "fixed-point") (:file "trigonometry")
-                 (:file "exponentials") (:file "dice") (:file "random") (:file "files")
-                 (:file "formats")))
+                 (:file "conditions") (:file "telling") (:file "fixed-point")
+                 (:file "trigonometry") (:file "exponentials") (:file "dice") (:file "random")
+                 (:file "files") (:file "formats")))
    (:module "src/definitions" :serial t
     :components ((:file "package") (:file "sources") (:file "places-in-text")
                  (:file "definitions") (:file "user-macros") (:file "registry")

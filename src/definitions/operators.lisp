@@ -49,7 +49,7 @@ wrong with VALUE."
   (unless (argument-of-type-p value type)
     (reject-argument operator name value (argument-type-text type value))))
 
-;;; One for each kind of number; see basics/arguments.lisp for the limits.
+;;; One for each kind of number; see basics/conditions.lisp for the limits.
 
 (define-argument-type 'number #'within-reason-p "a number from -1e9 to 1e9")
 (define-argument-type 'angle #'within-reason-p "an angle in radians, from -1e9 to 1e9")

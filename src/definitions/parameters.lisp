@@ -156,7 +156,7 @@ Returns nothing (manual, chapter 4)."
      (define-physics (&rest groups)
        `(progn ,@(loop for group in groups collect `(define-group ,@group)))))
   (define-physics
-    ;; No delay, distance or angle is beyond what basics/arguments.lisp allows in general.
+    ;; No delay, distance or angle is beyond what basics/conditions.lisp allows in general.
     ("Robot movement"
      ;; As reading 217 says.
      (max-speed* 1 "cells per tick" :limit (real 0 #.+largest+)
