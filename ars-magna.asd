@@ -255,7 +255,7 @@
   ((:module "cli/manual" :serial t
     :components ((:file "package") (:file "html") (:file "guide") (:file "examples")
                  (:file "entries") (:file "definition-entries") (:file "linking")
-                 (:file "writing")))))
+                 (:file "search-index") (:file "writing")))))
 
 ;;; Loaded after the tests where McCLIM is found: see load-tests in cli/build.lisp.
 (defsystem "ars-magna/clim-tests"

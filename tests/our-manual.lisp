@@ -183,3 +183,52 @@ what is there."
                        rows)
                  "~A is not found" words))
       (is (< (reduce #'+ rows :key #'length) 500000)))))
+;;; Synonyms. Node.js runs the search as a browser does, with a document that does nothing.
+
+(defparameter *searching*
+  "const stub = new Proxy(function () {}, {get: () => stub, apply: () => stub, set: () => true});
+globalThis.document = stub;
+const read = (name) => require('fs').readFileSync(process.argv[1] + name, 'utf8');
+(0, eval)(read('search-index.js') + read('search.js'));
+process.argv.slice(2).forEach(function (text) {
+  const first = findRows(text)[0] || [];
+  console.log(first[1] + ' at ' + first[2]); });"
+  "JavaScript that prints kind and address of the first result of each search.")
+
+(defun first-results (directory searches)
+  "Return a text, KIND at ADDRESS, for the first result of each of SEARCHES; NIL without Node.js."
+  (and (base:run-command "node" '("--version"))
+       (lines-of (nth-value 1 (base:run-command
+                               "node" (list* "-e" *searching* (base:native-name directory) searches)
+                               :output :string)))))
+
+(test our-manual.finds-pages-by-words-of-other-simulators
+  (with-manual (directory)
+    (let* ((pairs '(("lidar" "design.html#a-sensor") ("range" "design.html#a-sensor")
+                    ("collision" "reference-error-codes.html#_3arobot-blocked")
+                    ("Velocity" "reference-commands.html#robot-set-speed")
+                    ("gif" "worlds-how-to-pictures.html#pictures-films-and-timelines")
+                    ("door" "reference-place-types.html#doorway")
+                    ("define a kicker" "reference-definers.html#defkicker")
+                    ("how do I define a map?" "reference-definers.html#defmap")
+                    ("undefined plan" "reference-conditions.html#unknown-name")
+                    ("checkpoint" "reference-names.html#save-simulation")
+                    ("cite" "about.html#citing")))
+           (results (first-results directory (mapcar #'first pairs))))
+      (loop for (nil address) in pairs
+            for result in results
+            do (is (search (format nil " at ~A" address) result))))))
+
+(test our-manual.shows-the-target-of-each-synonym-first
+  (with-manual (directory)
+    (let* ((pairs (loop for (name . synonyms) in manual::*synonyms*
+                        append (loop for synonym in synonyms collect (list synonym name))))
+           (rows (search-rows directory))
+           (results (first-results directory (mapcar #'first pairs))))
+      (loop for (name) in manual::*synonyms*
+            do (is (find (format nil "[\"~(~A~)\"" name) rows :test #'begins-with-p)
+                   "~A is no entry or heading" name))
+      (loop for (synonym name) in pairs
+            for result in results
+            do (is (begins-with-p (format nil "see ~(~A~) at " name) (string-downcase result))
+                   "~A leads to ~A, not to ~A" synonym result name)))))

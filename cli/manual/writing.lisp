@@ -199,37 +199,6 @@ defined there, further up."
 
 ;;;; The whole
 
-;;; What the search looks through: names, first sentences, headings, and the words below the
-;;; headings of the guide.
-
-(defun index-row (name kind address text &optional (words ""))
-  (format nil "[~{~A~^,~}]" (mapcar #'javascript-string (list name kind address text words))))
-
-(defun words-of (text)
-  "Return the words of TEXT, each once, in lower case and without what stands around them."
-  (remove-duplicates
-   (loop for word in (uiop:split-string (string-downcase text)
-                                        :separator '(#\Space #\Newline #\Tab))
-         for bare = (string-trim ".,;:()'`\"[]{}" word)
-         when (< 1 (length bare)) collect bare)
-   :test #'string= :from-end t))
-
-(defun page-rows (page)
-  "Return rows for the headings of PAGE; with the words below them if that is to be read."
-  (loop for (nil id text words) in (headings (page-tokens page))
-        collect (index-row text (page-title page) (format nil "~A#~A" (page-file page) id) ""
-                           (if (member (page-part page) '(:learning :guide))
-                               (format nil "~{~A~^ ~}" (words-of words))
-                               ""))))
-
-(defun write-index (out book)
-  (format out "var SEARCH_INDEX = [~%~{~A~^,~%~}~%];~%"
-          (append (loop for entry in (book-entries book)
-                        collect (index-row (entry-name entry)
-                                           (chapter-title (entry-chapter entry))
-                                           (entry-address entry) (entry-sentence entry)))
-                  (mapcan #'page-rows (copy-list (book-pages book))))))
-
 ;;; Files.
 
 (defun call-writing (function name directory)
