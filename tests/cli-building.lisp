@@ -30,6 +30,14 @@ mkdir \"$cache\"
     (dolist (part (list "ARS MAGNA " (lisp-implementation-version) "bordeaux-threads "))
       (is (search part text) "~S lacks ~A" text part))))
 
+(test version.has-what-is-cited-in-bibtex
+  (let ((text (nth-value 1 (base:run-command (base:native-name (project-file "cli/ars-magna"))
+                                             '("--version") :output :string)))
+        (version (asdf:component-version (asdf:find-system "ars-magna"))))
+    (dolist (part (list "@manual{engelson-bertani-1992," "@misc{ars-magna,"
+                        (format nil "Version ~A}" version)))
+      (is (search part text) "~S lacks ~A" text part))))
+
 (test cores.take-the-directory-for-temporary-files-from-the-environment
   "Not from that of the process that built them."
   (call-in-new-directory
