@@ -1,8 +1,8 @@
-;;;; figures.lisp -- runs the shipped experiments, and brings worlds/README.md up to date with them.
+;;;; figures.lisp -- runs the shipped experiments, and puts their results into worlds/README.md.
 
 ;;; The command worlds/figures calls SAVE-FIGURES. Tables go into the page between two comments,
-;;; such as <!-- table of three-ways-of-searching --> and <!-- end of table -->; pictures into a
-;;; directory beside it. The same code makes the same bytes.
+;;; such as <!-- table of three-ways-of-searching --> and <!-- end of table -->. Pictures go into a
+;;; directory beside the page. The same code makes the same bytes.
 
 (in-package :ars-worlds)
 
@@ -10,19 +10,19 @@
   '((fetching-against-motion-noise "success" "survival")
     (fetching-against-blindness-and-kicks "success")
     (three-ways-of-searching "success" "difference-in-success-by-way"))
-  "For each experiment the names of those of its pictures that the page shows.")
+  "For each experiment the names of the pictures that the page shows.")
 
 (defparameter *ways-shown*
   '((fetching-against-motion-noise "motion-noise*=0.6" 60 (52 12 120 46))
     (three-ways-of-searching "way=search-watchfully miss-thing-prob*=0.2" 20 nil))
-  "Lists (experiment condition trials part): the ways that the page shows, and of which part of the
-map.")
+  "Lists (experiment condition trials part): the ways that the page shows, and the part of the map
+to draw; NIL is the whole map.")
 
 (defparameter *figures* (asdf:system-relative-pathname "ars-magna" "worlds/")
-  "The directory that pictures and page are in; tests draw into another.")
+  "The directory of the pictures and the page. Tests bind it to another one.")
 
 (defun in-worlds (name)
-  "Return the path of the file NAME in worlds/, whose directory is made if need be."
+  "Return the path of the file NAME in worlds/. Create its directory if there is none."
   (ensure-directories-exist (merge-pathnames name *figures*)))
 
 (defun pictures-of (experiment)
@@ -41,14 +41,14 @@ map.")
   (format nil "<!-- ~(~A~) -->" what))
 
 (defun with-table-lines (lines experiment table)
-  "Return LINES of a page with TABLE, a list of lines, where they have that of EXPERIMENT."
+  "Return LINES of a page, the table of EXPERIMENT replaced by TABLE, a list of lines."
   (let* ((start (position (comment-line (format nil "table of ~A" experiment)) lines
                              :test #'string=))
             (end (position (comment-line "end of table") lines :test #'string= :start start)))
     (append (subseq lines 0 (1+ start)) table (nthcdr end lines))))
 
 (defun with-table (lines experiment table)
-  "Return LINES of a page with TABLE, a text, where they have that of EXPERIMENT."
+  "Return LINES of a page, the table of EXPERIMENT replaced by TABLE, a text."
   (with-table-lines lines experiment (list "```" (string-right-trim '(#\Newline) table) "```")))
 
 (defun save-page (lines page)
@@ -70,7 +70,7 @@ map.")
     (save-picture robbie (in-worlds "watson.svg") :layers (cons :wedges *picture-layers*))))
 
 (defun save-layers ()
-  "Save a picture of DOT in TINY that shows what layers there are."
+  "Save a picture of DOT in TINY that shows the layers of pictures."
   (with-simulation (dot :seed 4)
     (let ((camera (robot-camera dot 0)))
       (keep-history)
@@ -90,7 +90,7 @@ map.")
 ;;; Looking ahead.
 
 (defun save-ways-ahead ()
-  "Save a picture of where the rollouts of an errand go whose way may be barred."
+  "Save a picture of the ways of rollouts in which a trolley may block the way."
   (with-simulation (marvin :seed 3)
     (leave-trolleys)
     (save-projection-picture (project 'carry-messages :arguments '(:first)
@@ -112,7 +112,7 @@ map.")
 ;;; Choosing by rollouts: what it is worth, and how good forecasts are.
 
 (defparameter *ways-of-choosing*
-  '("always the short way" "always the long way" "either, by chance" "what rollouts say")
+  '("always the short way" "always the long way" "either, at random" "chosen by rollouts")
   "What the page calls the conditions of CHOOSING-BY-ROLLOUTS, in their order.")
 
 (defun in-time-p (outcome)
@@ -125,7 +125,7 @@ map.")
             (round (* 100 high)))))
 
 (defun choosing-row (name results sample)
-  "Return the line of the table for SAMPLE of RESULTS, called NAME."
+  "Return the row of the table for SAMPLE of RESULTS, with NAME as its first cell."
   (let* ((trials (length (sample-trials sample)))
          (successes (count-if #'in-time-p (sample-outcomes sample)))
          (rate (/ successes trials)))
@@ -151,8 +151,8 @@ the short way."
 (defun choosing-lines (results)
   "Return the lines of the page with the RESULTS of CHOOSING-BY-ROLLOUTS."
   (let ((samples (results-samples results)))
-    (append (list (format nil "| of ~D trials, the same seeds for all | in time | forecasts' Brier ~
-                               score | that of the rate |"
+    (append (list (format nil "| of ~D trials, the same seeds for all | in time | Brier score of ~
+                               the forecasts | of the mean rate |"
                           (length (sample-trials (first samples))))
                   "|---|---|---|---|")
             (loop for name in *ways-of-choosing*
@@ -162,10 +162,10 @@ the short way."
             (paired-lines (sample-outcomes (first samples))
                           (sample-outcomes (first (last samples)))))))
 
-;;; The whole.
+;;; The command.
 
 (defun save-quick-figures ()
-  "Save those pictures that take seconds; the tests hold what is shipped against them."
+  "Save the pictures that take only seconds. Tests compare the shipped ones with these."
   (save-watson)
   (save-layers)
   (draw-ward (in-worlds "floors/"))
