@@ -1,10 +1,10 @@
-;;;; choosing.lisp -- an errand with two ways to each place, of which one may be barred just now.
+;;;; choosing.lisp -- an errand with two ways to each place; a trolley may block either.
 
-;;; Good for a look at what rollouts are worth. A messenger has to be in time in the library and
-;;; then in a meeting room. Each has a doorway to the corridor, which is the short way, and another
-;;; to a room beside it, which is the long way. A trolley that people use stands in one of the two,
-;;; or somewhere else; who meets it has to turn round, and is late. So neither way is the better
-;;; one: it depends on where the trolleys are, and a fork of the run, unlike the robot, knows that.
+;;; Shows what rollouts are worth. A messenger has a deadline for the library and one for a meeting
+;;; room. Each room has a doorway to the corridor, the short way, and another to the next room, the
+;;; long way. A trolley that people use stands in one of the two, or elsewhere. A robot that meets
+;;; it has to turn round and is late. So the better way depends on where the trolleys are. Forks of
+;;; the run have the trolleys in place; the robot does not see them in advance.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -12,8 +12,8 @@
 ;;; The world.
 
 (defun leave-trolley (name places)
-  "Put a trolley NAME, which blocks the way, at one of PLACES, points of the world that is being
-run, as NAME and the world's seed decide, and let people use it now and then. Return it."
+  "Put a trolley NAME, which blocks robots, at one of PLACES, points of the current world. NAME and
+the world's seed decide which. People move it among PLACES now and then. Return it."
   (make-new-thing name (cons *world* (roll-element places (dice-for name)))
                   (list '(:size 30) '(:weight 25) '(:substance metal) '(:obsmove #t)
                         (list :haunts places))
@@ -24,13 +24,14 @@ run, as NAME and the world's seed decide, and let people use it now and then. Re
   (leave-trolley 'book-trolley '((72.5 34.5) (84.5 24.5) (76.5 4.5)))
   (leave-trolley 'tea-trolley '((52.5 34.5) (44.5 26.5) (56.5 20.5))))
 
-;;; The plan. WHICH says how it chooses: :FIRST, :SECOND, :ANY or :BEST.
+;;; The plan. WHICH is how it chooses a way: :FIRST, :SECOND, :ANY (at random) or :BEST (by
+;;; rollouts).
 
 (defvar forecasts* '()
-  "How probable success was by the rollouts of each choice of an errand, the latest first.")
+  "For each choice of an errand, the share of rollouts that succeeded, the latest choice first.")
 
 (defun note-forecast (projections best)
-  "Note how probable it is by PROJECTIONS that the one number BEST succeeds."
+  "Push the share of successful rollouts of the alternative with index BEST on FORECASTS*."
   (push (projection-probability (nth best projections)) forecasts*))
 
 (def-interp-proc follow-way (me points)
@@ -38,7 +39,8 @@ run, as NAME and the world's seed decide, and let people use it now and then. Re
   (dolist (point points) (travel-to me point)))
 
 (def-interp-proc choose-way (me which first second &key (trials 5))
-  "Bring the robot of ME to where the ways FIRST and SECOND, lists of points, end, by one of them."
+  "Drive the robot of ME by the way FIRST or SECOND, lists of points with the same end. WHICH is
+:FIRST, :SECOND, :ANY (at random) or :BEST (by TRIALS rollouts of each)."
   (case which
     (:first (follow-way me first))
     (:second (follow-way me second))
@@ -48,14 +50,15 @@ run, as NAME and the world's seed decide, and let people use it now and then. Re
              (follow-way me second)))))
 
 (def-interp-proc be-in-time (me which first second)
-  "Do as CHOOSE-WAY. Fails with a DEADLINE-MISSED after 240 ticks."
+  "Do CHOOSE-WAY. Fails with DEADLINE-MISSED after 240 ticks."
   (with-deadline (240)
     (choose-way me which first second)))
 
 (def-interp-proc carry-messages (which &key start)
-  "Let the robot of OFFICE's corridor be in the library in time, then back in the corridor, and then
-in the meeting room in time, choosing its ways as WHICH says. START is where it is, a list (x y
-heading); by default it finds that out."
+  "Drive from the corridor of OFFICE to the library, back, and then to the meeting room. The two
+rooms have a deadline each of 240 ticks. WHICH is how each way is chosen, as in CHOOSE-WAY. START is
+the robot's position, a list (x y heading); the default is the true one. Return T. Fails with
+DEADLINE-MISSED or :CANNOT-GET-THERE."
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot))))))
       (be-in-time me which
@@ -67,20 +70,22 @@ heading); by default it finds that out."
                   '((32.5 31.5) (42 26.5) (50 28)))
       t)))
 
-;;; The question.
+;;; The experiment.
 
 (defun forecast (which)
-  "Return how probable it is by 20 rollouts that CARRY-MESSAGES, by WHICH, succeeds."
+  "Return the share of 20 rollouts in which CARRY-MESSAGES, choosing by WHICH, succeeds."
   (projection-probability (project 'carry-messages :arguments (list which) :horizon 1200)))
 
 (defexperiment choosing-by-rollouts
-  "What is it worth to try ways in one's head before one goes? And how good are the forecasts?
+  "How much does it help to try ways in rollouts before driving? And how good are the forecasts?
 
-Always the short way, always the long one, or any: each is in time at both places in about half of
-all trials, as it does not know what stands in it. Five rollouts for each way at each choice find
-that out. FORECAST is what 20 rollouts at the start say of the ways that do not choose, and for
-those that do what those of the last choice said of the way taken; MISS is the square of its
-distance from what happened, whose mean is Brier's score."
+Always the short way, always the long way, or either at random: each is in time at both places in
+about half of all trials, because the robot does not know what blocks it. Five rollouts for each way
+at each choice find that out. The measures:
+- FORECAST: the forecast probability of success. For :BEST it is the share of successful rollouts of
+  the way chosen last, otherwise the share of 20 rollouts at the start.
+- MISS: the squared difference between FORECAST and the outcome (1 or 0). Its mean is the Brier
+  score."
   (:robots marvin)
   (:vary (which :first :second :any :best))
   (:trials 500)

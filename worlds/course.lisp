@@ -1,8 +1,8 @@
-;;;; course.lisp -- programs of continuations notice that somebody else has taken their robot over.
+;;;; course.lisp -- how a program of continuations detects that another has taken over its robot.
 
-;;; A command that is taken over tells its continuation :INTERRUPT. But a program may be waiting for
-;;; a camera when somebody commands the robot, as STOP does. So it counts how often the robot is
-;;; asked for.
+;;; A newer command interrupts an older one, whose continuation receives :INTERRUPT. But a program
+;;; may be waiting for a camera when another program, or STOP, commands the robot. So a COURSE
+;;; compares how many commands the robot has received with how many the program itself has issued.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -11,21 +11,21 @@
 
 (defstruct (course (:constructor make-course (robot &aux (asked (asked-so-far robot))))
                    (:copier nil))
-  "A robot that is given one command after the other, and how often it should have been asked for by
-now: if it was more often, somebody else has taken it over."
+  "A program's hold on a robot: the robot, and how many commands it should have received by now. If
+it has received more, another program has taken it over."
   (robot nil :type robot :read-only t)
   (asked 0 :type integer))
 
 (defun own (course)
-  "Return the robot of COURSE, to which that is just about to give a command."
+  "Return the robot of COURSE, and count the command that is about to be issued to it."
   (incf (course-asked course))
   (course-robot course))
 
 (defun taken-p (course)
-  "True if somebody else has taken the robot of COURSE over."
+  "True if another program has taken over the robot of COURSE."
   (/= (course-asked course) (asked-so-far (course-robot course))))
 
 (defun over-p (course err)
-  "True if COURSE is over, as its last command has ended with the error code ERR, or somebody else
-has taken its robot over."
+  "True if COURSE has to end: ERR, the error code of its last command, is :INTERRUPT, or another
+program has taken over its robot."
   (or (eq err :interrupt) (taken-p course)))

@@ -1,7 +1,7 @@
 ;;;; doorways.lisp -- the next step of a robot on its way: straight ahead, or through a doorway.
 
-;;; Good for plans that find their way on a map; the ways themselves are ARS's, see FIND-WAY. Points
-;;; and cells are lists (x y) here.
+;;; For plans and programs that find their way on a map. FIND-WAY of ARS finds the ways; NEXT-STEP
+;;; divides them into steps. Points and cells are lists (x y) here.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -11,7 +11,7 @@
   (sqrt (+ (* dx dx) (* dy dy))))
 
 (defun cell-of (point)
-  "Return the cell in which POINT is."
+  "Return the cell of POINT."
   (mapcar #'floor point))
 
 (defun middle-of (cell)
@@ -19,11 +19,11 @@
   (list (+ (first cell) .5) (+ (second cell) .5)))
 
 (defun as-list (pt)
-  "Return the PT as a list (x y)."
+  "Return PT as a list (x y)."
   (list (pt-x pt) (pt-y pt)))
 
 (defun free-p (map x y)
-  "True if the cell of MAP at (X,Y) is inside it and no wall."
+  "True if (X,Y) is inside MAP and its cell has no wall."
   (not (wall-at-p map x y)))
 
 (defun doorway-at (map x y)
@@ -34,22 +34,22 @@
          (eq (ars-magna.world:place-type place) (find-place-type 'doorway))
          place)))
 
-;;; A robot had better come to a doorway straight, from some way off.
+;;; A robot passes a doorway best if it comes to it straight, from one to three metres away.
 
 (defun direction-from (start end)
-  "Return the step (dx dy), each -1, 0 or 1, that leads best from the point START towards END."
+  "Return the direction from the point START to END as a step (dx dy), each -1, 0 or 1."
   (destructuring-bind (dx dy) (mapcar #'- end start)
     (let ((length (length-of dx dy)))
       (list (round dx length) (round dy length)))))
 
 (defun before-doorway (map door direction)
-  "Return the point from which a robot best drives into the cell DOOR, coming from where DIRECTION,
-a step, leads."
+  "Return the point from which a robot should drive into the cell DOOR. DIRECTION, a step (dx dy),
+leads from DOOR to the robot's side of it."
   (destructuring-bind ((x y) (dx dy)) (list (middle-of door) direction)
     (let ((room (loop for length from 1 to 3
                       while (free-p map (+ x (* length dx)) (+ y (* length dy)))
                       finally (return length))))
-      ;; In the last cell but one that is free, and not against what follows.
+      ;; The point keeps clear of the first wall.
       (list (+ x (* (max 1 (- room 1.5)) dx)) (+ y (* (max 1 (- room 1.5)) dy))))))
 
 (defun beyond-doorway (chart door goal)
@@ -61,7 +61,7 @@ a step, leads."
         (mapcar (lambda (from to) (+ from (/ (- to from) length))) middle next))))
 
 (defun well-placed-p (start door before)
-  "True if a robot at START can drive into the cell DOOR much as one at BEFORE can."
+  "True if a robot at START can drive straight into the cell DOOR, nearly as well as from BEFORE."
   (destructuring-bind (dx dy) (mapcar #'- before (middle-of door))
     (destructuring-bind (x y) (mapcar #'- start (middle-of door))
       (let* ((length (length-of dx dy))
@@ -70,8 +70,8 @@ a step, leads."
         (and (< .6 along (+ length 1)) (< across (max .4 (* .5 along))))))))
 
 (defun as-good-p (chart start point door goal)
-  "True if the straight line from START to POINT on CHART costs no more than the way from START, by
-which one comes to the cell DOOR, on to GOAL."
+  "True if driving straight from START to POINT on CHART costs no more than the part of the way from
+START to GOAL that leads to the cell DOOR."
   (let ((cost (straight-cost chart start point)))
     (and cost
          (<= cost (- (way-cost chart start goal) (way-cost chart (middle-of door) goal))))))
@@ -87,8 +87,10 @@ which one comes to the cell DOOR, on to GOAL."
           (t (list :drive (second way))))))
 
 (defun next-step (chart start goal)
-  "Return the first step of a robot on its way from the point START to GOAL: (:drive point) straight
-ahead, (:door cell point) through the doorway CELL to the other side, or NIL if there is no way."
+  "Return the first step on the way from the point START to GOAL on CHART:
+- (:drive point): drive straight to the point.
+- (:door cell point): drive through the doorway CELL to the point beyond it.
+- NIL: there is no way."
   (let* ((map (chart-map chart))
          (start (nearest-free-point chart start))
          (goal (nearest-free-point chart goal))

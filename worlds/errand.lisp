@@ -1,9 +1,9 @@
-;;;; errand.lisp -- a robot program in the other style: continuations instead of plans.
+;;;; errand.lisp -- finds and stows a thing, with continuations instead of a plan.
 
-;;; Good for seeing what both styles cost. RUN-ERRAND finds a thing, goes to it, grasps it and stows
-;;; it, as the manual's figures D.1, D.3 and D.5 do for a robot that nothing goes wrong for; here
-;;; every error leads somewhere. Each step is a function that issues a command and returns at once;
-;;; its continuation takes the next step. What the steps share is in an ERRAND.
+;;; Compare it with the plans of plans-handling.lisp to see what both styles cost. RUN-ERRAND finds
+;;; a thing, goes to it, grasps it and stows it, as the manual's figures D.1, D.3 and D.5 do. Those
+;;; handle no errors; this program handles all of them. Each step is a function that issues a
+;;; command and returns at once; its continuation takes the next step. The steps share an ERRAND.
 ;;;
 ;;;   (with-simulation (ars-worlds:dot :seed 1)
 ;;;     (ars-worlds:run-errand ars-worlds:dot '((:color red)) #'report)
@@ -13,7 +13,8 @@
 (in-readtable :nisp)
 
 (defstruct (errand (:include course) (:copier nil))
-  "What an errand is about, and how many more setbacks it puts up with."
+  "The parts, description and continuation of an errand. PATIENCE is how many more setbacks it
+accepts."
   (camera nil :read-only t)
   (hand nil :read-only t)
   (bin nil :read-only t)
@@ -25,11 +26,13 @@
   (over #f))
 
 (defun run-errand (robot description continuation &key (camera 0) (hand 0) (bin 0))
-  "Let ROBOT find something that fits DESCRIPTION, go to it, grasp it with HAND and stow it in BIN;
-the parts are given by index. Returns at once. CONTINUATION gets, in the end, an error code or NIL,
-and ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH after three things
-that were too heavy, :INSUFFICIENT-CAPACITY (the hand then still holds the thing), and :INTERRUPT if
-another command took a part over, or was given to the robot."
+  "Make ROBOT find something that fits DESCRIPTION, go to it, grasp it with HAND and stow it in BIN.
+Parts are given by index. Returns at once. At the end CONTINUATION gets an error code or NIL, and
+ROBOT. The codes:
+- :GAVE-UP after too many setbacks.
+- :INSUFFICIENT-STRENGTH after three things that were too heavy.
+- :INSUFFICIENT-CAPACITY if BIN has no room. The hand then still holds the thing.
+- :INTERRUPT if another command took over a part or the robot."
   (find-target (make-errand :robot robot :asked (asked-so-far robot)
                             :description description :continuation continuation
                             :camera (robot-camera robot camera)
@@ -40,13 +43,13 @@ another command took a part over, or was given to the robot."
 ;;; Endings and setbacks.
 
 (defun end-errand (errand err)
-  "End ERRAND, once, with the error code ERR, or NIL for success."
+  "End ERRAND with the error code ERR, or NIL for success. Does nothing if it has ended already."
   (unless (errand-over errand)
     (setf (errand-over errand) #t)
     (funcall (errand-continuation errand) err (errand-robot errand))))
 
 (defun set-back (errand err step)
-  "Take STEP, a function of ERRAND, after the setback ERR, as long as there is patience left."
+  "Take STEP, a function of ERRAND, after the setback ERR. End ERRAND if no patience is left."
   (cond ((errand-over errand) nil)
         ((over-p errand err) (end-errand errand :interrupt))
         ((zerop (decf (errand-patience errand))) (end-errand errand :gave-up))
@@ -59,8 +62,8 @@ another command took a part over, or was given to the robot."
       (set-back errand err otherwise)))
 
 (defun unless-interrupted (errand err step)
-  "Call STEP, a function of no arguments, whatever came of a command; but if ERR says that somebody
-has taken a part over, ERRAND ends, and gives no more commands."
+  "Call STEP, a function of no arguments, whether the command succeeded or not. If ERR or the state
+of the robot shows that ERRAND was taken over, end it instead."
   (if (over-p errand err)
       (end-errand errand :interrupt)
       (funcall step)))
@@ -68,7 +71,7 @@ has taken a part over, ERRAND ends, and gives no more commands."
 ;;; Finding.
 
 (defun find-target (errand)
-  "Look where the camera points, and go to what is found; else look elsewhere."
+  "Search where the camera points. Track and approach what is found; if nothing is, look elsewhere."
   (camera-get-object-designator (errand-camera errand) :non-local (errand-description errand)
     (continuation (err camera designator)
       (cond ((over-p errand err) (end-errand errand :interrupt))
@@ -77,7 +80,7 @@ has taken a part over, ERRAND ends, and gives no more commands."
             (t (set-back errand err #'look-elsewhere))))))
 
 (defun look-elsewhere (errand)
-  "Turn the camera to what is next to its view; after each full turn look beside the robot too."
+  "Turn the camera by its field of view. After every eight turns, search beside the robot too."
   (let ((camera (errand-camera errand)))
     (camera-turn camera (camera-field-of-view camera)
       (continuation (err camera angle)
@@ -86,7 +89,7 @@ has taken a part over, ERRAND ends, and gives no more commands."
                #'find-target)))))
 
 (defun free-camera (errand next)
-  "End what the camera tracks; go on with the step NEXT."
+  "Stop the camera's track, if any, and take the step NEXT."
   (camera-untrack (errand-camera errand)
     (continuation (err camera) (go-on errand err next next :not-tracking))))
 
@@ -106,7 +109,7 @@ has taken a part over, ERRAND ends, and gives no more commands."
   (track-then errand designator #'go-to-target #'find-target))
 
 (defun go-to-target (errand)
-  "Drive to what the camera tracks. When something is in the way, that may be near enough."
+  "Drive to what the camera tracks. If something blocks the way, check whether it is near enough."
   (robot-goto-designator (own errand) (errand-camera errand)
     (continuation (err robot camera designator)
       (unless-interrupted errand err
@@ -117,7 +120,7 @@ has taken a part over, ERRAND ends, and gives no more commands."
                                 :goto-local :robot-blocked))))))))
 
 (defun turn-aside (errand)
-  "Leave what is here: turn aside and drive on for a bit, then look round again."
+  "Turn aside, drive on for two ticks, and search again."
   (robot-turn (own errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
     (continuation (err robot angle)
       (unless-interrupted errand err
@@ -126,14 +129,14 @@ has taken a part over, ERRAND ends, and gives no more commands."
             (continuation (err robot)
               (go-on errand err #'find-target #'find-target :robot-blocked))))))))
 
-;;; Making sure. Colours are often misread: only what looks right three times is taken.
+;;; Checking. Cameras often misread colours, so only a thing that fits in three looks is taken.
 
 (defun check-target (errand)
   (look-closely-at errand 12 3 #'grasp-target #'turn-aside))
 
 (defun look-closely-at (errand looks wanted next otherwise)
-  "Look, LOOKS times at most, for what is next to the robot or in the bin, until it has fitted
-WANTED times; take the step NEXT with the last designator then, or else OTHERWISE."
+  "Search for local things, next to the robot or in the bin, until WANTED searches have succeeded;
+then take the step NEXT with the last designator. After LOOKS searches take OTHERWISE instead."
   (camera-get-object-designator (errand-camera errand) :local (errand-description errand)
     (continuation (err camera designator)
       (let ((wanted (if designator (- wanted 1) wanted)))
@@ -150,7 +153,8 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
               #'check-target))
 
 (defun grasp-tracked (errand designator)
-  "Grasp DESIGNATOR, which the camera tracks. What is too heavy was perhaps not what is wanted."
+  "Grasp DESIGNATOR, which the camera tracks. If it is too heavy, it may be the wrong thing: leave
+it."
   (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
     (continuation (err hand designator)
       (unless-interrupted errand err
@@ -163,7 +167,7 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
                                     :hand-grasping)))))))))
 
 (defun leave-heavy (errand)
-  "Look for something lighter, but not for ever."
+  "Look for something lighter. End ERRAND after three heavy things."
   (if (= 3 (incf (errand-too-heavy errand)))
       (end-errand errand :insufficient-strength)
       (set-back errand :insufficient-strength #'turn-aside)))
@@ -174,7 +178,7 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
       (go-on errand err #'insert-target #'open-for-target :bin-open))))
 
 (defun insert-target (errand)
-  "Put the hand into the bin. It may bump; without room there is nothing to be done."
+  "Put the hand into the bin, again if it bumps. End ERRAND if there is no room."
   (hand-insert-bin (errand-hand errand) (errand-bin errand)
     (continuation (err hand bin)
       (if (and (eq err :insufficient-capacity) (not (over-p errand err)))
@@ -182,7 +186,7 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
           (go-on errand err #'drop-target #'open-for-target)))))
 
 (defun drop-target (errand)
-  "Let go inside the bin. If the hand is empty, the thing got free on the way: begin anew."
+  "Let go inside the bin. If the hand is empty, the thing was lost on the way: search again."
   (hand-ungrasp (errand-hand errand)
     (continuation (err hand)
       (let ((lost (eq err :not-grasping)))
@@ -195,7 +199,7 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
                     (go-on errand err #'close-on-target #'close-on-target))))))))))
 
 (defun close-on-target (errand)
-  "Close the bin; it may jam."
+  "Close the bin, again if it jams, and end ERRAND."
   (storage-bin-close (errand-bin errand)
     (continuation (err bin part)
       (go-on errand err (lambda (errand) (end-errand errand nil)) #'close-on-target

@@ -1,10 +1,10 @@
-;;;; experiments.lisp -- the shipped experiments: questions about plans, and how they are answered.
+;;;; experiments.lisp -- the shipped experiments on plans.
 
-;;; Good for a first look at experiments, and as patterns for yours. At the shell:
+;;; Run them as they are, or use them as models for yours. From the shell:
 ;;;
 ;;;   ./cli/ars-magna experiment fetching-against-motion-noise --trials 200 --out out/ --plot
 ;;;
-;;; Success is judged by the truth, which no plan knows.
+;;; Success is measured by the true state of the world, which plans cannot see.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -12,9 +12,10 @@
 (defexperiment fetching-against-motion-noise
   "How often does FETCH-THING bring the globe home, the more the wheels err?
 
-All else is without noise, so what fails is dead reckoning. Up to a fifth of the speed, twice the
-default, doorways and walls put it right again. Beyond, more and more robots
-are lost; some of these believe that they are home: BELIEVED is larger than the rate of success."
+All other noise is off, so failures come from dead reckoning. Up to a fifth of the speed, twice the
+default, doorways and walls correct it. With more noise, more robots get lost. BELIEVED is how often
+the plan reports success; it is larger than the true rate, because some lost robots end their plan
+as if they were home."
   (:robots marvin)
   (:clean t)
   (:vary (motion-noise* 0 .2 .4 .6 .8 1))
@@ -28,9 +29,9 @@ are lost; some of these believe that they are home: BELIEVED is larger than the 
   "How often does FETCH-THING bring the globe home, the worse the cameras see it and the more often
 somebody pushes it about?
 
-Either alone is bearable for a while: half of all looks may miss, or one push may come in a hundred
-ticks. What is pushed loses its designator, and what is overlooked is not found anew: together they
-are worse than the two apart."
+A little of either does little harm: half of all looks may miss, or there may be a push in a hundred
+ticks. A push invalidates the designator of the globe, and a look that misses does not find it
+again. So both together do more harm than the two apart."
   (:robots marvin)
   (:vary (miss-thing-prob* .05 .3 .5 .7)
          (pushes 0 .01 .03 .1))
@@ -42,7 +43,7 @@ are worse than the two apart."
 
 (defexperiment three-ways-of-searching
   "What is it worth, in a search, to remember where one has looked, and to look on the way? How much
-of that depends on how well one sees?"
+does that depend on how often a look misses?"
   (:robots robbie)
   (:vary (way 'search-by-chance 'search-nearest 'search-watchfully)
          (miss-thing-prob* 0 .2 .4 .6))

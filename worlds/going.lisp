@@ -1,9 +1,9 @@
 ;;;; going.lisp -- a robot goes to a point of its map: with continuations instead of a plan.
 
-;;; Good for programs without plans, and for the line GO-TO of the prompt. It takes the same steps
-;;; as the plan TRAVEL-TO (see doorways.lisp) and reckons in the same way. Each step is a function
-;;; that issues a command and returns at once; its continuation takes the next. What the steps
-;;; share is in a JOURNEY.
+;;; For programs without plans, and for the command GO-TO of the prompt. It takes the same steps as
+;;; the plan TRAVEL-TO (see doorways.lisp) and keeps its reckoning in the same way. Each step is a
+;;; function that issues a command and returns at once; its continuation takes the next step. The
+;;; steps share a JOURNEY.
 ;;;
 ;;;   (with-simulation (ars-worlds:marvin :seed 1)
 ;;;     (ars-worlds:robot-go-to ars-worlds:marvin 109 24
@@ -14,7 +14,8 @@
 (in-readtable :nisp)
 
 (defstruct (journey (:include course) (:copier nil))
-  "Where a robot is to go, where it believes to be, and how much more trouble it puts up with."
+  "The goal and the reckoning of a robot. STEPS and PATIENCE are how many more steps and obstacles
+it accepts."
   (me nil :type reckoning :read-only t)
   (goal '() :type list :read-only t)
   (tolerance 1 :type real :read-only t)
@@ -24,7 +25,7 @@
   (patience 40 :type fixnum))
 
 (defun widest-of (robot)
-  "Return the camera of ROBOT that sees widest, or NIL if it has none."
+  "Return the camera of ROBOT with the widest field of view, or NIL if it has none."
   (let ((cameras (coerce (robot-cameras robot) 'list)))
     (and cameras
          (reduce (lambda (a b) (if (> (camera-field-of-view b) (camera-field-of-view a)) b a))
@@ -45,7 +46,7 @@
   (and (listp value) (eql 3 (list-length value)) (every #'realp value)))
 
 (defun check-going (robot x y continuation start tolerance patience)
-  "Signal WRONG-ARGUMENT about the first of these that ROBOT-GO-TO cannot use."
+  "Signal WRONG-ARGUMENT for the first of these arguments that ROBOT-GO-TO cannot use."
   (loop for (fine-p name value expected)
           in (list (list (typep robot 'robot) "robot" robot "a robot")
                    (list (realp x) "x" x "a number of metres from the left")
@@ -63,14 +64,15 @@
           do (ars-magna.base:reject-argument 'robot-go-to name value expected)))
 
 (defun robot-go-to (robot x y continuation &key start (tolerance 1) (patience 40))
-  "Let ROBOT go to the point (X,Y) of its map, or the nearest that is free, as near as TOLERANCE
-metres, through doorways and round obstacles: by its odometer, its place sense and a camera. START
-is where it is, a list (x y heading); by default it finds that out. Returns at once. What ROBOT does
-ends, also when it is there already. CONTINUATION, unless it is NIL, gets, in the end and once, an
-error code or NIL, and ROBOT. The codes: :NO-WAY, :GAVE-UP after
-PATIENCE troubles, and :INTERRUPT if another command took the robot or the camera over, or the run
-is over, also since it was rewound. Signals WRONG-ARGUMENT for a point that is nowhere near a free
-one, and for arguments that are none."
+  "Make ROBOT go to the point (X,Y) of its map, or the nearest free point, to within TOLERANCE
+metres. It drives through doorways and round obstacles, by its odometer, its place sense and a
+camera. START is its position, a list (x y heading); the default is the true one. Returns at once.
+The robot's current command is interrupted, even if the robot is at the goal already. At the end
+CONTINUATION, unless it is NIL, is called once with an error code or NIL, and ROBOT. The codes:
+- :NO-WAY if no way leads there.
+- :GAVE-UP after PATIENCE obstacles, or 300 steps.
+- :INTERRUPT if another command took over the robot or the camera, or the run ended or was rewound.
+Signals WRONG-ARGUMENT if no free point is near (X,Y), or an argument is invalid."
   (check-going robot x y continuation start tolerance patience)
   (let* ((me (begin-reckoning (or start (here robot)) robot))
          (goal (goal-near (reckoning-chart me) x y)))
@@ -82,7 +84,7 @@ one, and for arguments that are none."
     (values)))
 
 (defun no-continuation (err robot)
-  "Do nothing, for whoever wants to be told nothing."
+  "Do nothing. This is the continuation if none is given."
   (declare (ignore err robot)))
 
 (defun end-journey (journey err)
@@ -91,14 +93,14 @@ one, and for arguments that are none."
   (funcall (journey-continuation journey) err (journey-robot journey)))
 
 (defun after-command (journey err next otherwise)
-  "Go on with NEXT, a function of no arguments, if a command ended without ERR; with OTHERWISE if it
-ended with one, but not if somebody has interrupted it, or has taken the robot over."
+  "Call NEXT, a function of no arguments, if a command ended without an error code ERR, else
+OTHERWISE. If the command was interrupted or the robot taken over, end JOURNEY instead."
   (cond ((over-p journey err) (end-journey journey :interrupt))
         (err (funcall otherwise))
         (t (funcall next))))
 
 (defun go-on-journey (journey)
-  "Take the next step of JOURNEY, if it is not over."
+  "Take the next step of JOURNEY, or end it: at the goal, without a way, or after too many steps."
   (let* ((me (journey-me journey)) (goal (journey-goal journey))
          (step (next-step-of me goal)))
     (cond ((<= (distance-left me goal) (journey-tolerance journey)) (end-journey journey nil))
@@ -112,19 +114,19 @@ ended with one, but not if somebody has interrupted it, or has taken the robot o
 ;;; Driving.
 
 (defun face-point (journey point next)
-  "Turn the robot of JOURNEY to face POINT; go on with NEXT."
+  "Turn the robot of JOURNEY to face POINT, then call NEXT."
   (robot-turn (own journey) (angle-towards (journey-me journey) point)
     (continuation (err robot angle) (after-command journey err next next))))
 
 (defun drive-to-point (journey point next)
-  "Let the robot of JOURNEY drive straight to POINT; take the step NEXT, a function of JOURNEY."
+  "Drive the robot of JOURNEY straight to POINT, then call NEXT, a function of JOURNEY."
   (face-point journey point
               (lambda ()
                 (drive-straight journey (distance-left (journey-me journey) point) next))))
 
 (defun drive-metres (course metres top continuation)
-  "Let the robot of COURSE drive METRES straight ahead, in whole ticks, at TOP metres per tick at
-most. CONTINUATION gets an error code or NIL, and the robot."
+  "Drive the robot of COURSE METRES straight ahead, in whole ticks, at most TOP metres per tick.
+CONTINUATION gets an error code or NIL, and the robot."
   (let ((ticks (if (plusp top) (max 1 (ceiling metres top)) 1)))
     (robot-set-speed (own course) (/ metres ticks)
       (continuation (err robot speed)
@@ -133,7 +135,7 @@ most. CONTINUATION gets an error code or NIL, and the robot."
             (robot-go-forward (own course) ticks continuation))))))
 
 (defun drive-straight (journey distance next)
-  "Let the robot of JOURNEY drive DISTANCE metres; take the step NEXT, a function of JOURNEY."
+  "Drive the robot of JOURNEY DISTANCE metres ahead, then call NEXT, a function of JOURNEY."
   (if (< distance .05)
       (funcall next journey)
       (drive-metres journey distance driving-speed*
@@ -142,11 +144,11 @@ most. CONTINUATION gets an error code or NIL, and the robot."
                          (lambda () (funcall next journey))
                          (lambda () (note-obstacle journey)))))))
 
-;;; Trouble.
+;;; Obstacles.
 
 (defun note-obstacle (journey)
-  "Something has stopped the robot of JOURNEY: a wall, by which it corrects its reckoning, or a
-thing, round which it goes. Each third time it goes somewhere else first."
+  "Continue JOURNEY after something has stopped the robot: correct the reckoning by a wall, or bar
+the cells of a thing. Every third time, turn away and drive two metres first."
   (let ((me (journey-me journey)))
     (reckon me)
     (unless (correct-by-wall me) (bar-ahead me))
@@ -159,10 +161,10 @@ thing, round which it goes. Each third time it goes somewhere else first."
                               (lambda () (go-on-journey journey))))))
           (t (go-on-journey journey)))))
 
-;;; Doorways: a camera leads the robot there, as in PASS-DOORWAY.
+;;; Doorways: a camera guides the robot there, as in PASS-DOORWAY.
 
 (defun look-for-doorway (journey cell beyond)
-  "Let the robot of JOURNEY, which faces the doorway CELL, go into it and to the point BEYOND."
+  "Drive the robot of JOURNEY, which faces the doorway CELL, through it to the point BEYOND."
   (labels ((blindly ()
              (drive-to-point journey (middle-of cell)
                              (lambda (journey) (leave-doorway journey beyond))))
@@ -179,7 +181,7 @@ thing, round which it goes. Each third time it goes somewhere else first."
         (blindly))))
 
 (defun go-to-doorway (journey doorway beyond)
-  "Let the robot of JOURNEY go to what the designator DOORWAY denotes."
+  "Track the designator DOORWAY and drive the robot of JOURNEY to it."
   (let ((begun nil))
     (camera-track (journey-camera journey) doorway
       (continuation (err camera designator)
@@ -191,17 +193,17 @@ thing, round which it goes. Each third time it goes somewhere else first."
                          (lambda () (follow-to-doorway journey doorway beyond))
                          (lambda () (note-obstacle journey))))))))
 
-;; In a doorway a camera may lose it of itself, before a CAMERA-UNTRACK is begun: that would fail.
-;; Where the run is over nothing is tracked any more, and nothing can be asked for.
+;; In a doorway the camera may lose its track before a CAMERA-UNTRACK begins, which then would fail.
+;; After the run has ended nothing is tracked, and no command can be issued.
 (defun free-from-track (journey doorway)
-  "Let the camera of JOURNEY track the designator DOORWAY no more, if it does, and say nothing."
+  "Stop the camera of JOURNEY from tracking the designator DOORWAY, if it does, without a message."
   (let ((camera (journey-camera journey)) (run (robot-simulation (journey-robot journey))))
     (when (and (eq doorway (camera-tracks camera))
                (not (ars-magna.run:simulation-over run)))
       (grab-resource camera run))))
 
 (defun follow-to-doorway (journey doorway beyond)
-  "Let the robot of JOURNEY go to the designator DOORWAY, which its camera tracks."
+  "Drive the robot of JOURNEY to the designator DOORWAY, which its camera tracks."
   (robot-set-speed (own journey) driving-speed*
     (continuation (err robot speed)
       (flet ((follow () (go-to-tracked journey doorway beyond)))
@@ -209,7 +211,7 @@ thing, round which it goes. Each third time it goes somewhere else first."
         (after-command journey err #'follow #'follow)))))
 
 (defun go-to-tracked (journey doorway beyond)
-  "Let the robot of JOURNEY, which has its speed, go to the designator DOORWAY."
+  "Drive the robot of JOURNEY, whose speed is set, to the designator DOORWAY."
   (robot-goto-designator (own journey) (journey-camera journey)
     (continuation (err robot camera designator)
       (free-from-track journey doorway)
@@ -221,7 +223,7 @@ thing, round which it goes. Each third time it goes somewhere else first."
                            (leave-doorway journey beyond)))))))
 
 (defun leave-doorway (journey beyond)
-  "Let the robot of JOURNEY correct its reckoning, if it senses a doorway, and drive on to BEYOND."
+  "Correct the reckoning of JOURNEY if the robot senses a doorway, and drive on to BEYOND."
   (flet ((on () (drive-to-point journey beyond #'go-on-journey)))
     (robot-place (own journey)
       (continuation (err robot type)
@@ -231,7 +233,7 @@ thing, round which it goes. Each third time it goes somewhere else first."
               (after-command journey err #'on #'on)))))))
 
 (defun take-place (journey cell next)
-  "Let the robot of JOURNEY, which is in the doorway CELL, know that and how it is turned."
+  "Correct position and heading in the reckoning of JOURNEY, whose robot is in the doorway CELL."
   (let ((me (journey-me journey)))
     (correct-by-cell me cell)
     (robot-align-place (own journey)

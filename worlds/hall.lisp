@@ -1,10 +1,10 @@
 ;;;; hall.lisp -- a great hall, for a first session at the prompt.
 
-;;; Good for the session of appendix E: PORTER is built like ROBBIE and starts beside a lamp and
-;;; a small box with a pen in it, so that it can look into the box, reach in and stow the pen.
-;;; Nothing moves by itself. The walls' parameters go from 0 to 30 around the hall, so that views
-;;; tell where one is. North is up, y grows downwards; each character is 3 x 3 metres: # has a
-;;; wall in it, + a doorway, > PORTER at its start.
+;;; For the session of appendix E. PORTER is built like ROBBIE. It starts beside a lamp and a small
+;;; box with a pen in it; it can look into the box, reach in and stow the pen. Nothing moves by
+;;; itself. The walls' parameters go from 0 to 30 around the hall, so a view shows where the robot
+;;; is. North is up, y grows downwards. Each character is 3 x 3 metres: # contains a wall, + a
+;;; doorway, > PORTER at its start.
 ;;;
 ;;;   #########################
 ;;;   #.................#.....#
@@ -37,7 +37,7 @@
 
 (defmap hall (75 75)
   (rect (0 0) (75 75) bricks 0 12 30 18)
-  ;; The east end is set apart; a doorway leads there.
+  ;; The east end is a room of its own, with a doorway.
   (wall (54 0) (54 35) plaster 9 16)
   (wall (54 37) (54 74) plaster 16 24)
   ;; A screen, four pillars and a round one.
@@ -50,7 +50,7 @@
   (rect (63 56) (65 58) bricks 15)
   (wall (64 57) (64 57) bricks 15)
 
-  ;; These three come first: LAMP#1, PEN#2, SMALL-BOX#3.
+  ;; These three come first, so they are LAMP#1, PEN#2, SMALL-BOX#3.
   (obj (lamp :prototype lamp*) (20 20) ())
   (obj small-box (20 20) ((:capacity 5) (:size 5) (:weight 2)
                           (:color lightblue) (:substance wood))

@@ -1,38 +1,37 @@
-;;;; kickers.lisp -- what makes things in the shipped worlds move and change by themselves.
+;;;; kickers.lisp -- kickers that move and change things in the shipped worlds.
 
-;;; Good for any world: write (obj (ball :prototype ars-worlds:ball* :kickers (roll-away)) ...).
-;;; Kickers go by name, whatever the package. Steps are shorter than a cell, so nothing is kicked
-;;; through a wall. Where a movement goes on, what it was doing is an attribute of the thing, which
-;;; no robot senses. All chance comes from the world's dice for users: a run with the same seed
-;;; repeats itself. Manual 5.3.1.
+;;; Use them in any world: (obj (ball :prototype ars-worlds:ball* :kickers (roll-away)) ...).
+;;; Kickers are found by name, in whichever package. Steps are shorter than a cell, so nothing is
+;;; kicked through a wall. A movement of several ticks keeps its state in an attribute of the thing,
+;;; which robots cannot sense. All randomness comes from the world's dice for users, so a run with
+;;; the same seed repeats itself. Manual 5.3.1.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
-;;; Chance. These are for kickers: they use the dice of the world that is being run.
+;;; Helpers for kickers. They use the dice of the current world.
 
 (defun user-dice ()
-  "Return the dice of the world being run, for what users decide by chance."
+  "Return the dice of the current world for users' random decisions."
   (world-dice *world* :user))
 
 (defun random-step (length)
-  "Return a step of LENGTH metres in any direction, as a list (dx dy)."
+  "Return a step of LENGTH metres in a random direction, a list (dx dy)."
   (let ((angle (roll-between 0 2pi (user-dice))))
     (list (* length (cosine angle)) (* length (sine angle)))))
 
 (defun scale-step (factor step)
-  "Return STEP, a list (dx dy), FACTOR times as long."
+  "Return STEP, a list (dx dy), scaled by FACTOR."
   (list (* factor (first step)) (* factor (second step))))
 
 (defun take-step (thing step)
-  "Move THING by STEP, a list (dx dy) in metres, unless a wall or lid is in the way. True if it
-moved."
+  "Move THING by STEP, a list (dx dy) in metres, unless a wall or lid blocks it. True if it moved."
   (kick-thing thing (first step) (second step) #f))
 
 ;;; Things.
 
 (defkicker roll-away (ball) (:prob .004)
-  ;; Rolls up to some five metres, slower and slower, and bounces off walls.
+  ;; Rolls up to about five metres, slowing down, and bounces off walls.
   (let* ((step (or (get-attribute ball :rolling) (random-step .9)))
          (next (scale-step (if (take-step ball step) .85 -.5) step)))
     (if (< (+ (abs (first next)) (abs (second next))) .05)
@@ -46,7 +45,7 @@ moved."
 
 (defkicker be-borrowed (thing) (:prob .0005 :test (and (eq :floor (thing-location thing))
                                                        (get-attribute thing :haunts)))
-  ;; Somebody uses what lies about and leaves it at one of its :haunts, a list of points (x y).
+  ;; Somebody takes the thing and leaves it at one of its :haunts, a list of points (x y).
   (move-thing thing (roll-element (get-attribute thing :haunts) (user-dice))))
 
 (defkicker change-light (lamp) (:prob .02)
@@ -59,7 +58,7 @@ moved."
 ;;; People and pets.
 
 (defkicker wander-about (walker) (:prob .03)
-  ;; Walks a few metres straight on and stands still again.
+  ;; Walks a few metres straight ahead, then stops.
   (let ((step (or (get-attribute walker :heading) (random-step .4))))
     (if (and (take-step walker step) (chance .9 (user-dice)))
         (progn
@@ -68,8 +67,8 @@ moved."
         (set-attribute walker :heading #f))))
 
 (defun approach (walker point stride)
-  "Move WALKER by at most STRIDE metres towards POINT, a list (x y); if the way is barred, in any
-direction. True if it has arrived."
+  "Move WALKER at most STRIDE metres towards POINT, a list (x y), or in a random direction if that
+is blocked. True if it has arrived."
   (multiple-value-bind (x y) (thing-position walker)
     (let* ((step (list (- (first point) x) (- (second point) y)))
            (distance (sqrt (+ (expt (first step) 2) (expt (second step) 2)))))
@@ -80,16 +79,16 @@ direction. True if it has arrived."
              #f)))))
 
 (defkicker do-rounds (walker) (:prob .4 :test (get-attribute walker :rounds))
-  ;; Walks from one to the next of its :rounds, a list of points (x y), for ever.
+  ;; Walks from one of its :rounds, a list of points (x y), to the next, again and again.
   (let ((rounds (get-attribute walker :rounds)))
     (when (approach walker (first rounds) .5)
       (set-attribute walker :rounds (append (rest rounds) (list (first rounds)))))))
 
 (document-variables
- roll-away "Lets a ball start rolling; it rolls some metres and bounces off walls."
- blow-about "Lets what is light be blown about, less than a metre at a time."
- be-borrowed "Lets somebody use what lies about, and leave it at one of its :haunts, points (x y)."
- change-light "Lets a lamp change between lightred and lightgreen."
- print-page "Lets a printer put a page into itself, while it holds fewer than three things."
- wander-about "Lets a person or pet walk a few metres now and then."
- do-rounds "Lets somebody walk from one to the next of his :rounds, points (x y), for ever.")
+ roll-away "Makes a ball roll a few metres now and then; it bounces off walls."
+ blow-about "Moves a light thing now and then, less than a metre at a time."
+ be-borrowed "Moves a thing on the floor to one of its :haunts, points (x y), now and then."
+ change-light "Changes a lamp between lightred and lightgreen."
+ print-page "Puts a page into a printer, while it contains fewer than three things."
+ wander-about "Makes a person or pet walk a few metres now and then."
+ do-rounds "Makes a person walk from one of its :rounds, points (x y), to the next, for ever.")

@@ -1,9 +1,9 @@
-;;;; manipulations.lisp -- what robots can do to the things of the shipped worlds.
+;;;; manipulations.lisp -- manipulations for lids, locks and lamps.
 
-;;; Good for any world with containers, keys (:type :key) and lamps (:type :lamp): write
-;;; (manipulate open box-designator (robot-hand robbie 0) continuation). A lock and its keys
-;;; have the same :lock-id. Besides :FAILED, the codes say what was in the way; the value
-;;; returned is the hand. Manual 5.5.
+;;; Use them in any world with containers, keys (:type :key) and lamps (:type :lamp):
+;;; (manipulate open box-designator (robot-hand robbie 0) continuation). A lock and its keys have
+;;; the same :lock-id. The error codes are :FAILED, and those that name the obstacle, such as
+;;; :LOCKED. The value is the hand. Manual 5.5.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -14,24 +14,24 @@
 (defattribute :lit (#t #f)
   :success .95 :noticed .6)
 
-;;; What is in the way.
+;;; Obstacles.
 
 (defun beside-hand-p (thing hand)
-  "True if THING is where HAND is: in the same container, or both in none."
+  "True if THING and HAND are in the same container, or both in none."
   (in-location thing (or (part-location hand) :floor)))
 
 (defun lid-trouble (container hand)
-  "Return the error code that keeps HAND from moving the lid of CONTAINER, or #F."
+  "Return the error code if HAND cannot move the lid of CONTAINER, else #F."
   (cond ((not (beside-hand-p container hand)) :out-of-reach)
         ((get-attribute container :locked) :locked)))
 
 (defun key-trouble (container key hand)
-  "Return the error code that keeps HAND from turning KEY in the lock of CONTAINER, or #F."
+  "Return the error code if HAND cannot turn KEY in the lock of CONTAINER, else #F."
   (cond ((not (in-location key hand)) :key-not-in-hand)
         ((not (beside-hand-p container hand)) :out-of-reach)
         ((not (get-attribute container :closed)) :lid-open)))
 
-;;; Lids. Of methods that fit, the last one counts, so the special ones come last.
+;;; Lids. The last method that fits is used, so the special ones come last.
 
 (defmanipulation open (container - ((:capacity (.01 100000))) :by hand - HAND) ()
   (values :already-open hand))
@@ -48,7 +48,7 @@
 
 (defmanipulation close (container - ((:capacity (.01 100000)) (:closed #f)) :by hand - HAND)
     (:success .98 :delay 2)
-  ;; With its elbow, if it carries something.
+  ;; A hand that holds something can close a lid, too.
   (let ((trouble (lid-trouble container hand)))
     (unless trouble (set-attribute container :closed #t))
     (values trouble hand)))
@@ -74,7 +74,7 @@
 ;;; Lamps.
 
 (defun switch-lamp (lamp lit hand)
-  "Let LAMP be lit if LIT is true, as HAND does it; what a manipulation returns."
+  "Light LAMP if LIT is true, else put it out. Return the error code or NIL, and HAND."
   (cond ((beside-hand-p lamp hand)
          (set-attribute lamp :lit lit)
          (values nil hand))

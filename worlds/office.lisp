@@ -1,9 +1,9 @@
 ;;;; office.lisp -- a floor of an institute, large and busy, with two robots.
 
-;;; Good for long errands: sixteen rooms off a corridor 118 metres long, locked cabinets whose keys
-;;; lie elsewhere, letters that travel on a trolley, a printer that goes on printing, people on
-;;; their rounds who block the way. MARVIN is well equipped; GOFER is a simple messenger. North
-;;; is up, y grows downwards; each character is 2 x 2 metres: # has a wall in it, + a doorway,
+;;; For long errands. Sixteen rooms lie off a corridor 118 metres long. There are locked cabinets
+;;; whose keys lie elsewhere, letters that travel on a trolley, a printer that keeps printing, and
+;;; people who walk about and block the way. MARVIN is well equipped; GOFER is a simple messenger.
+;;; North is up, y grows downwards. Each character is 2 x 2 metres: # contains a wall, + a doorway,
 ;;; > MARVIN and ^ GOFER at their starts.
 ;;;
 ;;;   ############################################################

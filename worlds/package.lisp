@@ -1,13 +1,13 @@
 ;;;; package.lisp -- the package of the shipped worlds, robots and plans.
 
 (ars:define-user-package :ars-worlds
-  (:documentation "Worlds to start with, what they are furnished with, what moves in them, and plans
-and programs for the robots there. Written as users write theirs.")
+  (:documentation "Worlds to start with: maps, robots, prototypes, kickers, manipulations, plans,
+programs and experiments. They are user code, written as you would write yours.")
   ;; prototypes
   (:export #:table* #:desk* #:drawer* #:shelf* #:cupboard* #:cabinet* #:bed* #:sofa* #:chair*
            #:lamp* #:plant* #:box* #:crate* #:waste-basket* #:suitcase* #:bottle* #:cup* #:tin*
            #:ball* #:book* #:sheet* #:pen* #:key* #:toolbox* #:person*)
-  ;; kickers, and what they are written with
+  ;; kickers, and helpers to write more
   (:export #:roll-away #:blow-about #:be-borrowed #:change-light #:print-page #:wander-about
            #:do-rounds
            #:user-dice #:random-step #:scale-step #:take-step #:approach)
@@ -54,6 +54,6 @@ and programs for the robots there. Written as users write theirs.")
 (in-package :ars-worlds)
 
 (defmacro document-variables (&rest documentation)
-  "Document the variables named by turns with their texts in DOCUMENTATION."
+  "Set the docstrings of variables. DOCUMENTATION is names and texts, alternating."
   `(setf ,@(loop for (name text) on documentation by #'cddr
                  append `((documentation ',name 'variable) ,text))))

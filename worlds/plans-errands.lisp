@@ -1,20 +1,22 @@
 ;;;; plans-errands.lisp -- whole errands: fetching things, tidying rooms.
 
-;;; Good for a first look at what plans can do, and as parts of others:
+;;; Run them as they are, or call them in plans of your own:
 ;;;
 ;;;   (with-simulation (ars-worlds:marvin :seed 1)
 ;;;     (run-plan 'fetch-thing '((:color blue) (:substance plastic)) '((108.5 24.5))))
 ;;;
-;;; A robot knows its map, where it starts, and where to look; not where things are. One errand at a
-;;; time has the robot; the next waits until that is over, and has cleaned up if it was ended.
+;;; The plans use the map, the robot's start and the places to look at, but not the positions of
+;;; things. One errand at a time uses the robot. The next waits until that one has ended and cleaned
+;;; up.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
 (def-interp-proc find-and-take (me places description &key (camera (widest-camera)) (hand 0) (bin 0)
                                                            (rounds 12))
-  "Let the robot of the reckoning ME look at PLACES, points of its map, in turn, ROUNDS times at
-most, for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fails with :NOT-FOUND."
+  "Visit PLACES, points of the map, in turn, at most ROUNDS times, and look for a thing that fits
+DESCRIPTION. Stow the first one found in BIN. ME is the robot's reckoning. Return true. Fails with
+:NOT-FOUND."
   (let ((taken nil))
     (n-times rounds UNTIL taken
       (dolist (place places)
@@ -31,7 +33,7 @@ most, for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fai
     taken))
 
 (def-interp-proc bring-thing (me places description home camera hand bin)
-  "Fetch a thing as FETCH-THING does, once. Fails with :NOTHING-INSIDE if it got lost on the way."
+  "Do one attempt of FETCH-THING. Fails with :NOTHING-INSIDE if the thing got lost on the way."
   (if (not (stowed-p camera bin description))
       (find-and-take me places description :camera camera :hand hand :bin bin))
   (travel-to me home :tolerance .7 :patience 100)
@@ -39,11 +41,12 @@ most, for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fai
 
 (def-interp-proc fetch-thing (description places
                               &key start (camera (widest-camera)) (hand 0) (bin 0))
-  "Let the robot look at PLACES, points of its map, for a thing that fits DESCRIPTION, stow it in
-BIN, come back to START and put it on the floor. START is where the robot is, a list (x y heading);
-by default it finds that out. Such a thing that it has in its hand or BIN already, as when an
-errand was ended and is started again, it brings at once. Return the point where it believes to be
-then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
+  "Look at PLACES, points of the map, for a thing that fits DESCRIPTION, stow it in BIN, return to
+START and put the thing on the floor there. START is the robot's position, a list (x y heading); the
+default is the true one. If the thing is in the hand or in BIN already, because an earlier errand
+was interrupted, the robot brings that one. Return the estimated position at the end, a point. Fails
+with
+:NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
   (check-points 'fetch-thing 'places places)
   (with-valve ((rpl-robot-valve))
     (let* ((start (or start (here (rpl-robot))))
@@ -58,17 +61,18 @@ then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
 ;;; Tidying.
 
 (def-interp-proc tidy-once (me places description camera hand bin)
-  "Stow one thing that fits DESCRIPTION and is near one of PLACES in BIN. True if there was any."
+  "Find one thing that fits DESCRIPTION near one of PLACES and stow it in BIN. True if one was
+found."
   (handle-failure ((:not-found () (return nil)))
     (find-and-take me places description :camera camera :hand hand :bin bin :rounds 5)))
 
 (def-interp-proc tidy-room (descriptions places
                             &key start (camera (widest-camera)) (hand 0) (limit 20))
-  "Let the robot collect what lies about near PLACES, points of its map: things that fit the first
-of DESCRIPTIONS into its first storage bin, and so on. START is where the robot is, a list (x y
-heading); by default it finds that out. What it has in its hand it drops. It goes on, up to LIMIT
-things, until it has seen none for a whole round; what is kicked about meanwhile is looked for anew.
-Return how many things it has stowed."
+  "Collect things near PLACES, points of the map: those that fit the first of DESCRIPTIONS into the
+first storage bin, and so on. START is the robot's position, a list (x y heading); the default is
+the true one. The robot first drops what it holds. It stops after LIMIT things, or after a whole
+round without any. Things that are kicked about meanwhile are looked for again. Return how many
+things were stowed."
   (check-points 'tidy-room 'places places)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))

@@ -1,14 +1,14 @@
 ;;;; plans-moving.lisp -- plans that drive: turns, doorways, whole ways, patrols.
 
-;;; Good for any robot with an odometer and a camera; nothing here needs to know where things are.
-;;; What goes wrong on the way -- a wall met, somebody in the way, a doorway not seen -- is
-;;; recovered from; only what cannot be helped fails. One plan at a time may drive a robot.
+;;; For any robot with an odometer and a camera. The plans do not use the positions of things. They
+;;; recover from walls met, from people in the way and from doorways not seen, and fail only if
+;;; there is no remedy. Only one plan at a time may drive a robot.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
 (def-interp-macro (outcome ?command ?pulse ?result)
-  "Give COMMAND, wait for the fluent PULSE, and return the value of the fluent RESULT."
+  "Issue COMMAND, wait for the fluent PULSE, and return the value of the fluent RESULT."
   `(seq ,command
         (wait-for ,pulse)
         (fluent-value ,result)))
@@ -25,7 +25,8 @@
       nil))
 
 (def-interp-proc drive-by (distance)
-  "Drive DISTANCE metres straight ahead. Return an error code or NIL."
+  "Drive DISTANCE metres straight ahead, in whole ticks, at DRIVING-SPEED* at most. Return an error
+code or NIL."
   (let ((ticks (max 1 (ceiling distance driving-speed*))))
     (rpl-robot-set-speed (/ distance ticks))
     (outcome (rpl-robot-go-forward ticks) robot-stopped* robot-movement-error*)))
@@ -35,15 +36,15 @@
   (turn-by (angle-towards me point)))
 
 (def-interp-proc stand-still ()
-  "Let the robot stand at once, whatever it is doing."
+  "Stop the robot at once, whatever it is doing."
   (rpl-grab-robot)
   (wait-time 1))
 
-;;; Trouble.
+;;; Obstacles.
 
 (def-interp-proc feel-ahead (me)
-  "Find out, slowly, what stopped the robot of ME, and remember it: return :WALL, :THING, or NIL if
-nothing is there any more."
+  "Find out what stopped the robot of ME, by driving slowly ahead. Correct the reckoning by a wall,
+or remember a thing as an obstacle. Return :WALL or :THING, or NIL if nothing is there any more."
   (rpl-robot-set-speed .1)
   (rpl-robot-goto-wall)
   (if (wait-for robot-stopped* :timeout 12)
@@ -54,37 +55,37 @@ nothing is there any more."
            nil)))
 
 (def-interp-proc drive-towards (me point)
-  "Drive the robot of ME straight to POINT. Return :WALL or :THING if that stopped it, or NIL."
+  "Drive the robot of ME straight to POINT. Return :WALL or :THING if one stopped it, else NIL."
   (turn-towards me point)
   (if (and (> (distance-left me point) .05)
            (drive-by (distance-left me point)))
       (feel-ahead me)
       nil))
 
-;;; Doorways. A camera leads the robot into them: dead reckoning may be off by more than they are
-;;; wide. Inside one, the robot knows again where it is and how it is turned.
+;;; Doorways. A camera guides the robot into them, because the error of dead reckoning may be larger
+;;; than a doorway is wide. Inside a doorway the robot corrects its position and heading.
 
 (def-interp-proc look-for-places (camera type)
-  "Return the designators of places of TYPE that CAMERA sees at once, a list."
+  "Return the designators of the places of TYPE that CAMERA sees in one look, a list."
   (outcome (rpl-camera-get-all-place-designators camera type)
            (vref camera-input* camera) (vref camera-designators* camera)))
 
 (defun nearest-ahead (designators)
-  "Return the one of DESIGNATORS nearest to the robot's heading, within a wide angle, or NIL."
+  "Return the one of DESIGNATORS nearest to the robot's heading, within .7 radians, or NIL."
   (flet ((off (designator) (abs (angle-difference (!_angle designator) 0))))
     (let ((best (first (sort (copy-list designators) #'< :key #'off))))
       (and best (< (off best) .7) best))))
 
 (def-interp-proc begin-track (camera designator)
-  "Let CAMERA track DESIGNATOR. Return an error code, or NIL once it does."
+  "Track DESIGNATOR with CAMERA. Return an error code, or NIL once the track has begun."
   (set-value (vref camera-tracking-error* camera) nil)
   (rpl-camera-track camera designator)
   (wait-for (or (vref camera-tracking* camera) (vref camera-tracking-error* camera)))
   (fluent-value (vref camera-tracking-error* camera)))
 
 (def-interp-proc go-to-designated (camera designator &optional patience)
-  "Let the robot go to what DESIGNATOR denotes, led by CAMERA, for PATIENCE ticks at most if that is
-given. Return an error code, or NIL when it is there."
+  "Drive the robot to DESIGNATOR, guided by CAMERA, for at most PATIENCE ticks if that is given.
+Return an error code, or NIL when it is there."
   (rpl-robot-set-speed driving-speed*)
   (or (begin-track camera designator)
       (seq (rpl-robot-goto-designator camera)
@@ -95,12 +96,12 @@ given. Return an error code, or NIL when it is there."
              error))))
 
 (def-interp-proc stop-track (camera)
-  "Let CAMERA track nothing."
+  "Stop the track of CAMERA, if any."
   (rpl-grab-camera camera)
   (wait-time 1))
 
 (def-interp-proc find-doorway (camera)
-  "Return a designator of the doorway that the robot faces, or NIL."
+  "Turn CAMERA ahead. Return a designator of the doorway that the robot faces, or NIL."
   (let ((found nil))
     (outcome (rpl-camera-align-robot camera)
              (vref camera-moved* camera) (vref camera-movement-error* camera))
@@ -109,15 +110,14 @@ given. Return an error code, or NIL when it is there."
     found))
 
 (def-interp-proc in-doorway-p ()
-  "True if the robot senses that it is in a doorway, in one of two attempts."
+  "True if the robot's place sense reports a doorway, in one of two attempts."
   (let ((found nil))
     (n-times 2 UNTIL found
       (setf found (eq 'doorway (outcome (rpl-robot-place) robot-place-input* robot-place*))))
     found))
 
 (def-interp-proc take-bearings (me)
-  "Correct the reckoning ME of the robot, if that finds itself in a doorway near where one is on its
-map. True if so."
+  "Correct the reckoning ME if the robot senses a doorway and its map has one nearby. True if so."
   (let ((cell (doorway-nearby me)))
     (if (and cell (in-doorway-p))
         (seq (correct-by-cell me cell)
@@ -127,8 +127,8 @@ map. True if so."
         nil)))
 
 (def-interp-proc pass-doorway (me camera cell beyond)
-  "Drive the robot of ME, which is near it, through the doorway CELL to the point BEYOND. Return
-:WALL or :THING if that stopped it, or NIL."
+  "Drive the robot of ME through the nearby doorway CELL to the point BEYOND. Return :WALL or :THING
+if one stopped it, else NIL."
   (turn-towards me (middle-of cell))
   (let ((doorway (find-doorway camera))
         (stopped nil))
@@ -146,25 +146,27 @@ map. True if so."
 ;;; Whole ways.
 
 (defun widest-camera ()
-  "Return the index of the camera of the plans' robot that sees widest."
+  "Return the index of the plan's robot's camera with the widest field of view."
   (let ((cameras (loop for camera below (rpl-robot-num-cameras) collect camera)))
     (reduce (lambda (a b)
               (if (> (rpl-camera-field-of-view b) (rpl-camera-field-of-view a)) b a))
             cameras)))
 
 (def-interp-proc take-step-of-way (me camera step)
-  "Let the robot of ME take STEP of its way. Return :WALL or :THING if that stopped it, or NIL."
+  "Do STEP, as NEXT-STEP returns it, with the robot of ME. Return :WALL or :THING if one stopped it,
+else NIL."
   (if (eq :door (first step))
       (pass-doorway me camera (second step) (third step))
       (drive-towards me (second step))))
 
 (def-interp-proc get-free (me stopped)
-  "Get the robot of ME away from what STOPPED it: a wall, or a thing that may go away by itself."
+  "Get the robot of ME away from what STOPPED it, :WALL or :THING: wait for a thing to move away,
+and every third time turn and drive off."
   (let ((trouble (incf (reckoning-trouble me))))
     (if (eq stopped :thing)
         (wait-time (* 3 (mod trouble 3))))
     (if (zerop (mod trouble 3))
-        ;; Never twice the same way.
+        ;; In another direction each time.
         (seq (turn-by (angle-difference (+ pi (* 2.4 trouble)) 0))
              (drive-by (+ 1 (mod trouble 3)))))
     (reckon me)))
@@ -174,13 +176,13 @@ map. True if so."
   (and (listp point) (eql 2 (list-length point)) (every #'realp point)))
 
 (defun check-points (plan name points)
-  "Signal WRONG-ARGUMENT unless POINTS, what PLAN takes as NAME, is a list of points."
+  "Signal WRONG-ARGUMENT unless POINTS, the argument NAME of PLAN, is a list of points."
   (unless (and (listp points) (list-length points) (every #'coordinates-p points))
     (ars-magna.base:reject-argument plan name points
                                     "a list of points (x y), such as ((3 4) (5 6))")))
 
 (defun check-travel (me point tolerance patience)
-  "Signal WRONG-ARGUMENT about the first of these that TRAVEL-TO cannot use."
+  "Signal WRONG-ARGUMENT for the first of these arguments that TRAVEL-TO cannot use."
   (loop for (fine-p name value expected)
           in (list (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
                    (list (coordinates-p point) "point" point "a list (x y) of numbers of metres")
@@ -192,15 +194,16 @@ map. True if so."
           do (ars-magna.base:reject-argument 'travel-to name value expected)))
 
 (def-interp-proc travel-to (me point &key (tolerance 1) (patience 40) (camera (widest-camera)))
-  "Bring the robot of the reckoning ME to POINT, a list (x y) on its map, as near as TOLERANCE
-metres, through doorways and round obstacles. Fails with :CANNOT-GET-THERE after PATIENCE
-troubles, or at once if there is no way, with a WRONG-ARGUMENT if an argument is none."
+  "Drive the robot of the reckoning ME to POINT, a list (x y), to within TOLERANCE metres, through
+doorways and round obstacles. Return the estimated position. Fails with :CANNOT-GET-THERE after
+PATIENCE obstacles or 300 steps, or at once if there is no way. Fails with WRONG-ARGUMENT if an
+argument is invalid."
   (check-travel me point tolerance patience)
   (evap-protect (travel-step-by-step me point tolerance patience camera)
                 (show-way me '())))
 
 (def-interp-proc travel-step-by-step (me point tolerance patience camera)
-  "Do as TRAVEL-TO does, and leave the way to be seen."
+  "Do TRAVEL-TO, but leave the way in the pictures."
   (let ((limit (+ patience (reckoning-trouble me)))
         (steps 0))
     (loop UNTIL (<= (distance-left me point) tolerance)
@@ -213,9 +216,9 @@ troubles, or at once if there is no way, with a WRONG-ARGUMENT if an argument is
     (reckon me)))
 
 (def-interp-proc patrol-places (points &key (rounds 1) start)
-  "Let the robot visit POINTS of its map in turn, ROUNDS times. START is where it is, a list (x y
-heading); by default it finds that out. What cannot be reached is left out. Return how many visits
-it made."
+  "Visit POINTS of the map in turn, ROUNDS times. START is the robot's position, a list (x y
+heading); the default is the true one. Points that cannot be reached are left out. Return the number
+of visits."
   (check-points 'patrol-places 'points points)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))

@@ -1,45 +1,47 @@
-;;;; plans-reckoning.lisp -- where a robot believes to be, and how it corrects that.
+;;;; plans-reckoning.lisp -- dead reckoning: a robot's estimate of its position, and corrections.
 
-;;; Good for plans that find their way on a map. A RECKONING starts where the robot is told that it
-;;; starts and goes on by an odometer of its own. Walls met and doorways sensed correct it. The true
-;;; position is read nowhere but by HERE, for a plan's start.
+;;; For plans that find their way on a map. A RECKONING begins at a given position and is kept by an
+;;; odometer of its own. Walls met and doorways sensed correct it. Only HERE reads the true
+;;; position, for the start of a plan.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defstruct (reckoning (:constructor make-reckoning (chart odometer x y heading)) (:copier nil))
-  "Where a robot believes to be on its map, how far it drove, and which cells it found barred."
+  "A robot's estimated position on its map, the metres driven, and the obstacles found. HEADING is
+in radians."
   (chart nil :type chart :read-only t)
   (odometer nil :read-only t)
   (x 0d0 :type real)
   (y 0d0 :type real)
   (heading 0d0 :type real)
   (driven 0d0 :type real)
-  ;; A list of (cell cost until): what the cell costs more until that tick.
+  ;; A list of (cell cost until): the extra cost of the cell until that tick.
   (barred '() :type list)
   (trouble 0 :type fixnum))
 
 (defun here (robot)
-  "Return where ROBOT is and its heading, a list (x y heading). Plans are given it as their start."
+  "Return the true position and heading of ROBOT, a list (x y heading). Plans use it as their
+start."
   (append (multiple-value-list (robot-position robot)) (list (robot-angle robot))))
 
-;;; Nobody says when a reckoning is over. So there are a few odometers for them, of which the newest
-;;; reckoning takes the one that was taken longest ago.
+;;; Nothing marks the end of a reckoning. So there are eight odometers for them, and a new reckoning
+;;; takes the one that was taken longest ago.
 
 (defparameter *reckoning-names* '(reckoning reckoning-2 reckoning-3 reckoning-4 reckoning-5
                                   reckoning-6 reckoning-7 reckoning-8)
-  "What the odometers of reckonings are called.")
+  "The names of the odometers of reckonings.")
 
 (defun name-for-reckoning (robot)
-  "Return the name that the odometer of the next reckoning of ROBOT is to have."
+  "Return the name for the odometer of the next reckoning of ROBOT."
   (let ((taken (remove-if-not (lambda (name) (member name *reckoning-names*))
                               (mapcar #'odometer-name (robot-odometers robot)))))
     (or (find-if-not (lambda (name) (member name taken)) *reckoning-names*)
         (first taken))))
 
 (defun begin-reckoning (start &optional (robot (rpl-robot)))
-  "Return a reckoning of ROBOT, by default the plans', which is at START, a list (x y heading). The
-last eight reckonings of a robot can be used side by side; older ones are over."
+  "Return a reckoning of ROBOT (default: the plan's robot) that begins at START, a list (x y
+heading). The last eight reckonings of a robot can be used side by side; older ones are over."
   (destructuring-bind (x y heading) start
     (make-reckoning (make-chart (ars-magna.world:world-map (robot-world robot)))
                     (ars-magna.robot:make-odometer robot (name-for-reckoning robot))
@@ -55,8 +57,8 @@ last eight reckonings of a robot can be used side by side; older ones are over."
        (length *reckoning-names*)))))
 
 (defun reckon (me)
-  "Bring the reckoning ME up to date, when the robot stands. Return where it is, a point. Signals
-MISUSE if ME is over: see BEGIN-RECKONING."
+  "Update the reckoning ME by its odometer; the robot must stand still. Return the estimated
+position, a point. Signals MISUSE if ME is over: see BEGIN-RECKONING."
   (check-reckoning me)
   (let* ((odometer (reckoning-odometer me))
          (moved (nominal (get-odometer-pos odometer)))
@@ -70,11 +72,11 @@ MISUSE if ME is over: see BEGIN-RECKONING."
     (list (reckoning-x me) (reckoning-y me))))
 
 (defun distance-left (me point)
-  "Return how far the robot of ME believes to be from POINT, in metres."
+  "Return the estimated distance of the robot of ME from POINT, in metres."
   (apply #'length-of (mapcar #'- point (reckon me))))
 
 (defun angle-towards (me point)
-  "Return by how much the robot of ME has to turn, in radians, to face POINT."
+  "Return the angle by which the robot of ME has to turn to face POINT, in radians."
   (destructuring-bind (dx dy) (mapcar #'- point (reckon me))
     (angle-difference (atan2 dy dx) (reckoning-heading me))))
 
@@ -84,21 +86,21 @@ MISUSE if ME is over: see BEGIN-RECKONING."
     (list (+ x (* distance (cosine (reckoning-heading me))))
           (+ y (* distance (sine (reckoning-heading me)))))))
 
-;;; The way that pictures show.
+;;; The way shown in pictures.
 
 (defun robot-of (me)
   "Return the robot of ME."
   (ars-magna.robot:odometer-robot (reckoning-odometer me)))
 
 (defun show-way (me points)
-  "Let pictures show POINTS as the way that the robot of ME is about to take; () for none."
+  "Show POINTS in pictures as the planned way of the robot of ME; () shows none."
   (publish-way (robot-of me) points))
 
-;;; What is in the way. The chart has the cells as they are barred now, the reckoning until when.
+;;; Obstacles. The chart has the cells that are barred now, the reckoning has the tick until when.
 
 (defun bar-on-chart (me)
-  "Let the chart of ME have what the robot remembers to be barred, up to 90 for a cell, and no more.
-The way that was shown need not be the best any more."
+  "Bar on the chart of ME exactly the cells that its reckoning has as barred, at a cost of at most
+90 each. Remove the shown way, which may not be the best any more."
   (show-way me '())
   (let ((chart (reckoning-chart me)) (sums '()))
     (loop for (cell cost) in (reckoning-barred me)
@@ -112,7 +114,7 @@ The way that was shown need not be the best any more."
             do (bar-cell chart cell cost))))
 
 (defun bar-cells (me point cost until)
-  "Let the cell at POINT cost COST more, and those around it a little, until the tick UNTIL."
+  "Add COST to the cell at POINT, and an eighth of it to the cells around, until the tick UNTIL."
   (loop for dx from -1 to 1
         do (loop for dy from -1 to 1
                  do (push (list (mapcar #'+ (cell-of point) (list dx dy))
@@ -122,11 +124,11 @@ The way that was shown need not be the best any more."
   (bar-on-chart me))
 
 (defun bar-ahead (me)
-  "Remember for a while that something stands right before the robot of ME."
+  "Remember for 200 ticks that something stands directly ahead of the robot of ME."
   (bar-cells me (point-ahead me .6) 40 (+ 200 (simulation-tick))))
 
 (defun chart-now (me)
-  "Return the chart of ME as it is now: what was barred long enough is free again."
+  "Return the chart of ME. Cells whose time is over are free again."
   (flet ((over-p (entry) (< (third entry) (simulation-tick))))
     (when (some #'over-p (reckoning-barred me))
       (setf (reckoning-barred me) (remove-if #'over-p (reckoning-barred me)))
@@ -139,14 +141,14 @@ The way that was shown need not be the best any more."
     (and point (= (first point) (pt-x end)) (= (second point) (pt-y end)))))
 
 (defun show-way-to (me chart goal)
-  "Let pictures show the way of the robot of ME on CHART to GOAL, if they do not yet."
+  "Show in pictures the way of the robot of ME on CHART to GOAL, unless they show it already."
   (let ((end (nearest-free-point chart goal)))
     (when (and end (not (shown-to-p me end)))
       (let ((start (nearest-free-point chart (reckon me))))
         (show-way me (and start (find-way chart start end)))))))
 
 (defun next-step-of (me goal)
-  "Return the next step, as NEXT-STEP, of the robot of ME on its way to GOAL, which pictures show."
+  "Return the next step of the robot of ME to GOAL, as NEXT-STEP does. Show the way in pictures."
   (let ((chart (chart-now me)))
     (show-way-to me chart goal)
     (next-step chart (reckon me) goal)))
@@ -154,16 +156,16 @@ The way that was shown need not be the best any more."
 ;;; Corrections.
 
 (defun wall-crossed (map from to)
-  "Return the axis, 0 or 1, and the coordinate of the face of the wall that lies between the near
-points FROM and TO; NIL if none does."
+  "Return the axis (0 for x, 1 for y) and the coordinate of the face of a wall between the points
+FROM and TO, which are close together; NIL if there is none."
   (when (and (apply #'free-p map from) (not (apply #'free-p map to)))
     (loop for axis in '(0 1)
           for a = (floor (nth axis from)) and b = (floor (nth axis to))
           when (/= a b) do (return (values axis (max a b))))))
 
 (defun correct-by-wall (me)
-  "Let the robot of ME, which has met a wall ahead, be right before the nearest there is on its map;
-nothing changes if that is more than two metres off."
+  "Move the estimate of ME, whose robot has met a wall ahead, to the nearest wall ahead or behind on
+its map. Return T, or NIL and change nothing if none is within two metres."
   (flet ((crossing (distance)
            (multiple-value-list
             (wall-crossed (chart-map (reckoning-chart me))
@@ -174,7 +176,7 @@ nothing changes if that is more than two metres off."
                      do (if (zerop axis)
                             (setf (reckoning-x me) face)
                             (setf (reckoning-y me) face))
-                        ;; On the free side of the face, where the heading comes from.
+                        ;; Keep the estimate on the free side of the face.
                         (step-back me 1d-3)
                         (return-from correct-by-wall t)))))
 
@@ -183,8 +185,8 @@ nothing changes if that is more than two metres off."
         (values-list (point-ahead me (- distance)))))
 
 (defun doorway-nearby (me)
-  "Return the cell of the doorway nearest to where the robot of ME believes to be, within two metres
-and a half, or NIL."
+  "Return the cell of the doorway nearest to the estimated position of ME, or NIL if none is within
+2.5 metres."
   (destructuring-bind (x y) (reckon me)
     (let ((best nil) (least 2.5))
       (loop for dx from -3 to 3
@@ -198,14 +200,14 @@ and a half, or NIL."
       best)))
 
 (defun correct-by-cell (me cell)
-  "Let the robot of ME be in CELL, as near as can be to where it believed to be."
+  "Move the estimate of ME into CELL, as little as possible."
   (reckon me)
   (flet ((within (value low) (max (+ low .05) (min value (+ low .95)))))
     (setf (reckoning-x me) (within (reckoning-x me) (first cell))
           (reckoning-y me) (within (reckoning-y me) (second cell)))))
 
 (defun correct-by-direction (me cell)
-  "Let the robot of ME head in the one of the directions of the place CELL that is nearest."
+  "Set the estimated heading of ME to the nearest direction of the place at CELL."
   (reckon me)
   (let ((place (doorway-at (chart-map (reckoning-chart me)) (first cell) (second cell))))
     (when place

@@ -1,19 +1,19 @@
-;;;; prototypes.lisp -- the kinds of things that the shipped worlds are furnished with.
+;;;; prototypes.lisp -- prototypes of the things in the shipped worlds.
 
-;;; Good for any world: write (obj (stool :prototype ars-worlds:chair*) (3.5 4.5) ((:color red))).
-;;; Sizes, capacities and weights are in the units of the robots' bins and hands: what is up to 5 in
-;;; size goes into any bin, what weighs up to 4 into any hand of ROBBIE's. No prototype has more in
-;;; it than it holds. Manual 5.3.
+;;; Use them in any world: (obj (stool :prototype ars-worlds:chair*) (3.5 4.5) ((:color red))).
+;;; Sizes, capacities and weights are in the units of the robots' bins and hands. A size up to 5
+;;; fits into any bin of a shipped robot, and any hand of ROBBIE lifts a weight up to 4. No
+;;; prototype contains more than its capacity. Manual 5.3.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
-;;; Furniture: it blocks the way; what is tall blocks the view too.
+;;; Furniture. It blocks robots; tall furniture blocks the view, too.
 
-;; As reading 60 says.
+;; See reading 60.
 (defvar table* (new-thing table nil
                  ((:obsmove #t) (:size 30) (:weight 20) (:color lightgreen) (:substance wood)))
-  "A table: things lie on it that are in its cell.")
+  "A table. Things in its cell lie on it.")
 
 (defvar desk* (new-thing desk nil
                 ((:obsmove #t) (:size 36) (:capacity 24) (:weight 30)
@@ -32,12 +32,12 @@
 (defvar cupboard* (new-thing cupboard nil
                     ((:obsmove #t) (:obsview #t) (:size 40) (:capacity 32) (:weight 35)
                      (:color lightblue) (:substance wood)))
-  "A cupboard, open unless it says that it is closed.")
+  "A cupboard, open by default.")
 
 (defvar cabinet* (new-thing cabinet nil
                    ((:obsmove #t) (:obsview #t) (:closed #t) (:locked #t)
                     (:size 30) (:capacity 24) (:weight 50) (:color blue) (:substance metal)))
-  "A locked steel cabinet; whoever has the key with its :lock-id can unlock it.")
+  "A locked steel cabinet. A key with the same :lock-id unlocks it.")
 
 (defvar bed* (new-thing bed nil
                ((:obsmove #t) (:size 60) (:capacity 12) (:weight 50)
@@ -47,11 +47,11 @@
 (defvar sofa* (new-thing sofa nil
                 ((:obsmove #t) (:size 55) (:capacity 8) (:weight 40)
                  (:color violet) (:substance cloth)))
-  "A sofa, which swallows what is small.")
+  "A sofa; small things can be inside.")
 
 (defvar chair* (new-thing chair nil
                  ((:size 12) (:weight 4) (:color lightgreen) (:substance wood)))
-  "A chair: it can be driven past, and a strong hand can carry it.")
+  "A chair. It does not block robots, and a strong hand can carry it.")
 
 (defvar lamp* (new-thing lamp nil
                 ((:type :lamp) (:size 2) (:weight 1) (:color lightred) (:substance metal)))
@@ -59,7 +59,7 @@
 
 (defvar plant* (new-thing plant nil
                  ((:size 6) (:weight 3) (:color green) (:substance 70)))
-  "A potted plant, of no substance that has a name.")
+  "A potted plant. Its substance is a number without a name.")
 
 ;;; Containers that can be carried.
 
@@ -112,7 +112,7 @@
 
 (defvar key* (new-thing key nil
                ((:type :key) (:size .1) (:weight .05) (:color lightgreen) (:substance metal)))
-  "A key; it fits what has its :lock-id.")
+  "A key. It fits the things with the same :lock-id.")
 
 (defvar toolbox*
   (let ((toolbox (new-thing toolbox nil
@@ -124,9 +124,9 @@
     toolbox)
   "A toolbox with tools in it.")
 
-;;; People: they block the way and the view, and no hand lifts them.
+;;; People. They block robots and the view, and are too heavy for any hand.
 
 (defvar person* (new-thing person nil
                   ((:obsmove #t) (:obsview #t) (:size 70) (:weight 70)
                    (:color violet) (:substance cloth)))
-  "Somebody; kickers make people walk.")
+  "A person. Kickers make people walk.")

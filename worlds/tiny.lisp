@@ -1,8 +1,8 @@
 ;;;; tiny.lisp -- a single small room, for tests and first steps.
 
-;;; Good for trying a command on few things, all of them near: nothing moves by itself, and
-;;; there are no places but the four corners and what surrounds one post. North is up, y grows
-;;; downwards; each character is a metre square: # wall, > DOT at its start.
+;;; For trying a command on a few things, all of them near. Nothing moves by itself. The only places
+;;; are the four corners of the room and those round one post. North is up, y grows downwards. Each
+;;; character is a square metre: # wall, > DOT at its start.
 ;;;
 ;;;   ############
 ;;;   #..........#     (8.5 3.5)  a ball

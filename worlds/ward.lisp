@@ -1,32 +1,32 @@
 ;;;; ward.lisp -- draws the floor worlds/floors/ward.yaml, as a robot's scanner would see a ward.
 
-;;; A floor to import, for who has none at hand: thirteen metres by ten, a corridor between five
-;;; rooms, a pixel for each tenth of a metre. Walls are two pixels thick and doorways ten wide. As
-;;; in what scanners make, some pixels beside the walls are occupied by mistake, some of the walls
-;;; are missing, and what lies behind them or a cupboard nobody has seen. The same code makes the
+;;; A floor to import if you have none: thirteen metres by ten, a corridor between five rooms, a
+;;; pixel for each tenth of a metre. Walls are two pixels thick and doorways ten wide. There are the
+;;; errors of a real scanner: some pixels beside walls are occupied, some pixels of walls are
+;;; missing, and the areas behind walls and inside a cupboard are unknown. The same code makes the
 ;;; same bytes.
 
 (in-package :ars-worlds)
 
 (defparameter *ward-rooms*
   '((8 8 49 39) (48 8 89 39) (88 8 121 39) (8 60 71 91) (70 60 121 91) (8 38 121 61))
-  "The rooms of the ward, and last its corridor, each from outer wall to outer wall: x0 y0 x1 y1.")
+  "The rooms of the ward, then its corridor, each from outer wall to outer wall: x0 y0 x1 y1.")
 
 (defparameter *ward-doors*
   '((20 38 29 39) (60 38 69 39) (100 38 109 39) (30 60 39 61) (90 60 99 61))
-  "Where walls are open: x0 y0 x1 y1.")
+  "The doorways: x0 y0 x1 y1.")
 
 (defparameter *ward-furniture*
   '((12 14 13 15) (24 14 25 15) (12 26 13 27) (24 26 25 27) (56 11 78 12) (104 12 105 13)
     (104 22 105 23) (14 86 28 88) (112 66 119 80) (78 84 79 85) (86 84 87 85))
-  "What stands in the rooms, as the scanner met it: x0 y0 x1 y1.")
+  "The furniture as the scanner sees it: x0 y0 x1 y1.")
 
 (defun in-box-p (x y box)
   (destructuring-bind (x0 y0 x1 y1) box
     (and (<= x0 x x1) (<= y0 y y1))))
 
 (defun in-wall-of-p (x y room)
-  "True if the pixel (X, Y) is in the walls of ROOM, which are two pixels thick."
+  "True if the pixel (X, Y) is in a wall of ROOM; walls are two pixels thick."
   (destructuring-bind (x0 y0 x1 y1) room
     (and (in-box-p x y room)
          (not (in-box-p x y (list (+ x0 2) (+ y0 2) (- x1 2) (- y1 2)))))))
@@ -39,7 +39,8 @@
              (some (lambda (room) (in-wall-of-p x y room)) *ward-rooms*)))))
 
 (defun ward-seen-p (x y)
-  "True if the scanner has looked at the pixel (X, Y): not behind walls, nor in the cupboard."
+  "True if the scanner has seen the pixel (X, Y), which is neither behind walls nor in the
+cupboard."
   (and (in-box-p x y '(8 8 121 91))
        (not (in-box-p x y '(113 67 119 79)))))
 
@@ -48,14 +49,14 @@
            thereis (ward-solid-p (+ x dx) (+ y dy))))
 
 (defun ward-pixel (x y dice)
-  "Return what the scanner says of the pixel (X, Y): T for occupied, NIL for free, or UNKNOWN."
+  "Return the scanner's value for the pixel (X, Y): T for occupied, NIL for free, or UNKNOWN."
   (cond ((not (ward-seen-p x y)) 'unknown)
         ((ward-solid-p x y) (if (chance 1/25 dice) 'unknown t))
         ((beside-ward-wall-p x y) (chance 1/12 dice))
         (t nil)))
 
 (defun ward-clauses ()
-  "Return the clauses of a map in which each pixel of the ward is a cell."
+  "Return the clauses of a map with a cell for each pixel of the ward."
   (let ((dice (ars-magna.base:make-dice 1992)))
     (loop for y below 100
              append (loop for x below 130
@@ -65,15 +66,14 @@
                                             ,@(if (eq pixel 'unknown) '(glass 5) '(plaster 60)))))))
 
 (defun save-ward-picture (yaml file ends scale &rest options)
-  "Save in FILE a picture of the map that YAML is imported as with OPTIONS, with a way from one to
-the other of ENDS."
+  "Import YAML with OPTIONS, and save in FILE a picture of the map with a way between the two ENDS."
   (apply #'import-map yaml :name 'pictured-ward :unknown 'glass options)
   (save-way-picture 'pictured-ward (list (apply #'find-way 'pictured-ward ends)) file
                     :title "ward" :scale scale)
   (undefine 'map 'pictured-ward))
 
 (defun draw-ward (directory)
-  "Write the floor ward.yaml with its image into DIRECTORY, and pictures of two maps made of it."
+  "Write ward.yaml and its image into DIRECTORY, and pictures of two maps imported from it."
   (eval `(defmap ward-drawing (130 100 :frame (1/10 -13/2 -5 0)) ,@(ward-clauses)))
   (flet ((file (name) (merge-pathnames name directory)))
     (export-map 'ward-drawing (file "ward.yaml") :unknown 'glass)

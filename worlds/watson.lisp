@@ -1,10 +1,10 @@
 ;;;; watson.lisp -- a family's house, where ROBBIE lives.
 
-;;; Good for errands: six rooms off a hallway, furniture to drive round, things in drawers and
-;;; cupboards, up to three deep. The cat wanders about, the ball rolls, the newspaper blows about,
-;;; somebody keeps borrowing the scissors, and Aunt Agatha does her rounds. Each room's walls have
-;;; parameters of their own. North is up, y grows downwards; each character is a metre square:
-;;; # wall, + doorway, > ROBBIE at its start.
+;;; For errands: six rooms off a hallway, furniture to drive round, things in drawers and cupboards
+;;; up to three deep. The cat wanders about, the ball rolls, the newspaper blows about, somebody
+;;; keeps borrowing the scissors, and Aunt Agatha does her rounds. Each room's walls have parameters
+;;; of their own. North is up, y grows downwards. Each character is a square metre: # wall, +
+;;; doorway, > ROBBIE at its start.
 ;;;
 ;;;   ########################################
 ;;;   #..###...........#...........#.........#
@@ -195,7 +195,7 @@
   (obj broom (32.5 18.5) ((:size 6) (:weight 1) (:color lightgreen) (:substance wood)))
   (obj (paint-pot :prototype tin*) (38.5 27.5) ((:size 2) (:weight 2) (:color blue))))
 
-;; As reading 10 says.
+;; See reading 10.
 (defrobot robbie (watson (10 5) 0)
   :cameras (((/ pi 4) 3) ((/ pi 2) 5))
   :hands (10 4)
