@@ -125,10 +125,14 @@ have been."
   (write-with-forgery texts old new file)
   (says-p words (loading-outcome file)))
 
-(test saved-objects.can-be-shown-before-they-are-filled
-  "An error about a forged file may show one."
-  (dolist (type (mapcar #'definitions:kind-name (definitions:all-kinds)))
-    (finishes (princ-to-string (copying:blank-object type (copying:fields-of-type type))))))
+(test saved-objects.are-not-shown-before-they-are-filled
+  "What is in them has not been checked then. A forged file may put any into an array of numbers."
+  (let ((array (make-array 3 :element-type 'double-float)))
+    (dolist (type (mapcar #'definitions:kind-name (definitions:all-kinds)))
+      (let* ((object (copying:blank-object type (copying:fields-of-type type)))
+             (said (handler-case (run::put-elements array 1 object (run::make-loaded 9))
+                     (error (trouble) (princ-to-string trouble)))))
+        (is-true (has-words-p said "double-float" (string-downcase type)))))))
 
 (test saved-forgery.is-named
   (with-temporary-file (file)

@@ -141,8 +141,8 @@ DIGEST. A kind may add an :AFTER method.")
                     collect (plain-slot name slot-type)))))
 
 (defun blank-object (type fields)
-  "Return a new structure of TYPE, a symbol, whose FIELDS are to be written. Until then there is in
-them what they begin with, if that may be: an error may show the object."
+  "Return a new structure of TYPE, a symbol, whose FIELDS are to be written. Until then a field has
+its initial value, or, if that is not of its type, garbage: do not print the object."
   (let ((object (allocate-instance (find-class type))))
     (dolist (field fields object)
       (ignore-errors

@@ -147,8 +147,10 @@ NAMES."
   (let ((start (loaded-position loaded)))
     (unless (and (typep count '(integer 1)) (<= count (- (element-count array) start)))
       (error "it says too much of an array"))
+    ;; ELEMENT may be an object that has not been filled, and so cannot be shown.
     (unless (typep element (array-element-type array))
-      (error "an element of an array cannot be ~A" (short-text element)))
+      (error "an element of an array of ~(~S~) cannot be of type ~(~A~)"
+             (array-element-type array) (class-name (class-of element))))
     (loop for index from start repeat count do (setf (row-major-aref array index) element))
     (incf (loaded-position loaded) count)))
 
