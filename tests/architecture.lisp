@@ -178,7 +178,7 @@
     (is (< 50 (hash-table-count seen)))))
 
 (test internals.are-in-the-table-of-the-page
-  (let ((page (base:read-file-into-string (project-file "src/README.md"))))
+  (let ((page (base:read-file-into-string (project-file "src/host/README.md"))))
     (dolist (path (host-files))
       (is (search (format nil "| `~A` |" (pathname-name path)) page) "~A is in no table" path))))
 

@@ -276,8 +276,8 @@ there."
     (is (equalp '(10.5 7.5) (where (find-thing 'egg))))))
 
 (test manual-5-3-1.kickers-run-before-cameras-look
-  "src/README.md: kickers act in the tick before tracks are tended, so what they move is followed at
-once, and what they say goes to the messages if it is an error."
+  "src/time/README.md: kickers act in the tick before tracks are tended, so what they move is
+followed at once, and what they say goes to the messages if it is an error."
   (at-pasture ()
     (put-kicker fail (beast (calf)) () (error "It kicks back"))
     (run-ticks 1)
