@@ -204,7 +204,7 @@ process.argv.slice(2).forEach(function (text) {
 
 (test our-manual.finds-pages-by-words-of-other-simulators
   (with-manual (directory)
-    (let* ((pairs '(("lidar" "design.html#a-sensor") ("range" "design.html#a-sensor")
+    (let* ((pairs '(("lidar" "extending.html#a-sensor") ("range" "extending.html#a-sensor")
                     ("collision" "reference-error-codes.html#_3arobot-blocked")
                     ("Velocity" "reference-commands.html#robot-set-speed")
                     ("gif" "worlds-how-to-pictures.html#pictures-films-and-timelines")

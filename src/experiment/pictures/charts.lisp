@@ -103,7 +103,7 @@ hold all series."
 trials that broke off with an error, if there are any."
   (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~
                ~A.~A"
-          (ecase kind (:rate "Wilson's") (:mean "Student's") (:median "Rank"))
+          (statistic-option kind :interval)
           (some (lambda (summary) (/= .95d0 (summary-confidence summary))) summaries)
           (trials-text summaries)
           (errors-words summaries)))

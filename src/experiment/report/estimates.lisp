@@ -87,31 +87,37 @@ ticks, :TEXTS of all else, and :NOTHING of what was never measured, under any co
 
 ;;; Statistics: how a value and an interval are made of what was measured.
 
-(defvar *statistics* '() "Lists (kind heading beside function), in order of definition.")
+(defvar *statistics* '() "Lists (kind function . options), in order of definition.")
 
-(defmacro define-statistic (kind (values confidence) (&key heading beside) &body body)
+(defmacro define-statistic (kind (values confidence) (&rest options) &body body)
   "Let BODY return, as three values, what estimates of KIND say of VALUES, a vector that is not
-empty: a value and the bounds of its interval at CONFIDENCE; any may be NIL. HEADING is said of it
-in tables of results, behind the name of what was measured. If BESIDE is a kind, each estimate of
-that has one of this, too, in a column beside its own. Return KIND."
+empty: a value and the bounds of its interval at CONFIDENCE; any may be NIL. OPTIONS are
+  :heading text   what tables of results add to the name of what was measured;
+  :interval text  what pictures call its intervals;
+  :beside kind    each estimate of that kind has one of this, too, in a column beside its own.
+Return KIND."
   `(progn
      (setf *statistics*
            (append (remove ,kind *statistics* :key #'first)
-                   (list (list ,kind ,heading ,beside (lambda (,values ,confidence) ,@body)))))
+                   (list (list* ,kind (lambda (,values ,confidence) ,@body) ',options))))
      ,kind))
 
-(define-statistic :rate (truths confidence) (:heading " %")
+(defun statistic-option (kind option)
+  "Return what DEFINE-STATISTIC said of OPTION of KIND, or NIL."
+  (getf (cddr (assoc kind *statistics*)) option))
+
+(define-statistic :rate (truths confidence) (:heading " %" :interval "Wilson's")
   (let ((true (count t truths)) (trials (length truths)))
     (multiple-value-bind (low high) (wilson-interval true trials :confidence confidence)
       (values (/ true trials) low high))))
 
-(define-statistic :mean (numbers confidence) (:heading ", mean")
+(define-statistic :mean (numbers confidence) (:heading ", mean" :interval "Student's")
   (let* ((scale (scale-of-numbers numbers))
          (sample (cl:map 'vector (lambda (number) (scaled number scale)) numbers)))
     (multiple-value-bind (low high) (student-interval sample :confidence confidence)
       (values (unscaled (mean sample) scale) (unscaled low scale) (unscaled high scale)))))
 
-(define-statistic :median (numbers confidence) (:heading ", median")
+(define-statistic :median (numbers confidence) (:heading ", median" :interval "Rank")
   (multiple-value-bind (low high) (median-interval numbers :confidence confidence)
     (values (median numbers) low high)))
 
@@ -119,11 +125,11 @@ that has one of this, too, in a column beside its own. Return KIND."
   (multiple-value-bind (value low high)
       (if (zerop (length values))
           (values nil nil nil)
-          (funcall (fourth (assoc kind *statistics*)) values confidence))
+          (funcall (second (assoc kind *statistics*)) values confidence))
     (make-estimate name kind (length values)
                    :value value :low low :high high :left-out left-out
-                   :beside (loop for (other nil beside) in *statistics*
-                                 when (eq kind beside)
+                   :beside (loop for (other) in *statistics*
+                                 when (eq kind (statistic-option other :beside))
                                    collect (estimate-by other name values confidence)))))
 
 (defun estimate-of-values (name kind column confidence)

@@ -190,7 +190,7 @@ they are too large or small for that."
 
 (defun estimates-column (estimates trials name)
   (let ((heading (format nil "~A~@[~A~]" (cut name 60)
-                         (second (assoc (estimate-kind (first estimates)) *statistics*)))))
+                         (statistic-option (estimate-kind (first estimates)) :heading))))
     (case (estimate-kind (first estimates))
       (:nothing (make-text-column heading (mapcar (constantly "-") estimates)))
       (:texts (make-text-column heading (loop for estimate in estimates
@@ -206,7 +206,9 @@ they are too large or small for that."
 (defun estimates-columns (estimates trials &optional (name (estimate-name (first estimates))))
   "Return the column of ESTIMATES, called NAME, and those of the estimates beside them."
   (cons (estimates-column estimates trials name)
-        (apply #'mapcan (lambda (&rest beside) (estimates-columns beside trials name))
+        ;; The first column has the counts.
+        (apply #'mapcan (lambda (&rest beside)
+                          (estimates-columns beside (mapcar #'estimate-count beside) name))
                (mapcar #'estimate-beside estimates))))
 
 (defun count-column (heading counts)
