@@ -270,7 +270,7 @@
       (is (search (symbol-name layer) help)))
     (is-true (has-words-p help "from 1 to 256" "from 4 to 40"))
     (is (< (search "replacing it." help) (search "file:" help)
-           (search "PICTURE world.svg suits most" help) (search "Shown by default" help)
+           (search "PICTURE world.svg is usually" help) (search "Shown by default" help)
            (search "Shown if named" help))
         "the common call does not come first")))
 

@@ -197,10 +197,13 @@ process.argv.slice(2).forEach(function (text) {
 
 (defun first-results (directory searches)
   "Return a text, KIND at ADDRESS, for the first result of each of SEARCHES; NIL without Node.js."
-  (and (base:run-command "node" '("--version"))
-       (lines-of (nth-value 1 (base:run-command
-                               "node" (list* "-e" *searching* (base:native-name directory) searches)
-                               :output :string)))))
+  (when (base:run-command "node" '("--version"))
+    (let ((results (lines-of (nth-value 1 (base:run-command
+                                           "node" (list* "-e" *searching*
+                                                         (base:native-name directory) searches)
+                                           :output :string)))))
+      (is (= (length searches) (length results)))
+      results)))
 
 (test our-manual.finds-pages-by-words-of-other-simulators
   (with-manual (directory)

@@ -96,11 +96,11 @@ few."
 (define-choices :manipulation (mapcar #'manipulation-name (all-manipulations)))
 
 (define-line "MANIPULATE" (session (name :manipulation "a manipulation" :optional)
-                                   (args :rest "numbers of designators, then of the hand or so"
+                                   (args :rest "numbers of designators, then of the hand"
                                           :optional))
     (:manipulating)
-    "List the manipulations, or carry out the manipulation NAME on the things that the designators
-with the numbers in ARGS denote."
+    "List the manipulations, or carry out the manipulation NAME. ARGS are the numbers of the
+designators that denote its objects, then that of the hand or other part."
   (cond (name (send-manipulation session (manipulation-called name)
                                  (read-data (or args "") (find-line "MANIPULATE"))))
         ((all-manipulations)

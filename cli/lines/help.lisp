@@ -1,4 +1,4 @@
-;;;; help.lisp -- HELP, APROPOS and the menus: what is said of lines, from their definitions.
+;;;; help.lisp -- HELP, APROPOS and the menus: descriptions of lines, from their definitions.
 
 (in-package :ars-magna.cli)
 
@@ -23,9 +23,9 @@
              (write-menu lines)))
   (terpri)
   (write-filled "MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, PLAN lists
-the plans, HELP name tells more of a command, a plan, or whatever has a name; APROPOS word searches.
-The beginning of a command's name will do. A line in parentheses is Lisp. HELP KEYS tells how a line
-is edited. What has left the screen is still in your terminal's memory: scroll up." 0))
+the plans. HELP name describes a command, a plan, or anything else with a name; APROPOS word
+searches. The beginning of a command's name is enough. A line in parentheses is Lisp. HELP KEYS
+lists the keys that edit a line. Scroll up in your terminal for what has left the screen." 0))
 
 (defun slot-help (slot)
   (format nil "~A: ~{~A~^; ~}~:[~; (may be left out)~]." (slot-name slot)
@@ -60,8 +60,8 @@ is edited. What has left the screen is still in your terminal's memory: scroll u
 
 (define-line "HELP" (session (name :topic "a command, a plan, or whatever has a name" :optional))
     (:general)
-    "List the commands of the prompt and those that move the robot, or tell what NAME does or is: a
-command, plan, parameter, place type, attribute, value, error code, name of Lisp ..."
+    "List the commands of the prompt and of the robot, or describe NAME: a command, plan, parameter,
+place type, attribute, value, error code, name of Lisp ..."
   (if name (write-help-on name) (write-main-menu)))
 
 (define-line "MENU-BIN" (session) (:general)
@@ -98,8 +98,8 @@ command, plan, parameter, place type, attribute, value, error code, name of Lisp
 
 (define-line "APROPOS" (session (word :rest "a word, or a part of one"))
     (:general)
-    "List all that has WORD in its name, or else in what is said of it: lines, plans, parameters,
-place types, attributes, error codes, names of Lisp. HELP tells more of each."
+    "List everything with WORD in its name, then in its description: lines, plans, parameters,
+place types, attributes, error codes, names of Lisp. HELP shows the whole description."
   (multiple-value-bind (named others) (topics-with word)
     (let ((more (- (length others) *most-topics*)))
       (unless (or named others) (reject-line "Nothing has ~A in it." word))

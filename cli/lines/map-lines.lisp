@@ -87,11 +87,10 @@ LINES-BELOW lines."
      (format nil "Shown if named: ~:{~A (~(~A~))~:^, ~}."
              (loop for name in (text-layers)
                    collect (list name (layer-title (layer-named name))))))
-    "Show the world as characters: all of it, what is within a radius of the robot, or a region.
-CONES shows what the robot's cameras have in view, WAY where it went, PLAN which way it is about to
-go, BELIEF where it believes itself and what its designators denote to be, LEGEND only what the
-characters mean. What PICTURE calls WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS, those words mean
-here, too."
+    "Show the world as characters: all of it, a radius around the robot, or a region.
+CONES adds what the cameras have in view; WAY, where the robot went; PLAN, its planned way; BELIEF,
+its estimated position and those of what its designators denote. LEGEND shows only what the
+characters mean. PICTURE's names WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS work here, too."
   (write-string (map-text session (map-options what))))
 
 ;;; WATCH.
@@ -205,10 +204,10 @@ NIL, or a key is pressed, or there is something else to be done. True if it was 
 
 (define-line "WATCH" (session (what :map-words "how many ticks, then what MAP takes" :optional))
     (:seeing)
-    "Show the map again and again while time passes, in place on a terminal, where a key or
-Control-C ends it: for as many ticks as the number that comes first says, or until nothing happens
-any more. Where time stands still, these ticks pass. What follows that number is as for MAP. Lines
-that were pasted with it, or are meanwhile, come after it; without a number they end it."
+    "Show the map after each tick, in place on a terminal: WATCH 20 for 20 ticks, WATCH until
+nothing happens any more. A key or Control-C ends it. Words after the number are as for MAP. Where
+time stands still, it lets that number of ticks pass. Lines pasted with it, or meanwhile, are read
+after it; without a number they end it."
   (check-run)
   (multiple-value-bind (count rest) (take-count what)
     (let ((simulation (current-simulation)) (options (map-options rest)))

@@ -37,15 +37,15 @@
 
 (define-line "REWIND" (session (n tick-span "how far"))
     (:running)
-    "Go back N ticks, plans included, and go on from there; 0 undoes what was done since the last
-tick. What came after has not happened; the journal says that there was something. Programs that
-wait for the end of a command, such as that of GO-TO, do not go on: they are told :INTERRUPT."
+    "Go back N ticks and continue from there, plans included. REWIND 0 undoes changes since the last
+tick. Later ticks are discarded; the journal records the rewind. Continuations waiting for a
+command, such as that of GO-TO, receive :INTERRUPT."
   (check-rewindable session)
   (rewind-and-tell session n))
 
 (define-line "REWIND-TO" (session (tick count "the tick to go back to"))
     (:running)
-    "Go back to the end of TICK, and go on from there, as REWIND does that counts from now."
+    "Go back to the end of TICK and continue from there, as with REWIND."
   (check-rewindable session)
   (let ((now (simulation-tick *simulation*)))
     (unless (<= tick now) (reject-line "It is only tick ~D." now))
@@ -226,11 +226,11 @@ pauses at the next one; if that does not come, and he does so again, it is left.
                               (number count "the number of the trial" :optional)
                               (directory :token "the directory of its row" :optional))
     (:running)
-    "Go into a trial of an experiment: the very run that its row is of, at tick 0. There STEP,
-RESUME and RATE let time pass, STATUS, PLAN-TREE, WHY and others look around, and SAVE-JOURNAL keeps
-it. Where nobody sits, RESUME lets it pass to its end. With DIRECTORY, what comes of it is compared
-with its row. TRIAL OFF leads out again, as do WORLD and another TRIAL. Without NUMBER, list the
-conditions; without NAME, the experiments, or say where the prompt is."
+    "Enter a trial of an experiment, at tick 0, exactly as the experiment runs it. STEP, RESUME and
+RATE let time pass; STATUS, PLAN-TREE, WHY and others show its state; SAVE-JOURNAL saves it. Without
+a terminal, RESUME runs it to its end. With DIRECTORY, its outcome is compared with its row there.
+TRIAL OFF leaves it, as do WORLD and another TRIAL. Without NUMBER, list the conditions; without
+NAME, list the experiments, or tell which trial this is."
   (cond ((and (null name) (session-visit session)) (write-visit session (session-visit session)))
         ((null name) (write-experiments))
         ((and (string-equal name "off") (null condition)) (leave-trial session))
@@ -245,8 +245,8 @@ conditions; without NAME, the experiments, or say where the prompt is."
 (define-line "FAILURES" (session (name :token "a directory, or an experiment that was run here")
                                  (condition :token "a part of a condition's name" :optional))
     (:running)
-    "Show what went wrong in the trials of an experiment, by condition and reason, with a line that
-opens one of each."
+    "List the failed trials of an experiment by condition and reason, each with a TRIAL line that
+opens one of them."
   (let ((names (experiment-names name)))
     (print-failures (if (and names (null (rest names)) (not (existing-path (path-called name))))
                         (first names)
@@ -299,11 +299,12 @@ out."
         (format (session-console session) "~&Back from the fork. ~A~%"
                 (time-text session *simulation*))))))
 
-(define-line "FORK" (session (seed :off "OFF, or an integer from which all its chance is to come"
+(define-line "FORK" (session (seed :off "OFF, or an integer: the seed of the copy"
                                    :optional))
     (:running)
-    "Go on in a copy of the run, plans and all, which goes the way that the run would, or with SEED
-as it might. The run itself waits. FORK OFF leads back to it, as it was; the copy is forgotten."
+    "Continue in a copy of the run, plans included. The copy does what the run would do, or with
+SEED what it might do. The run itself is paused. FORK OFF returns to it, unchanged, and discards the
+copy."
   (check-run)
   (cond ((session-visit session) (reject-line "A trial is what it is. TRIAL OFF leads out."))
         ((null seed) (go-to-fork session nil))

@@ -34,7 +34,7 @@ back to NAME."
 (define-line "ALIAS" (session (alias :token "a name" :optional)
                               (cmd :line "a command, with arguments if you like" :optional))
     (:general)
-    "List the aliases, or let ALIAS stand for CMD."
+    "List the aliases, or make ALIAS an alias of CMD."
   (let ((name (and alias (string-upcase alias))))
     (cond ((and (null name) (null *aliases*))
            (format t "No aliases. ALIAS name command defines one.~%"))
@@ -59,8 +59,8 @@ another."
 
 (define-line "ECHO" (session (setting :switch "on or off" :optional))
     (:general)
-    "Show what comes of the commands that plans and programs give to the robot, or, with OFF,
-only what comes of your own; say which, if SETTING is left out."
+    "Show messages from commands issued by plans and programs, too; with OFF, only those from your
+own. Without SETTING, tell which is set."
   (when setting (setf (session-quiet-p session) (not (switch-setting "ECHO" setting))))
   (format t "What comes of the commands of plans and programs is ~:[~;not ~]shown.~%"
           (session-quiet-p session)))
@@ -96,13 +96,13 @@ Signals BAD-LINE if that waits for RESUME. INBOX is what did so before."
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :line "a command, with its arguments"))
     (:general)
-    "Give the command CMD, NUM times over, each time when the last has completed; in a
-trial without waiting."
+    "Give the command CMD NUM times, each time after the last has completed; in a trial without
+waiting."
   (loop repeat num
         until (session-over-p session)
         do (repeat-once session cmd)))
 
 (define-line "QUIT" (session)
     (:general)
-    "Leave the prompt. From a Lisp that goes on, the simulator goes on too."
+    "Leave the prompt. If you called it from Lisp, the simulator continues."
   (setf (session-over-p session) t))

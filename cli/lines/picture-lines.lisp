@@ -35,14 +35,14 @@ for."
                               (and (not (string-equal title name)) (string-downcase title))))))
 
 (define-line "PICTURE" (session (file :file "a name that ends in .svg or .png")
-                                (what :rest "pixels to a cell, and names of layers; BARE"
+                                (what :rest "pixels per cell, and names of layers; BARE"
                                       :optional))
     (:seeing
-     "PICTURE world.svg suits most; PICTURE world.png 30 GRID TRAIL has 30 pixels to a cell and
-shows two layers more; PICTURE world.svg BARE NAMES shows that one alone."
-     "Pixels to a cell: from 1 to 256. By default what suits the map, from 4 to 40, for a map of
-900 x 700 pixels at most; or graphics-scale*, if that was set."
-     (format nil "Shown by default, but for BARE: ~A." (layers-text *picture-layers*))
+     "PICTURE world.svg is usually enough. PICTURE world.png 30 GRID TRAIL has 30 pixels per cell
+and two more layers; PICTURE world.svg BARE NAMES has only the layer NAMES."
+     "Pixels per cell: from 1 to 256. By default graphics-scale* if that was set, else from 4 to 40,
+so that the map has at most 900 x 700 pixels."
+     (format nil "Shown by default, except with BARE: ~A." (layers-text *picture-layers*))
      (format nil "Shown if named: ~A."
              (layers-text (remove-if (lambda (layer) (member layer *picture-layers*))
                                      (picture-layers)))))
@@ -53,13 +53,13 @@ shows two layers more; PICTURE world.svg BARE NAMES shows that one alone."
 ;;; FILM.
 
 (define-line "FILM" (session (file :file "a name that ends in .html or .svg")
-                             (what :rest "pixels to a cell, names of layers; BARE; ANYWAY"
+                             (what :rest "pixels per cell, names of layers; BARE; ANYWAY"
                                    :optional))
     (:seeing)
-    "Save the run so far in FILE, replacing it, as a film: a page for any browser, in which it can
-be played, stopped and gone through, or an animated picture. What robots grasped, let go of and
-stowed, which commands and plans failed, and errors in your code are marked. The words after FILE
-are those of PICTURE, and ANYWAY: also if what is defined is not what the run began with."
+    "Save the run so far in FILE, replacing it, as a film: an HTML page for any browser, to play,
+stop and step through, or an animated SVG. It marks what robots grasped, released and stowed, failed
+commands and plans, and errors in your code. The words after FILE are as for PICTURE. ANYWAY saves
+it even if definitions have changed since the run began."
   (check-run)
   (let* ((words (split-words (or what "")))
          (others (remove "ANYWAY" words :test #'string-equal))
@@ -142,9 +142,9 @@ is none."
 (define-line "WINDOW" (session (name :robot-name "the robot; the one commanded if left out"
                                      :optional))
     (:seeing)
-    "Open a window that shows the robot NAME in its world while it runs, and takes commands to it;
-one that is open already comes to the front. McCLIM has to be installed; where it is not, this says
-how it is. Closing the window changes nothing here. It closes by itself when the run is over."
+    "Open a window that shows the robot NAME in its world and takes commands, or raise the one that
+is open. This needs McCLIM; if it is not installed, a message says how to install it. You may close
+the window at any time. It closes by itself when the run is over."
   (let ((robot (if name (robot-at-work-called name) (session-robot))))
     (ensure-windows)
     (open-display robot)
@@ -175,16 +175,14 @@ how it is. Closing the window changes nothing here. It closes by itself when the
 
 (define-line "IMPORT" (session (file :file "a YAML file, as ROS's map_server keeps them"))
     (:seeing)
-    "Make a map of the occupancy grid in FILE, and of the image that it names. The map is called
-like FILE. In the simulator a cell is a metre wide, whatever it was on the floor: GO 5 m drives
-through five."
+    "Make a map, named like FILE, of the occupancy grid in FILE and the image that it names. In the
+simulator each cell is one metre wide, whatever its real size: GO 5 m drives through five cells."
   (multiple-value-call #'tell-imported (import-map file)))
 
 (define-line "EXPORT" (session (file :file "a name that ends in .yaml"))
     (:seeing)
-  "Write the walls of the map that the robot is in into FILE, an occupancy grid as ROS's map_server
-keeps them, and beside it an image in PGM. A pair that is there is replaced, other files are not.
-IMPORT reads them."
+  "Write the walls of the robot's map to FILE, as an occupancy grid for ROS's map_server, and an
+image in PGM beside it. Replaces such a pair of files, but no other files. IMPORT reads them."
   (multiple-value-bind (description image)
       (export-map (world-map (robot-world (session-robot))) file)
     (format t "~A~%~A~%" (native-name description) (native-name image))))

@@ -93,8 +93,8 @@ package; NIL if there is none."
                              (args :rest "what the plan takes, not evaluated: no quote is needed"
                                    :optional))
     (:planning)
-    "List the plans that there are, or let the robot carry out the plan NAME with ARGS. A live
-prompt is back at once; any other waits until the plan is over."
+    "List all plans, or run the plan NAME with ARGS on the robot. In a live run the prompt returns
+at once, otherwise when the plan has ended."
   (if name
       (send-plan session (plan-meant name) (read-data (or args "") (find-line "PLAN")))
       (write-plan-menu)))
@@ -124,8 +124,8 @@ plan would write it: few symbols have a package."
           while end)))
 
 (define-line "PLANS" (session) (:planning)
-    "Show the plans under way, as trees of what they do and wait for; if the last to end failed,
-also where and why."
+    "Show the running plans as trees of tasks, with what they do and wait for. If the last plan that
+ended failed, tell where and why."
   (let ((plans (plans)))
     (if plans
         (write-string (call-reading-plan (task-name (first plans))
@@ -140,9 +140,9 @@ also where and why."
                                           (report-failure failure)
                                           (message-text (first (take-messages))))))))))
 
-(define-line "STOP-PLAN" (session (n count "the number of a plan under way" :optional))
+(define-line "STOP-PLAN" (session (n count "the number of a running plan" :optional))
     (:planning)
-    "End the plan N, or all that are under way. What it has told the robot to do is interrupted."
+    "End the plan N, or all running plans. Their commands to the robot are interrupted."
   (cond ((null (plans)) (reject-line "No plan is under way."))
         (n (end-plan (or (find n (plans) :key #'task-serial)
                          (reject-line "No plan ~D is under way. PLANS shows which are." n))))
@@ -158,8 +158,8 @@ also where and why."
                        (lambda () (with-output-to-string (out) (print-tasks which out t))))))
 
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
-    "Show the plans under way, or the task N of one with its parts, whole: each task with all that
-it is in the middle of, its variables, what it waits for and since when; and who has which valve."
+    "Show all details of the running plans, or of the task N and its parts: each task's stack and
+variables, what it waits for and since when; and which task has which valve."
   (let ((text (call-with-plans-in-use
                (lambda (runner)
                  (let ((which (cond ((null (plans)) nil)
@@ -178,10 +178,10 @@ it is in the middle of, its variables, what it waits for and since when; and who
        (call-with-plans-in-use (lambda (runner) (why n :runner runner :stream out)))))))
 
 (define-line "WHY" (session (n count "the number of a task" :optional)) (:planning)
-    "Tell why the command that failed last did so: what was asked for and when, what its error code
-means and what to try. With N, tell what brought the task N where it is, also one that is over:
-which fluent woke it, who had set that, and how it was started. That needs a trace:
-(setf *trace-plans* t) before the plan starts."
+    "Explain why the last failed command failed: what was requested and when, what its error code
+means and what to try. With N, explain how the task N, running or ended, got where it is: which
+fluent woke it, what set that, and how it was started. WHY N needs a trace: TRACE-PLANS ON, or in
+Lisp (setf *trace-plans* t), before the plan starts."
   (if n
       (write-string (visible (task-why-text n)))
       (let ((robot (session-robot)))
@@ -190,8 +190,8 @@ which fluent woke it, who had set that, and how it was started. That needs a tra
 (define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)
     "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
-ticks, with what it waited for and the commands that it gave. Needs a trace: (setf *trace-plans* t)
-before the plan starts."
+ticks, with what it waited for and the commands that it issued. This needs a trace: TRACE-PLANS ON,
+or in Lisp (setf *trace-plans* t), before the plan starts."
   (format t "~A~%" (native-name (save-plan-timeline (path-called file)))))
 
 ;;; END-TASK, STEP-TASK and TRACE-PLANS: what one does to plans under way.
@@ -211,21 +211,20 @@ before the plan starts."
 
 (defun task-text (task) (format nil "~D, ~A" (task-serial task) (task-label task)))
 
-(define-line "END-TASK" (session (n :task-number "the number of a task under way")) (:planning)
-    "End the task N of a plan, and all that it consists of: it evaporates, as when what it is part
-of needs it no longer, without stopping if it is stepped. What it has told the robot to do is
-interrupted. STOP-PLAN ends whole plans."
+(define-line "END-TASK" (session (n :task-number "the number of a running task")) (:planning)
+    "End the task N of a plan and its subtasks. It evaporates, as when its parent no longer needs
+it, and does not stop if it is stepped. Its commands to the robot are interrupted. STOP-PLAN ends
+whole plans."
   (let ((task (task-meant n)))
     (step-task task nil)
     (end-plan task)
     (format t "Task ~A ends.~%" (task-text task))))
 
-(define-line "STEP-TASK" (session (n :task-number "the number of a task under way")
+(define-line "STEP-TASK" (session (n :task-number "the number of a running task")
                                   (off :off "OFF: no longer" :optional))
     (:planning)
-    "Stop before each expression of the task N, and of those that it consists of, and ask how far to
-go on: STEP, NEXT, OUT or CONTINUE; no longer with OFF. Where nobody can answer, each stop is a
-message."
+    "Single-step the task N and its subtasks: stop before each expression and ask for STEP, NEXT,
+OUT or CONTINUE. OFF ends this. Without a terminal or window, each stop is only a message."
   (let ((task (task-meant n)) (on-p (null off)))
     (unless (or on-p (string-equal off "off"))
       (reject-line "After the number of a task comes OFF or nothing, not ~A." off))
@@ -234,8 +233,8 @@ message."
             on-p)))
 
 (define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)
-    "Keep a trace of what plans do, those under way included, from now on: for WHY, PLAN-TIMELINE
-and the window's timeline. OFF keeps none, and forgets it; without ON or OFF, say which it is."
+    "Trace what plans do from now on, running ones included, for WHY, PLAN-TIMELINE and the window's
+timeline. OFF stops tracing and discards the trace. Without ON or OFF, tell which is set."
   (when switch
     (let ((on-p (switch-setting "TRACE-PLANS" switch)))
       ;; A plan may keep the thread of all: then none is asked, and nothing changes.

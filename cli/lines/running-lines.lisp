@@ -24,7 +24,7 @@
                 (t (rate-text (simulation-rate simulation))))))
 
 (define-line "PAUSE" (session) (:running)
-    "Let time stand still until RESUME."
+    "Stop time until RESUME."
   (let ((simulation (current-simulation)))
     (if (session-visit session)
         (pause-visit (session-visit session))
@@ -43,8 +43,8 @@
              (format t "~A~%" (time-text session simulation))))))
 
 (define-line "RESUME" (session) (:running)
-    "Let time go on after PAUSE, or after STOP-SIMULATOR; in a trial up to its end, where nobody
-sits."
+    "Let time pass again after PAUSE or STOP-SIMULATOR. In a trial without a terminal, run it to its
+end."
   (if (session-visit session)
       (resume-visit (session-visit session))
       (resume-here session)))
@@ -84,8 +84,8 @@ paused."
 
 (define-line "RATE" (session (x :rate "a number of ticks per second, or free" :optional))
     (:running)
-    "Set the pace of a live simulator; show what it is, and how many ticks have passed. While it is
-idle, none pass: nothing moves by itself in its world, and nobody has asked for anything."
+    "Set the rate of a live simulator, or show it and how many ticks have passed. No ticks pass
+while the simulator is idle: nothing moves by itself in its world, and no command was given."
   (let ((simulation (current-simulation)))
     (when x
       (if (session-visit session)
@@ -96,7 +96,7 @@ idle, none pass: nothing moves by itself in its world, and nobody has asked for 
 
 (define-line "SEED" (session (n integer "the seed"))
     (:running)
-    "Make all chance depend on N from now on."
+    "Draw all random numbers from the seed N from now on."
   (set-seed n (current-simulation)))
 
 ;;; Parameters.
@@ -139,8 +139,7 @@ those that have it in their names."
 (define-line "PARAMS" (session (name :parameter "the name of a parameter" :optional)
                                (value :rest "its new value" :optional))
     (:running)
-    "List the parameters of the simulation, or those whose names begin with NAME or have it in them;
-give one a new VALUE."
+    "List all parameters, or those with NAME in their names, or set one to VALUE."
   (let ((parameters (parameters-like (or name ""))))
     (cond ((rest parameters)
            (when value (reject-line "~A is a part of several names. Type more of it." name))
@@ -160,7 +159,7 @@ give one a new VALUE."
 
 (define-line "SAVE-JOURNAL" (session (file :file "the name of a file"))
     (:running)
-    "Write all that was asked of this run to FILE, for REPLAY."
+    "Write the journal of this run to FILE, for REPLAY: all commands and changes."
   (let ((simulation (current-simulation)))
     (multiple-value-bind (path tick digest)
         (asking (simulation)
@@ -198,8 +197,8 @@ terminal of SESSION how far that is. Return the values of FUNCTION."
 (define-line "REPLAY" (session (file :file "the name of a file that SAVE-JOURNAL wrote")
                                (anyway :token "the word ANYWAY" :optional))
     (:running)
-    "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to.
-With ANYWAY also if what is defined here is not what the run was recorded with."
+    "Repeat the run recorded in FILE, in a world of its own, and show the tick and state at its end.
+ANYWAY does so even if definitions differ from those of the recorded run."
   (multiple-value-bind (tick digest)
       (replay-showing session (load-journal (path-called file)) (anyway-p anyway))
     (format t "~A: ~A" file (tick-text tick digest))))

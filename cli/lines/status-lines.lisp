@@ -123,10 +123,10 @@
 
 (define-line "STATUS" (session)
     (:seeing)
-    "Show the robot: position, last change of position, real and estimated, heading, speed, turning
-speed, what its cameras have in view now, the place it sensed last, whose commands it and its parts
-carry out, whose was interrupted last by whose, what thinking costs unless that is as usual, its
-designators; and that no ticks pass, if so. In Lisp: (status)."
+    "Show the robot's state: position, last change of position (real and estimated), heading, speed,
+turning speed, what its cameras see now, the last place sensed, its designators, the commands in
+progress and who issued them, the last interruption, and the cost of thinking if that was changed.
+It tells if no ticks pass. In Lisp: (status)."
   (let ((robot (session-robot)))
     (still (or (report-status session robot)
                (progn (write-status (status robot))
@@ -152,7 +152,7 @@ designators; and that no ticks pass, if so. In Lisp: (status)."
 
 (define-line "POS" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:seeing)
-    "Put the robot at X, Y at once, without error and ignoring obstacles. You are told if that is
+    "Put the robot at X, Y at once, without error and ignoring obstacles. A message tells if that is
 inside a wall."
   (let ((robot (session-robot)))
     (place-robot robot x y (robot-angle robot))))

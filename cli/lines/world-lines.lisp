@@ -45,8 +45,8 @@
 (define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional)
                               (robot :robot-name "a robot there; the first if left out" :optional))
     (:seeing)
-    "List the worlds, or go to the world NAME, and command ROBOT there. There it is tick 0; what
-goes on here is over."
+    "List the worlds, or start a new run in the world NAME, at tick 0, and command ROBOT there. This
+ends the present run."
   (if name
       (start-robot session (robot-among (world-robots-called name) robot))
       (write-worlds)))
@@ -68,8 +68,8 @@ goes on here is over."
 
 (define-line "ROBOT" (session (name :robot-here "the robot to command" :optional))
     (:seeing)
-    "List the robots of this world, or command the robot NAME of it from now on. WORLD leads to
-those of others."
+    "List the robots of this world, or command its robot NAME from now on. WORLD leads to other
+worlds and their robots."
   (let ((name (and name (robot-called name))))
     (cond ((null name) (list-robots))
           ((member name (robots-here))
