@@ -239,11 +239,11 @@
                      (let ((*print-circle* t)) (princ-to-string condition))))))))
 
 (test points.are-written-as-they-are-typed
-  (is (equal "go-to: Robot is near 8 8.5, as it believes"
+  (is (equal "go-to: Robot is near 8 8.5, by its odometer"
              (car (last (type-batch "go-to 8 8.5"))))))
 
 (test echo.hushes-what-go-to-does-on-the-way
-  (is (equal '("go-to: Robot is near 8 8.5, as it believes")
+  (is (equal '("go-to: Robot is near 8 8.5, by its odometer")
              (rest (type-batch "echo off" "go-to 8 8.5")))))
 
 ;;; Time that stands still.

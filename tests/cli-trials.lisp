@@ -49,7 +49,7 @@
                     "(state-digest)"))
       (is (= 0 (told line)) "~A" line)))
   (is-true (has-words-p (joined (trial-lines "step 2" "turn 1" "resume"))
-                        "not what the experiment says: since tick 2")))
+                        "not the experiment's result: the run was changed at tick 2")))
 
 (test trial.leads-on-to-others-and-out
   (let ((text (joined (trial-lines "step 2" "trial trying badly 1" "resume" "trial trying well 2"

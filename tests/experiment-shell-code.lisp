@@ -45,7 +45,7 @@
         (setf told (shiftf cli::*told-of-threads* '())
               cli::*session* session cli::*own-process-p* own-p)))
     (is (equal (list (format nil "Error in a thread, of a trial, that a program has started: no, ~
-                                  boo. That thread ends; all else goes on."))
+                                  boo. That thread ends; everything else continues."))
                told))))
 
 (test rows.that-come-first-are-checked-when-an-experiment-goes-on

@@ -6,8 +6,8 @@
   "Queue a message that the way to POINT, a text, is given up, as another run goes on in the place
 of SIMULATION."
   (let ((*message-queue* (simulation-messages (latest simulation))))
-    (warning-set (format nil "go-to: The run was rewound on the way to ~A, and the robot goes ~
-                              there no more. Say it again if it is to."
+    (warning-set (format nil "go-to: The run was rewound on the way to ~A, so the robot no ~
+                              longer goes there. Give the line again if it should."
                          point))))
 
 (defun tell-failed-way (control point &rest arguments)
@@ -16,7 +16,7 @@ of SIMULATION."
 (defun tell-arrival (err robot point)
   "Queue a message about ROBOT, which was to go to POINT, a text: ERR is an error code, or NIL."
   (case err
-    ((nil) (message-set (format nil "go-to: Robot is near ~A, as it believes" point)))
+    ((nil) (message-set (format nil "go-to: Robot is near ~A, by its odometer" point)))
     (:no-way (tell-failed-way "There is no way to ~A for ~A" point robot))
     (:gave-up (tell-failed-way "Something was in the way to ~A too often for ~A" point robot))
     (t (tell-failed-way "Interrupted on the way to ~A" point))))
@@ -86,8 +86,8 @@ few."
     (apply #'run-manipulation (manipulation-name manipulation)
            (append (or (some (lambda (method) (arguments-for method data robot))
                              (manipulation-methods manipulation))
-                       (reject-line "It is: ~{MANIPULATE ~A~^ or ~}. Objects and parts go by their ~
-                                     numbers." (manipulation-usages manipulation)))
+                       (reject-line "It is: ~{MANIPULATE ~A~^ or ~}. Give numbers for objects ~
+                                     and parts." (manipulation-usages manipulation)))
                    (list (lambda (code value)
                            (declare (ignore value))
                            (end-errand errand code)))))

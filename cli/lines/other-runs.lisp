@@ -25,13 +25,13 @@
 (defun check-rewindable (session)
   (check-run)
   (when (session-visit session)
-    (reject-line "A trial is what it is. TRIAL begins it anew, at tick 0.")))
+    (reject-line "A trial cannot be rewound. TRIAL starts it again, at tick 0.")))
 
 (defun rewind-and-tell (session ticks)
   (let ((tick (- (simulation-tick *simulation*) ticks)))
     (rewind-here session ticks)
     (tell-others session *simulation*
-                 (format nil "Another prompt has let the run go back to tick ~D.~%" tick))
+                 (format nil "Another prompt has rewound the run to tick ~D.~%" tick))
     (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
             (time-text session *simulation* tick) (mapcar #'task-label (plans)))))
 
@@ -86,7 +86,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
       (format t "No experiment is defined. (load \"FILE\") loads a file that has some.~%")))
 
 (defun write-conditions (experiment)
-  (format t "~(~A~), ~D trials of each unless one says:~%" (experiment-name experiment)
+  (format t "~(~A~), ~D trials of each condition by default:~%" (experiment-name experiment)
           (experiment-trials experiment))
   (loop for condition in (experiment-conditions experiment)
         for number from 1
@@ -104,7 +104,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 (defun write-visit (session visit)
   (say-here session "~@(~A~).~%~A" (visit-name visit) (time-text session *simulation*))
   (when (visit-changed visit)
-    (say-here session "Since tick ~D it is not the experiment's run any more."
+    (say-here session "Since tick ~D this is no longer the experiment's run."
               (visit-changed visit))))
 
 ;;; Its end.
@@ -123,7 +123,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
   (when (string/= "" (result-error result))
     (say-here session "Its error: ~A" (complaint-text (result-error result))))
   (when (visit-changed visit)
-    (say-here session "It is not what the experiment says: since tick ~D the run was another."
+    (say-here session "This is not the experiment's result: the run was changed at tick ~D."
               (visit-changed visit))))
 
 (defun write-comparison (session visit result parts row)
@@ -288,10 +288,11 @@ out."
   "Let SESSION be in a fork of the current run until a line leads out; then forget it."
   (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
     (keep-forks t fork)
-    (tell-others session run (format nil "Another prompt is in a fork of the run, which waits.~%"))
+    (tell-others session run
+                 (format nil "Another prompt is in a fork of the run, which is paused.~%"))
     (unwind-protect (call-with-others-paused (lambda () (enter-fork session fork)))
       (tell-others session run
-                   (format nil "The fork is left; the run ~:[waits no longer~;is paused~].~%"
+                   (format nil "The fork is left; the run ~:[continues~;is still paused~].~%"
                            (paused-p run)))
       (stop-listening session)
       (release-fork fork)
@@ -306,7 +307,7 @@ out."
 SEED what it might do. The run itself is paused. FORK OFF returns to it, unchanged, and discards the
 copy."
   (check-run)
-  (cond ((session-visit session) (reject-line "A trial is what it is. TRIAL OFF leads out."))
+  (cond ((session-visit session) (reject-line "A trial cannot be forked. TRIAL OFF leads out."))
         ((null seed) (go-to-fork session nil))
         ((string-equal seed "off")
          (when (zerop (session-forks session)) (reject-line "The prompt is in no fork."))

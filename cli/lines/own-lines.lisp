@@ -62,7 +62,7 @@ another."
     "Show messages from commands issued by plans and programs, too; with OFF, only those from your
 own. Without SETTING, tell which is set."
   (when setting (setf (session-quiet-p session) (not (switch-setting "ECHO" setting))))
-  (format t "What comes of the commands of plans and programs is ~:[~;not ~]shown.~%"
+  (format t "Messages from commands of plans and programs are ~:[~;not ~]shown.~%"
           (session-quiet-p session)))
 
 (defun check-time-passes (session cmd errands inbox)

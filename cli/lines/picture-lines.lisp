@@ -116,10 +116,10 @@ if CLX does not work."
     (let ((found-p (ars-magna.clx:find-library "mcclim/looks")))
       (unless (or found-p (find-package :quicklisp) (ars-magna.clx:quicklisp-file))
         (write-string *how-to-get-windows*)
-        (reject-line "No window: McCLIM is not installed; what is to be done stands above."))
+        (reject-line "No window: McCLIM is not installed. How to install it is said above."))
       (let ((trouble (ars-magna.clx:clx-trouble)))
         (when trouble (reject-line "No window: ~A" trouble)))
-      (format t "Loading what windows need; the first time that takes some minutes.~%")
+      (format t "Loading McCLIM; the first time this takes some minutes.~%")
       (finish-output)
       (load-windows (not found-p)))))
 

@@ -50,8 +50,8 @@ package; NIL if there is none."
         (unless (member plan parts)
           (write-filled (whole-sentence (plan-documentation plan)) 27
                         (format nil "  ~A" name))))))
-  (format t "HELP name tells what a plan takes. Those that plans listed here are made of~%~
-             can be started as well.~%"))
+  (format t "HELP name shows the arguments of a plan. The parts of these plans are plans,~%~
+             too, and can be started as well.~%"))
 
 (defun write-plan-help (plan)
   (format t "PLAN ~A~%" (plan-usage plan))

@@ -7,7 +7,7 @@
   (check-run)
   (let ((simulation (current-simulation)))
     (unless (live-p simulation)
-      (reject-line "Here time passes only as commands need it. STEP lets more of it pass."))
+      (reject-line "Time passes here only as commands need it. STEP lets ticks pass."))
     simulation))
 
 (defun time-text (session simulation &optional (tick (simulation-tick simulation)))
@@ -172,7 +172,7 @@ those that have it in their names."
   "True if WORD is ANYWAY, NIL if it was left out. Signals BAD-LINE for another."
   (cond ((null word) nil)
         ((string-equal word "anyway") t)
-        (t (reject-line "REPLAY does not know ~A. After the file you may say ANYWAY." word))))
+        (t (reject-line "REPLAY takes a file, then ANYWAY or nothing, not ~A." word))))
 
 (defun call-telling-ticks (function session end)
   "Call FUNCTION, which goes through ticks up to END, with a function of a tick that says at the

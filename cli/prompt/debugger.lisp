@@ -251,7 +251,7 @@ does other things too, and no prompt runs in it."
   "Return what is said of CONDITION, which nothing handles in this thread of a program's."
   (let ((serious-p (typep condition 'serious-condition)))
     (format nil "~:[Break~;Error~] in a thread~@[, ~A,~] that a program has started: ~A. ~
-                 ~:[It goes~;That thread ends; all else goes~] on."
+                 ~:[It continues~;That thread ends; everything else continues~]."
             serious-p (thread-name (current-thread))
             (string-right-trim "." (complaint-text (condition-text condition))) serious-p)))
 
@@ -306,7 +306,7 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
   (let ((restart (first (breakage-restarts breakage))))
     (hand-order session breakage
                 (lambda ()
-                  (warning-set (format nil "The prompt that asked how ~A goes on has gone; ~A was ~
+                  (warning-set (format nil "The prompt that asked about ~A has gone; ~A was ~
                                             chosen"
                                        (break-line session breakage)
                                        (plain-name (restart-name restart))))

@@ -100,7 +100,7 @@ to say of that."
   (unless (or (visit-changed visit) (every #'eql before (visit-state)))
     (setf (visit-changed visit) (simulation-tick *simulation*))
     (format (session-console session) "~&~:[From here on, this is not the experiment's run any ~
-                                       more~;Nothing comes of that: the trial is over~].~%"
+                                       more~;This has no effect: the trial is over~].~%"
             (visit-result visit))))
 
 ;;; Lines.
