@@ -1,11 +1,11 @@
-;;;; topics.lisp -- all that HELP and APROPOS can tell of besides lines and plans.
+;;;; topics.lisp -- what HELP and APROPOS describe besides lines and plans.
 
 (in-package :ars-magna.cli)
 
-;;; Whatever is defined by name is a topic: its kind is listed here once, with the functions that
-;;; tell what there is of it, what each is called, and what is to be said of it.
+;;; Everything that is defined by name is a topic. *TOPIC-KINDS* lists the kinds, with functions
+;;; that return all topics of the kind, a topic's name and its description.
 
-;;; What is said of each kind.
+;;; Descriptions.
 
 (defun place-type-words (type)
   (format nil "PLACE senses whether the robot is in one~:[; PLACE-DESIG 0 ~(~A~) searches for one, ~
@@ -16,8 +16,9 @@
 
 (defun attribute-words (attribute)
   (format nil "~:[A number~;One of ~:*~{~(~A~)~^, ~}~]. ~@[A reading is right with a probability ~
-               of ~A. ~]Seen without being looked for with ~A.~@[ Learnt better together with ~
-               ~{~(~S~)~^, ~}.~]"
+               of ~A. ~]Seen without being looked for with a ~
+               probability of ~A.~@[ Sensed more often when these are looked ~
+               for: ~{~(~S~)~^, ~}.~]"
           (attribute-domain attribute)
           (and (eq :discrete (attribute-kind attribute))
                (amount-text (attribute-success attribute)))
@@ -35,20 +36,21 @@
 
 (defun value-words (value)
   (destructuring-bind (value attribute) value
-    (format nil "OBJ-DESIG 1 non-local ((~A ~A)) searches for things that are so."
+    (format nil "OBJ-DESIG 1 non-local ((~A ~A)) searches for such things."
             (text-as-typed (attribute-name attribute)) (text-as-typed value))))
 
 (defun substance-words (substance)
-  (format nil "A camera sees ~A where a wall or thing is of it, unless that says otherwise."
+  (format nil "A camera reads ~A where a wall or thing consists of it, unless that has a ~
+               value of its own."
           (amount-text (substance-parameter (substance-name substance)))))
 
 (defun kicker-words (kicker)
-  (format nil "Runs with a probability of ~A in each tick on the things that have it.~@[ ~A~]"
+  (format nil "Runs on each tick with a probability of ~A on each thing that has it.~@[ ~A~]"
           (amount-text (kicker-prob kicker))
           (documentation (kicker-name kicker) 'function)))
 
 (defun manipulation-words (manipulation)
-  (format nil "~{MANIPULATE ~A~^ or ~} carries it out."
+  (format nil "Type ~{MANIPULATE ~A~^ or ~}."
           (manipulation-usages manipulation)))
 
 (defun map-words (map)
@@ -75,7 +77,7 @@
 
 (defun code-words (entry)
   (destructuring-bind (code . commands) entry
-    (format nil "~A Told to the continuations of ~{~(~A~)~^, ~}." (code-text code)
+    (format nil "~A Passed to the continuations of ~{~(~A~)~^, ~}." (code-text code)
             (mapcar #'command-name commands))))
 
 (defun code-text (code)
@@ -89,7 +91,7 @@
   '(:interrupt))
 
 (defun code-of-all-words (keyword)
-  (format nil "~A ~A Told to the continuation of any command."
+  (format nil "~A ~A Passed to the continuation of any command."
           (error-code-meaning keyword) (error-code-remedy keyword)))
 
 ;;; Restarts, which a debugger offers.
@@ -97,10 +99,10 @@
 (defun restart-words (name)
   (format nil "~A In Lisp: (invoke-restart '~(~A~))." (restart-documentation name) name))
 
-;;; What is brought by a system of its own.
+;;; Names in a system of their own.
 
 (defun names-elsewhere ()
-  "Return what the system ars-magna/fiveam defines, if that is not loaded."
+  "Return the names that the system ars-magna/fiveam defines, or NIL if it is loaded."
   (unless (find-package :ars-fiveam) '("IS-SUCCESS-RATE" "PASS-PROBABILITY" "REPEAT-TRIAL")))
 
 (defun elsewhere-words (name)
@@ -109,15 +111,15 @@
 ;;; Names of Lisp.
 
 (defun documentation-texts (symbol)
-  "Return what is documented of SYMBOL as a function, variable and type, each text once."
+  "Return the docstrings of SYMBOL as a function, variable and type, each once."
   (remove-duplicates (loop for kind in '(function variable type)
                            for text = (documentation symbol kind)
                            when text collect text)
                      :test #'string= :from-end t))
 
 (defun lisp-names ()
-  "Return a list of the names that users have of the simulator and the worlds, and of their own, as
-far as they are documented; but for parameters."
+  "Return a sorted list of the documented names of the simulator, the worlds and the user, except
+parameters."
   (let ((names '()))
     (dolist (package (remove-if-not #'find-package '(:ars :nisp :ars-worlds :ars-fiveam)))
       (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
@@ -191,11 +193,11 @@ or none."
     ("subject" all-subjects first subject-words)
     ("name of a library" names-elsewhere identity elsewhere-words)
     (lisp-title lisp-names identity lisp-words write-lisp-topic))
-  "Lists (title lister name words [writer]): what there is of each kind, what one is called, what is
-said of it, and how HELP writes that. The title may be a function.")
+  "Lists (title lister name words [writer]): a title, and functions that return all objects of the
+kind, an object's name and its description; WRITER writes its help. TITLE may be a function, too.")
 
 (defstruct (topic (:constructor make-topic (kind object name)) (:copier nil))
-  "Something that can be told of: an OBJECT of KIND, an element of *TOPIC-KINDS*."
+  "A topic of HELP: an OBJECT of KIND, an element of *TOPIC-KINDS*."
   (kind '() :type list :read-only t)
   (object nil :read-only t)
   (name "" :type string :read-only t))
@@ -238,29 +240,29 @@ max-speed*."
 ;;; What has no name in the simulator: keys, units, scripts.
 
 (defparameter *subjects*
-  '(("KEYS" "At a terminal, and where one types in a window, a line is edited as in a shell or
-Emacs. Left, right, Home, End, control-A and control-E move in it; with Alt or control, left and
-right go by words. Backspace, Delete and control-D delete a character, control-W the word before,
-control-U and control-K all before and after; control-Y brings back what was deleted so. Up and down
-bring back lines typed before, in earlier sessions too (HISTORY); control-R searches them for what
-is typed next. Tab completes; twice, it lists what there is. Control-L clears the screen. Control-C
-clears the line, or ends what is under way. Control-D in an empty line leaves. At a terminal only,
-control-Z goes back to the shell, where fg comes here again, and control-\\ ends the program at
-once. A window's button Help lists the keys of its displays.")
-    ("HISTORY" "What was typed at a terminal is kept in ~/.local/state/ars-magna/history, or under
-$XDG_STATE_HOME: the last thousand lines. Up and control-R bring them back. Remove the file, and
-they are forgotten.")
-    ("UNITS" "A number alone is in radians, metres (a cell is one wide) or ticks. Otherwise say
+  '(("KEYS" "At a terminal or in a window you edit a line as in a shell or Emacs. Left, right, Home,
+End, control-A and control-E move in it; with Alt or control, left and right go by words. Backspace,
+Delete and control-D delete a character, control-W the word before, control-U and control-K all
+before and after; control-Y brings back what these deleted. Up and down bring back earlier lines,
+also of earlier sessions (HISTORY); control-R searches them for what you type next. Tab completes; a
+second time it lists the choices. Control-L clears the screen. Control-C clears the line, or ends
+what is running. Control-D in an empty line leaves. At a terminal only, control-Z goes back to the
+shell, where fg comes here again, and control-\\ ends the program at once. A window's button Help
+lists the keys of its displays.")
+    ("HISTORY" "The last thousand lines typed at a terminal are kept in
+~/.local/state/ars-magna/history, or under $XDG_STATE_HOME. Up and control-R bring them back. Remove
+the file to forget them.")
+    ("UNITS" "A number alone is in radians, metres (a cell is one wide) or ticks. Otherwise give
 the unit: 90 deg, pi/2, 1/4 turn; 5 m, 250 cm; 0.5 m/tick; 20 ticks.")
-    ("SCRIPTS" "A file of lines as they are typed is a script: ./cli/ars-magna FILE carries it
-out, each line when the one before it has ended. With --json it writes objects for other programs.
-A session that is pasted or saved is a script, too: the prompt before a line is passed over, and
-so is a message after one; other answers would be taken for lines.")
-    ("NUMERIC" "What DEFATTRIBUTE takes where the values of an attribute are numbers, as in
-(defattribute :height numeric).")
-    ("COLOURS" "Colours are for terminals, unless the environment has NO_COLOR, or the program
-was started with --color never."))
-  "Lists (name text): what has no name in the simulator, but is asked for.")
+    ("SCRIPTS" "A script is a file of lines as you type them. ./cli/ars-magna FILE runs it, each
+line when the one before has ended. With --json it writes objects for other programs. A pasted or
+saved session is a script, too: the prompt before a line and messages after a line are skipped.
+Remove other answers, which would be read as lines.")
+    ("NUMERIC" "The kind of attributes whose values are numbers: (defattribute :height
+numeric).")
+    ("COLOURS" "Colours appear on terminals, unless the environment has NO_COLOR or you started with
+--color never."))
+  "Lists (name text): subjects of HELP that are not names in the simulator.")
 
 (defun all-subjects () *subjects*)
 
