@@ -2,25 +2,25 @@
 
 (in-package :ars-magna.clim)
 
-;;; Rows from top to bottom: the menus, the bar, the displays, a splitter, the transcript, the line
-;;; that is typed, the strip. In the row of displays the world is on the left, then a splitter, then
-;;; a column of sections, each a title with a display below it; where there is room, plans have a
-;;; column of their own before that, and a splitter. In a low window the column of sections goes on
-;;; down beside the transcript, for else there would be room for few of their lines. Nothing here
-;;; knows CLIM: a part is a name, a place is (name left top width height), in pixels.
+;;; Rows from top to bottom: menus, tool bar, displays, a splitter, the transcript, the line being
+;;; typed, the status strip. In the row of displays the world is on the left, then a splitter and a
+;;; column of sections, each a title with a display below it. If there is room, plans have a column
+;;; of their own before that, and a splitter. In a low window the column of sections continues
+;;; beside the transcript, to have room for more lines. Nothing here depends on CLIM: a part is a
+;;; name, a place is (name left top width height), in pixels.
 
-(defconstant +title-height+ 17 "How high titles of displays are, in pixels.")
-(defconstant +menus-height+ 20 "How high the bar of menus is, in pixels.")
-(defconstant +bar-height+ 26 "How high the tool bar is, in pixels.")
-(defconstant +strip-height+ 36 "How high the status strip is, in pixels.")
-(defconstant +prompt-rows+ 2 "How many rows the place to type in has at least.")
-(defconstant +prompt-height+ 36 "How high the place to type in is with these, in pixels.")
+(defconstant +title-height+ 17 "Height of the titles of displays, in pixels.")
+(defconstant +menus-height+ 20 "Height of the bar of menus, in pixels.")
+(defconstant +bar-height+ 26 "Height of the tool bar, in pixels.")
+(defconstant +strip-height+ 36 "Height of the status strip, in pixels.")
+(defconstant +prompt-rows+ 2 "Least number of rows of the place to type in.")
+(defconstant +prompt-height+ 36 "Height of the place to type in with these rows, in pixels.")
 (defconstant +splitter+ 6 "How thick splitters are, in pixels.")
 (defconstant +wide+ 1500
-  "From what width of a window on plans have a column of their own, in pixels.")
+  "Least width of a window in which plans have a column of their own, in pixels.")
 
 (defconstant +low+ 700
-  "Below what height of a window sections go on beside the transcript, in pixels.")
+  "In windows lower than this, in pixels, sections continue beside the transcript.")
 (defconstant +edge+ 6 "How far below the top of a section its first line begins, in pixels.")
 
 (define-constant +sections+ '(state designators cameras hands bins plan)
@@ -36,10 +36,10 @@
   :documentation "The parts of the window that can be dragged to make others larger.")
 
 (defstruct wishes
-  "What the user wants of an arrangement. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in
-pixels, or NIL for what suits the window; FOLDED lists sections of which only the title is to be
-seen. MAGNIFICATION is how many of the screen's pixels one of these is across, or NIL for what suits
-the screen."
+  "The user's preferences for an arrangement. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in
+pixels, or NIL for what suits the window. FOLDED lists sections that show only their title.
+MAGNIFICATION is how many screen pixels wide one of these pixels is, or NIL for what suits the
+screen."
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))
   (transcript-height nil :type (or null real))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.clim)
 
-;;; Keys that are letters are capitals: a line that one types begins with a small one, and is not to
-;;; be taken for "go back", wherever the last click was.
+;;; Keys that are letters are capitals: a line begins with a small letter, so typing one does not
+;;; trigger "go back", wherever the last click was.
 
 (defstruct (button (:constructor make-button (label key command help &optional lit-p))
                    (:copier nil))
@@ -70,9 +70,9 @@ whether the button is on."
 
 ;;;; The strip
 
-;;; The upper line says how time goes, and what waits for an answer; the lower one what lies under
-;;; the mouse. What is too long ends in three dots: a click on the strip tells all of the upper line
-;;; among the commands, one on what the mouse is at all of the lower.
+;;; The upper line shows how time passes and what waits for an answer, the lower one what is under
+;;; the mouse. Text that is too long ends in three dots. A click on the strip shows all of the upper
+;;; line among the commands; a click on what the mouse is on shows all of the lower one.
 
 (defclass strip-pane (display-pane) ()
   (:default-initargs :background clim:+gray88+)

@@ -2,26 +2,27 @@
 
 (in-package :ars-magna.clim)
 
-;;; It remembers in which boxes the subjects were drawn, so that a click finds them. Arcs that are
-;;; not whole are drawn as lines, because CLIM counts angles in its own way.
+;;; It records in which boxes the subjects were drawn, so that a click finds them. Partial arcs are
+;;; drawn as lines, because CLIM counts angles in its own way.
 
 (defclass clim-canvas (canvas)
   ((medium :initarg :medium :reader canvas-medium)
-   ;; What was drawn where, as far as it is seen: lists (subject left top right bottom).
+   ;; What was drawn where, as far as it is visible: lists (subject left top right bottom).
    (subjects :initform '() :accessor canvas-subjects)
    ;; The box drawn in so far, or NIL outside of subjects.
    (reach :initform nil :accessor canvas-reach)
-   ;; How many pixels of the screen one of its own is across.
+   ;; How many screen pixels wide one of its pixels is.
    (magnification :initarg :magnification :initform 1 :reader canvas-magnification)
-   ;; How high what it paints on is, in pixels, if text that would be cut there is left out; or NIL.
+   ;; The height of what it paints on, in pixels, if text that would be cut there is left out; or
+   ;; NIL.
    (bottom :initarg :bottom :initform nil :reader canvas-bottom)
-   ;; The box (left top right bottom) of what it paints on in which anything is seen, or NIL: all.
+   ;; The visible box (left top right bottom) of what it paints on, or NIL: all.
    (seen :initform nil :accessor canvas-seen)
    (dx :initform 0 :accessor canvas-dx)
    (dy :initform 0 :accessor canvas-dy))
   (:documentation "A canvas that paints on a medium of CLIM."))
 
-(defvar *inks* (make-hash-table :synchronized t) "From colours to CLIM's, as far as used.")
+(defvar *inks* (make-hash-table :synchronized t) "Table from colours to CLIM's, filled when used.")
 
 (defun ink (color)
   (or (gethash color *inks*)
@@ -29,10 +30,10 @@
             (flet ((part (position) (/ (ldb (byte 8 position) color) 255)))
               (clim:make-rgb-color (part 16) (part 8) (part 0))))))
 
-;;; CLIM magnifies where lines and letters are, but not how thick and large they are.
+;;; CLIM magnifies the positions of lines and letters, but not their thickness and size.
 
 (defun thickness (canvas gcontext)
-  "Return how many of the screen's pixels thick lines of GCONTEXT are on CANVAS."
+  "Return how thick lines of GCONTEXT are on CANVAS, in screen pixels."
   (* (canvas-magnification canvas) (max 1 (gcontext-line-width gcontext))))
 
 (defun dashes (canvas gcontext)
@@ -130,8 +131,8 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
   (coerce (loop for magnification from 1 to +most-magnified+
                 collect (clim:make-text-style :fix :roman (round (* 35/3 magnification))))
           'vector)
-  "How text is written on CLIM's canvases, by their magnification: so that a letter is as many times
-+CHARACTER-WIDTH+ wide.")
+  "Text styles on CLIM's canvases, by magnification: letters are that many times +CHARACTER-WIDTH+
+wide.")
 
 (defun uncut-p (canvas y)
   "True if text whose base line is at Y is not cut at the upper or lower edge of CANVAS."

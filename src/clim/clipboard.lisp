@@ -2,15 +2,15 @@
 
 (in-package :ars-magna.clim)
 
-;;; McCLIM gives up on what does not fit into one message of X. So both ways go by connections of
-;;; their own, on which nothing else happens: one for each text that is fetched, and one, with a
-;;; thread, for each that is held for others until another program copies something. What is long
-;;; goes in pieces: he who fetches says that he has one by deleting it. X calls that INCR.
+;;; McCLIM cannot copy texts that do not fit into one X message. So both directions use connections
+;;; of their own, on which nothing else happens: one for each text that is fetched, and one, with a
+;;; thread, for each text that is offered until another program copies something. Long texts go in
+;;; pieces (X calls this INCR): the receiver deletes each piece to acknowledge it.
 
-(defconstant +piece+ 60000 "How many octets are handed over in one piece.")
-(defconstant +longest-paste+ 1000000 "How many octets a text that is pasted may have.")
+(defconstant +piece+ 60000 "Octets in one piece.")
+(defconstant +longest-paste+ 1000000 "Most octets of a text that is pasted.")
 (defconstant +patience-with-others+ 2
-  "How long to wait for what another program hands over next, in seconds.")
+  "How long to wait for the next piece from another program, in seconds.")
 
 (defun connect (port)
   (destructuring-bind (&key host display-id protocol &allow-other-keys)
@@ -169,7 +169,7 @@ those that still fetch it are content, or have given up."
                t))))
 
 (defun serve-until-over (held display)
-  ;; The X server may go; who asks may vanish before he is answered.
+  ;; The X server may go; the receiver may vanish before it gets an answer.
   (setf (xlib:display-error-handler display) (constantly nil))
   (unwind-protect (ignore-errors (serve held display))
     (ignore-errors (xlib:close-display display :abort t))))

@@ -3,13 +3,13 @@
 (in-package :ars-magna.clim)
 
 (defmacro define-window-command ((name title) (window) &body body)
-  "Define NAME, a function without arguments, as what the menus call TITLE. Trouble in BODY is said
-in the window."
+  "Define NAME, a function without arguments, as the action of the menu entry TITLE. Errors in BODY
+are shown in the window."
   `(defun ,name ()
      (let ((,window clim:*application-frame*))
        (with-guarded-command (,window ,title) ,@body))))
 
-;;; Running. In a fork or trial, which is not live, it is the prompt that lets ticks pass.
+;;; Running. A fork or trial is not live: there the prompt lets ticks pass.
 
 (defun steer (window function line)
   "Call FUNCTION with the simulation of WINDOW if that is live; else give LINE to the prompt."
@@ -29,8 +29,8 @@ in the window."
 
 (defconstant +back+ 10 "How many ticks a step back is.")
 
-;; It goes back some ticks, as the prompt's REWIND does, or to the first that there is.
-;; Ticks that pass would undo it at once, so they do not, as after a step.
+;; This goes back some ticks, as REWIND does, or to the first tick there is. It pauses the run, as
+;; STEP does, since ticks that pass would undo it at once.
 (define-window-command (com-back "Go back") (window)
   (let ((simulation (window-simulation window)))
     (when (live-p simulation) (pause simulation))

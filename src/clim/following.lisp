@@ -1,23 +1,23 @@
-;;;; following.lisp -- a window goes along when its user's prompt goes into another run, and back.
+;;;; following.lisp -- windows follow their prompt into another run, and back.
 
 (in-package :ars-magna.clim)
 
-;;; TRIAL and FORK lead the prompt into another run, and out again; REWIND and WORLD put another in
-;;; the place of one. The window whose own prompt that is goes along; if none is, as when the user
-;;; types at a terminal, those that show the run which is left. Such a run is headless, so that the
-;;; pacer cannot ask it for a snapshot between ticks, nor need it have a journal that tells of
-;;; changes: what lines have made of it is looked at here, before the next is read.
+;;; TRIAL and FORK lead the prompt into another run and out again; REWIND and WORLD replace a run by
+;;; another. The window of that prompt follows. If the prompt has no window, because it is the
+;;; terminal's, the windows that show the old run follow. The new run is headless, so the pacer
+;;; cannot ask it for a snapshot between ticks, and it may have no journal that records changes. So
+;;; the window looks at the effects of each line before the next is read.
 
 (defun goes-along-p (window old)
-  "True if WINDOW goes along with the prompt of this thread, which has been in OLD."
+  "True if WINDOW follows the prompt of this thread, which was in OLD."
   (let ((thread (conversation-thread (window-conversation window))))
     (if thread
         (eq thread (current-thread))
         (eq old (watcher-simulation (window-watcher window))))))
 
 (defun robot-to-take-along (window new)
-  "Return the name of the robot of NEW that WINDOW, which goes along there, is to show: the one that
-its own prompt commands, or that it shows; else another. NIL if other windows show all of them."
+  "Return the name of the robot of NEW that WINDOW is to show after following: the one that its
+prompt commands, or that it shows, or else another. NIL if other windows show all of them."
   (let ((names (mapcar #'robot-name (simulation-robots new)))
         (own-p (eq window (own-window))))
     (find-if (lambda (name)
@@ -27,7 +27,7 @@ its own prompt commands, or that it shows; else another. NIL if other windows sh
                      names))))
 
 (defun take-along (window new)
-  "Let WINDOW show NEW from now on, if there is a robot for it to show."
+  "Let WINDOW show NEW from now on, if it has a robot to show."
   (let ((name (robot-to-take-along window new)))
     (when name
       (note-shown window name)
@@ -36,7 +36,7 @@ its own prompt commands, or that it shows; else another. NIL if other windows sh
       (request-refresh window))))
 
 (defun follow-prompt (session old new)
-  "Let the windows that go along with SESSION, which was in the run OLD, show NEW, in which it is."
+  "Let the windows that follow SESSION, which was in the run OLD, show its present run NEW."
   (declare (ignore session))
   (when new
     (dolist (window (open-windows))
@@ -48,12 +48,12 @@ its own prompt commands, or that it shows; else another. NIL if other windows sh
 
 (attend ars-magna.cli:*whereabouts-hooks* follow-prompt)
 
-;;; A program that has broken asks how it goes on: what it stands in is shown as it stands.
+;;; A program that has broken asks how to continue: the window shows the state in which it broke.
 
 ;;; A plan of a live run breaks in a thread of its own, while ticks pass.
 
 (defun show-as-it-stands ()
-  "Let the windows on a run whose plans or ticks this thread is at work on show how that stands."
+  "Let the windows on the run whose plans or ticks this thread runs show the present state."
   (dolist (window (open-windows))
     (let* ((watcher (window-watcher window)) (simulation (watcher-simulation watcher)))
       (when simulation

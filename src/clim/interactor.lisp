@@ -1,9 +1,9 @@
-;;;; interactor.lisp -- where one types: the line that is being typed, and keys that are pressed.
+;;;; interactor.lisp -- the place to type in: the line being typed, and keys that are pressed.
 
 (in-package :ars-magna.clim)
 
-;;; The line is edited by the prompt (cli/editing); here it is only shown. While a line is under
-;;; way, that is said in a row above what is typed meanwhile, which is read after it.
+;;; The prompt edits the line (cli/editing); this pane only shows it. While a line runs, a row above
+;;; says so; what is typed meanwhile is read after it.
 
 (defclass interactor-pane (display-pane) ()
   (:documentation "A pane that shows the line that is being typed, and takes keys."))
@@ -124,7 +124,7 @@
           (meta-p (key-with "META" char))
           (t (string char)))))
 
-;;; Copy and paste, and looking back, are the window's own.
+;;; The window handles copy, paste and scrolling back itself.
 
 (defun copy-text (window)
   "Let other programs have what is selected in the transcript of WINDOW, or else all of it."
@@ -142,7 +142,7 @@
 (defun own-action (event)
   (let* ((name (clim:keyboard-event-key-name event))
          (typed (clim:keyboard-event-character event))
-         ;; CLIM tells of shift by the capital alone.
+         ;; CLIM reports shift only by the capital letter.
          (shift-p (or (pressed-with-p event clim:+shift-key+) (and typed (upper-case-p typed))))
          (control-p (pressed-with-p event clim:+control-key+)))
     (flet ((is-p (char) (and typed (char= char (char-downcase typed)))))
@@ -167,15 +167,15 @@
           (action (funcall action window) t)
           (key (take-key window key) t))))
 
-;;; CLIM has one place for the keys of all windows; they are to go to the window that has them.
+;;; CLIM has one place for the keys of all windows; they must go to the window that has the focus.
 
 (defun robot-window-of (sheet)
   (let ((frame (and (typep sheet '(or clim:pane clime:top-level-sheet-mixin))
                     (clim:pane-frame sheet))))
     (and (typep frame 'robot-window) frame)))
 
-;;; Which one that is the events say, in their order, in the thread that reads them: a window's own
-;;; thread, which may come to them late, only says which of its panes they go to.
+;;; The events say which window that is, in their order, in the thread that reads them. A window's
+;;; own thread may get to them late, so it only says which of its panes gets the keys.
 
 (defun window-with-keys (port)
   (let ((sheet (clim:port-keyboard-input-focus port)))

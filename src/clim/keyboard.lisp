@@ -1,16 +1,16 @@
-;;;; keyboard.lisp -- what keys do while displays have them, and what keyboards type.
+;;;; keyboard.lisp -- what keys do while displays have the focus, and what keyboards type.
 
 (in-package :ars-magna.clim)
 
-;;; A click on the world or the details gives them the keys; return, escape, a click on the
-;;; transcript, or a character that is none of theirs gives them back to the prompt. A line that is
-;;; half typed gets all characters.
+;;; A click on the world or the details gives them the focus. Return, Escape, a click on the
+;;; transcript, or a character that is none of their keys gives it back to the prompt. While a line
+;;; is half typed, all characters go to it.
 
 (defun give-keys-to-prompt (window)
   (type-into (pane-named window 'interactor)))
 
 (defun take-keys (pane)
-  "PANE was clicked: let what is typed go where it should from now on."
+  "PANE was clicked: send what is typed to the right place from now on."
   (typecase pane
     ((or world-pane detail-pane plan-pane)
      (setf (window-typing-p (window-of pane)) nil)
@@ -18,7 +18,7 @@
     (transcript-pane (give-keys-to-prompt (window-of pane)))))
 
 (defun type-at-prompt (window character)
-  "Let CHARACTER, and what is typed after it, go to the line of WINDOW that is typed."
+  "Send CHARACTER, and what is typed after it, to the line being typed in WINDOW."
   ;; What is typed fast may still come to a display.
   (setf (window-typing-p window) t)
   (take-key window (string character))
@@ -35,7 +35,8 @@
     (:down (values 0 +arrow-step+))))
 
 (defun do-key (window key-name character)
-  "Do what the key called KEY-NAME, which types CHARACTER or NIL, does in WINDOW. True if anything."
+  "Do what the key called KEY-NAME, which types CHARACTER or NIL, does in WINDOW. True if it does
+anything."
   (let ((button (and character (find character *buttons* :key #'button-key)))
         (shown (line-shown (window-conversation window))))
     (multiple-value-bind (dx dy) (arrow key-name)
@@ -46,7 +47,7 @@
                   (graphic-char-p character))
              (type-at-prompt window character)
              t)
-            ;; One that has opened the panel on top of the window closes that.
+            ;; The key that has opened the panel on top of the window closes it.
             (button (unless (eq (button-command button) (close-popup window))
                       (funcall (button-command button)))
                     t)
@@ -71,10 +72,10 @@
 
 ;;;; Keyboards that are not American
 
-;;; X lists what a key means: by itself, with shift, the same twice more for a second layout, and
-;;; then with AltGr. McCLIM looks at the first four only, so that a German keyboard would have
-;;; neither { nor |. Nor does it put an accent on the character that follows a dead key. What it
-;;; calls by name is a key symbol, a number, of X.
+;;; X lists the meanings of a key: alone, with shift, the same two for a second layout, and then
+;;; with AltGr. McCLIM looks at the first four only, so a German keyboard would have neither { nor
+;;; |. It also does not combine a dead key with the character after it. The names that McCLIM uses
+;;; are key symbols of X, which are numbers.
 
 (defconstant +altgr+ #x80 "The bit in the state of X's keyboard for AltGr.")
 

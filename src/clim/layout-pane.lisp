@@ -1,4 +1,4 @@
-;;;; layout-pane.lisp -- the pane that holds all others, where ARRANGE says; splitters and titles.
+;;;; layout-pane.lisp -- the pane that holds all others, placed by ARRANGE; splitters and titles.
 
 (in-package :ars-magna.clim)
 
@@ -38,19 +38,19 @@
        :min-height 240 :max-height clim:+fill+))))
 
 (defun place-pane (pane left top width height)
-  "Put PANE where the rest says; one without room is not shown."
+  "Put PANE where the other arguments say; without room it is hidden."
   (let ((there-p (and (plusp width) (plusp height))))
-    ;; Put there first: it is not to be seen where it was.
+    ;; Move it before it is shown, so that it never appears at the old place.
     (when there-p (put-pane pane left top width height))
     (setf (clim:sheet-enabled-p pane) there-p)))
 
-;;; A display grows when it has to show more. It stays so when it shows less, lest titles and
-;;; switches move from under the mouse while a run goes on: until the user changes the arrangement
-;;; or what is shown, or until another display needs the room.
+;;; A display grows when it has more to show, but does not shrink when it has less: titles and
+;;; switches should not move from under the mouse during a run. It shrinks when the user changes the
+;;; arrangement or what is shown, or when another display needs the room.
 
 (defun needs-now (layout)
-  "Return how many pixels high each section that is open in the column of LAYOUT would like to be
-now, as (section pixels)."
+  "Return the wanted height in pixels of each open section in the column of LAYOUT, as (section
+pixels)."
   (let* ((window (clim:pane-frame layout)) (wishes (pane-wishes layout))
          (width (pane-size layout)) (column (details-width wishes width)))
     (loop for section in (column-sections wishes width)
@@ -59,7 +59,7 @@ now, as (section pixels)."
                           (section-need (pane-named window section) section column)))))
 
 (defun need-in (needs)
-  "Return a function from a section to how many pixels it needs according to NEEDS."
+  "Return a function from a section to the pixels that it needs by NEEDS."
   (lambda (section) (or (second (assoc section needs)) 0)))
 
 (defun arranged (layout needs)
@@ -81,8 +81,8 @@ now, as (section pixels)."
                    (<= pixels (fifth (assoc section places))))))
 
 (defun settled-needs (layout)
-  "Return the heights for which the sections of LAYOUT get room: the most that they have needed, but
-what they need now if only so there is enough for all."
+  "Return the heights for which the sections of LAYOUT get room: the most that they have needed, or,
+if only that leaves enough for all, what they need now."
   (let* ((now (needs-now layout))
          (before (need-in (pane-needed layout)))
          (most (loop for (section pixels) in now
@@ -93,7 +93,7 @@ what they need now if only so there is enough for all."
           most))))
 
 (defun places (layout)
-  "Return where all parts of the window belong now, as the wishes of LAYOUT, their pane, want it."
+  "Return the places of all parts of the window, as the preferences of LAYOUT, their pane, say."
   (let* ((window (clim:pane-frame layout))
          (shown (list (window-simulation window) (shown-robot window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
@@ -109,7 +109,7 @@ what they need now if only so there is enough for all."
           when pane do (apply #'place-pane pane place))))
 
 (defun arrange-panes (layout)
-  "Put all parts of the window where they belong now, whatever they have needed before."
+  "Put all parts of the window in place, whatever they have needed before."
   (setf (pane-needed layout) '())
   (put-parts layout (places layout)))
 
@@ -125,19 +125,19 @@ what they need now if only so there is enough for all."
 
 (defparameter *first-needs*
   '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 100))
-  "How many pixels high sections would like to be of which nothing is known yet; designators and
-plans would never like to be lower.")
+  "Wanted heights of sections, in pixels, before their contents are known; never less for
+designators and plans.")
 
 (defun first-need (section) (second (assoc section *first-needs*)))
 
 (defgeneric section-need (pane section width)
-  (:documentation "Return how many pixels high PANE, which shows SECTION, would like to be if it is
-WIDTH pixels wide.")
+  (:documentation "Return the wanted height in pixels of PANE, which shows SECTION, if it is WIDTH
+pixels wide.")
   (:method (pane section width)
     (declare (ignore width))
     (max (pane-extent pane) (first-need section)))
-  ;; Tasks come and go while a plan runs. Were the room for them to change with that, other displays
-  ;; would move from under the mouse. So plans get what the others leave, half of it at least.
+  ;; Tasks come and go while a plan runs. If their room changed with that, other displays would move
+  ;; from under the mouse. So plans get what the others leave, at least half of it.
   (:method ((pane plan-pane) section width)
     (declare (ignore section width))
     10000)
@@ -151,7 +151,7 @@ WIDTH pixels wide.")
   (pane-named window 'layout))
 
 (defun rearrange (window)
-  "Put all parts of WINDOW where its wishes want them now."
+  "Put all parts of WINDOW in place by its preferences."
   (arrange-panes (window-layout window))
   (repaint-all window))
 
@@ -194,7 +194,7 @@ WIDTH pixels wide.")
           (setf (wishes-details-width wishes) right))))
   (:method ((name (eql 'plan-splitter)) wishes layout x y)
     (declare (ignore y))
-    ;; The world stays as it is: what one of the columns gains the other loses.
+    ;; The world keeps its size: what one of the columns gains the other loses.
     (let* ((width (pane-size layout))
            (both (+ (plan-width wishes width) (details-width wishes width))))
       (setf (wishes-details-width wishes) (clamp (- width x +splitter+) 120 (- both 120))
@@ -228,7 +228,7 @@ WIDTH pixels wide.")
 (defclass title-pane (display-pane)
   ((section :initarg :section :reader pane-section))
   (:default-initargs :background clim:+gray88+)
-  (:documentation "The title of a display. A click folds the display away, or brings it back."))
+  (:documentation "The title of a display. A click folds the display or unfolds it."))
 
 (defun foldable-p (section) (and (member section +sections+) t))
 
@@ -270,7 +270,7 @@ trial."
   (case (pane-section pane)
     (world "Click to choose a robot")
     (transcript "")
-    (t "Click to fold this display away, or to bring it back")))
+    (t "Click to fold this display or to unfold it")))
 
 (defmethod click ((pane title-pane) button x y)
   (declare (ignore button))

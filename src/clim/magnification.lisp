@@ -1,19 +1,20 @@
-;;;; magnification.lisp -- how many of the screen's pixels one pixel of a window is across.
+;;;; magnification.lisp -- how many screen pixels wide one pixel of a window is.
 
 (in-package :ars-magna.clim)
 
-;;; On a fine screen letters of 12 pixels are too small to read. So a window is arranged, painted
-;;; and pointed at in pixels of its own, each of which is as many of the screen's across as the
-;;; user wants: a whole number, so that letters keep the columns that they have.
+;;; On a screen with a high resolution, letters of 12 pixels are too small to read. So a window is
+;;; arranged, painted and pointed at in pixels of its own. Each is several screen pixels wide, as
+;;; the user wants: a whole number, so that letters keep their columns.
 
 (define-constant +smallest-size+ '(640 480)
   :test #'equal
-  :documentation "In how wide and high a window all is to be seen, in its pixels.")
+  :documentation "Width and height of the smallest window in which everything is visible, in its
+pixels.")
 
-(defconstant +most-magnified+ 6 "How many of the screen's pixels one of a window's can be across.")
+(defconstant +most-magnified+ 6 "The largest magnification: screen pixels per window pixel.")
 
 (defun magnification (pane)
-  "Return how many of the screen's pixels one of PANE's is across."
+  "Return how many screen pixels wide a pixel of PANE is."
   (window-magnification (clim:pane-frame pane)))
 
 (defun pane-size (pane)
@@ -23,7 +24,7 @@
             (floor (clim:bounding-rectangle-height region) magnification))))
 
 (defun size-on-screen (pane)
-  "Return width and height of PANE in pixels of the screen."
+  "Return width and height of PANE in screen pixels."
   (let ((region (clim:sheet-region pane)))
     (values (floor (clim:bounding-rectangle-width region))
             (floor (clim:bounding-rectangle-height region)))))
@@ -48,7 +49,7 @@
             (floor (clim:pointer-event-y event) magnification))))
 
 (defun call-magnified (function medium magnification)
-  "Call FUNCTION, which paints on MEDIUM in pixels each of which is so many of the screen's across."
+  "Call FUNCTION, which paints on MEDIUM in pixels that are each MAGNIFICATION screen pixels wide."
   (clim:with-scaling (medium magnification)
     (funcall function)))
 
@@ -60,25 +61,25 @@
       (values nil nil)))
 
 (defun window-magnification (window)
-  "Return how many of the screen's pixels one of WINDOW's is across: as its user wants, or else as
-the screen asks for."
+  "Return how many screen pixels wide a pixel of WINDOW is: by its user's choice, or else by the
+screen's resolution."
   (or (wishes-magnification (window-wishes window)) (window-usual-magnification window)))
 
 (defun most-magnified (width height)
-  "Return how many pixels of a screen of WIDTH times HEIGHT, or NIL for what is not known, one of a
-window's can be across: so that the smallest window in which all is to be seen fits."
+  "Return the largest magnification for a screen of WIDTH times HEIGHT pixels, or NIL for what is
+not known: the smallest window in which everything is visible must fit."
   (destructuring-bind (least-width least-height) +smallest-size+
     (clamp (min (if width (floor width least-width) +most-magnified+)
                 (if height (floor height least-height) +most-magnified+))
            1 +most-magnified+)))
 
 (defun usual-magnification (resolution &optional width height)
-  "Return how many pixels of a screen of WIDTH times HEIGHT one of a window's should be across, if
-the screen has RESOLUTION in dots per inch; NIL stands for what is not known."
+  "Return the magnification that suits a screen of WIDTH times HEIGHT pixels with RESOLUTION in dots
+per inch; NIL stands for what is not known."
   (clamp (round (or resolution 96) 96) 1 (most-magnified width height)))
 
 (defun magnify (window magnification)
-  "Let one pixel of WINDOW be MAGNIFICATION of the screen's across; or say that there is no room."
+  "Make a pixel of WINDOW MAGNIFICATION screen pixels wide, or say that there is no room."
   (cond ((< magnification 1) (say-in-window window "Smaller than that nothing could be read.~%"))
         ((< (multiple-value-call #'most-magnified (screen-size (window-layout window)))
             magnification)

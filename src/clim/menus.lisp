@@ -2,12 +2,12 @@
 
 (in-package :ars-magna.clim)
 
-;;; A menu is shown by the window's popup, so it is never beyond the window, and scrolls if it is
-;;; higher; nothing waits for it. A menu of menus shows one of these in its place.
+;;; A menu is shown by the window's popup, so it stays inside the window, scrolls if it is too high,
+;;; and blocks nothing. A submenu replaces its menu.
 
-;;; The menus of the prompt's lines, by the families under which HELP lists them.
+;;; The menus have the lines of the prompt, by the families of HELP.
 
-;;; A line without arguments is given at once; another is put where the user can type its arguments.
+;;; A line without arguments runs at once; another is put where the user can type its arguments.
 
 (defparameter *line-groups*
   '((:moving "Moving") (:camera "Cameras") (:hand "Hands") (:storage-bin "Storage bins")
@@ -28,7 +28,7 @@
                     (list name (lambda () (choose-line clim:*application-frame* name))))))
 
 (defun choose-line (window name)
-  "Give the prompt the line command called NAME, or let the user add its arguments."
+  "Run the line command called NAME, or let the user add its arguments."
   (let ((conversation (window-conversation window)) (text (string-downcase name)))
     (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line name))
            (begin-line-with conversation (format nil "~A " text))
@@ -140,9 +140,9 @@ and NIL for a gap."
 (defmethod press-past-popup ((pane menu-pane) button x y opener)
   (unless (eq opener (menu-at pane x y)) (click pane button x y)))
 
-;;; Keys in the menu or list that is on top of the window, and one that opens it.
+;;; Keys in the menu or list on top of the window, and the key that opens it.
 
-;;; They work wherever the keys go just then: the list is nearer than a line that is typed below it.
+;;; They work whatever has the focus, because the list is on top.
 
 (defun show-row (popup row)
   (let* ((top (* +row-height+ (position row (pane-rows popup))))

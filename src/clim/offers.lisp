@@ -1,12 +1,12 @@
-;;;; offers.lisp -- what can be done with what one points at: lines that the prompt understands.
+;;;; offers.lisp -- the menu of the right button: lines for the prompt, by what was clicked.
 
 (in-package :ars-magna.clim)
 
-;;; An offer is (title line): what the menu calls it, and what is given to the window's prompt when
-;;; it is chosen, as if the user had typed it; so the transcript shows it.
+;;; An offer is (title line): its title in the menu, and the line that goes to the window's prompt
+;;; when it is chosen, as if typed; so the transcript shows it.
 
 (defgeneric offers (subject window)
-  (:documentation "Return what can be done with SUBJECT, which WINDOW shows: a list of offers.")
+  (:documentation "Return the offers for SUBJECT, which WINDOW shows.")
   (:method (subject window)
     (declare (ignore subject window))
     '()))
@@ -213,7 +213,7 @@ bin."
   (make-row (format nil "~A   ~A" title line)
             :action (lambda ()
                       (give-line (window-conversation window) line)
-                      ;; Whoever goes on typing means the next line.
+                      ;; If you continue typing, you mean the next line.
                       (type-into (pane-named window 'interactor)))))
 
 (defun subject-heading (subject)

@@ -1,25 +1,25 @@
-;;;; opening.lisp -- windows come and go; the simulator does not notice.
+;;;; opening.lisp -- opening and closing windows; this does not affect the simulator.
 
 (in-package :ars-magna.clim)
 
-;;; Kept as long as this Lisp runs. The last window that closes counts; what was said there comes
-;;; back in a window of the same robot.
+;;; Kept as long as this Lisp runs. The window that was closed last determines the preferences. A
+;;; new window of a robot gets the transcript of its last one.
 
 (defvar *habits-lock* (make-lock "habits"))
 (defvar *habits* '()
-  "Layers, whether in colour, and wishes of the window that closed last, in a list; or NIL.")
+  "A list of layers, colour or not, and preferences of the window that was closed last; or NIL.")
 
 (defstruct (legacy (:copier nil))
-  "What a window leaves to the next of its robot: the LINES that it said, newest first; what had
-been TYPED there, or NIL; AWAY-P if it was in a trial or fork, which it has left; QUIET-P if its
-prompt did not tell of plans' commands."
+  "What a window leaves to the next window of its robot: its LINES, newest first; what had been
+TYPED, or NIL; AWAY-P if it was in a trial or fork, which it has left; QUIET-P if its prompt hid
+messages from commands of plans."
   (lines '() :type list :read-only t)
   (typed nil :type (or null string) :read-only t)
   (away-p nil :read-only t)
   (quiet-p nil :read-only t))
 
 (defvar *said* '()
-  "An alist from the names of robots to the legacy of the last window that has shown each.")
+  "An alist from the names of robots to what their last windows have left.")
 
 (defun take-legacy (window legacy)
   (let ((conversation (window-conversation window)) (transcript (window-transcript window)))
@@ -58,22 +58,22 @@ prompt did not tell of plans' commands."
 
 ;;;; Coming and going
 
-;;; Each window has a thread of its own. Whatever goes wrong in it, the loss of the X server
-;;; included, closes the window with a warning, and nothing else.
+;;; Each window has a thread of its own. Any error in it, such as the loss of the X server, closes
+;;; only this window, with a warning.
 
 (defvar *windows* '() "The windows that are open.")
 (defvar *windows-lock* (make-lock "windows"))
-(defvar *ports* '() "CLIM's ports that windows have come to.")
+(defvar *ports* '() "CLIM's ports on which windows were opened.")
 
 (defun open-windows ()
   (with-lock (*windows-lock*) (copy-list *windows*)))
 
 (defun close-window (window)
-  "Close WINDOW, from whatever thread. The simulator goes on. Return nothing."
+  "Close WINDOW, from any thread. The simulator continues. Return nothing."
   (call-in-window #'clim:frame-exit window))
 
 (defun show-in-front (window)
-  "Let WINDOW be seen: above others, and not as an icon."
+  "Show WINDOW above others, and not as an icon."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (climb:port-enable-sheet (clim:port sheet) sheet)
     (clim:raise-sheet sheet)))
@@ -91,8 +91,8 @@ prompt did not tell of plans' commands."
   (conversation-session (window-conversation window)))
 
 (defun take-work-left (window)
-  "Let the prompt of WINDOW, which is lost, forget what it leaves: the line under way, lines that
-wait, a break. Return that in words, as they follow a sentence."
+  "Clear the prompt of WINDOW, which is lost: the running line, waiting lines, a break. Return in
+words what was cleared, to follow a sentence."
   (let* ((session (window-session window))
          (line (busy-with (window-conversation window)))
          (place (and (ars-magna.cli:away-p session)
@@ -109,8 +109,8 @@ wait, a break. Return that in words, as they follow a sentence."
             (ars-magna.cli:asked-of-others-p session))))
 
 (defun run-to-tell (window)
-  "Return the run among whose messages it is told that WINDOW has closed: the one that it shows; or,
-as nobody hears of a trial or fork any more, the one that goes on without."
+  "Return the run whose messages report that WINDOW has closed: the run that it shows, or, for a
+trial or fork, which nobody watches any more, the run outside."
   (let ((simulation (window-simulation window)))
     (if (ars-magna.cli:away-p (window-session window))
         (or (ars-magna.cli:run-of-robot (shown-robot window))
@@ -119,8 +119,8 @@ as nobody hears of a trial or fork any more, the one that goes on without."
         simulation)))
 
 (defun words-for-closing (window condition)
-  "Return what is said of WINDOW, which CONDITION, or a reason in words, has closed: that the run
-goes on, if it does, and how it is seen again."
+  "Return a message that CONDITION, or a reason in words, has closed WINDOW: whether the run
+continues, and how to see it again."
   (format nil "The window of ~A has closed: ~A~:[~;. The run goes on; the ~
                line WINDOW opens it anew~]"
           (shown-robot window)
@@ -128,7 +128,7 @@ goes on, if it does, and how it is seen again."
           (and (window-simulation window) (not (over-p window)))))
 
 (defun warn-of-closing (window condition)
-  "Say, once, that CONDITION has closed WINDOW, and what that leaves undone."
+  "Report, once, that CONDITION has closed WINDOW, and what was lost with it."
   (when (forget-window window)
     (let* ((simulation (run-to-tell window))
            (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
@@ -158,8 +158,8 @@ goes on, if it does, and how it is seen again."
         (remove window (open-windows))))
 
 (defun robot-to-show (window)
-  "Return the name of a robot that WINDOW, whose run is over, can go on with, and its run: the one
-that a prompt would, or another of the same run if that is shown in another window; or NIL."
+  "Return the name of a robot to show in WINDOW, whose run is over, and its run: the robot of a
+prompt in that case, or another of the same run if another window shows that one; or NIL."
   (multiple-value-bind (simulation name)
       (ars-magna.cli:run-after (window-simulation window) (watcher-robot (window-watcher window)))
     (when simulation
@@ -169,7 +169,7 @@ that a prompt would, or another of the same run if that is shown in another wind
                 simulation)))))
 
 (defun stay-when-over (window reason)
-  "Say in WINDOW, once, that the run which it still shows is over for REASON."
+  "Say in WINDOW, once, that the run that it still shows is over for REASON."
   (let ((over (window-simulation window)))
     (unless (eq over (shiftf (window-known-over window) over))
       (say-in-window window "The run of ~A is over: ~A. This window shows how it ended, until ~
@@ -177,13 +177,13 @@ that a prompt would, or another of the same run if that is shown in another wind
                      (shown-robot window) reason))))
 
 (defun leave-run (window reason)
-  "Let WINDOW, which shows a run that is over for REASON, go on in another one; or else stay, unless
-others show all there is."
+  "Let WINDOW, whose run is over for REASON, show another run, or else close if other windows show
+all its robots."
   (multiple-value-bind (name simulation) (robot-to-show window)
     (cond (name
            (show-robot-called window name simulation)
            (ars-magna.cli:tell-of-run (window-session window) simulation name))
-          ;; There is a run to go on in, but other windows show all of its robots.
+          ;; There is a run to show, but other windows show all of its robots.
           ((ars-magna.cli:run-after (window-simulation window) (shown-robot window))
            (warn-of-closing window (format nil "its run is over, ~A" reason))
            (close-window window))
@@ -204,8 +204,8 @@ else, if its user has chosen another one of the same run, that that is shown."
              (say-in-window window "~A in ~A.~%" ars-magna.cli:*prompt-robot*
                             (simulation-name simulation)))))))
 
-;;; When the X server goes, the thread that reads the events notices, or that of a window which
-;;; paints just then.
+;;; When the X server goes, the thread that reads the events finds out, or a window's thread that
+;;; paints at the time.
 
 (defun windows-on (port)
   (with-lock (*windows-lock*)

@@ -1,24 +1,24 @@
-;;;; panes.lisp -- a pane: painted out of sight, scrolled, with what is picked marked.
+;;;; panes.lisp -- a pane: painted off-screen, scrolled, with the selection marked.
 
 (in-package :ars-magna.clim)
 
-;;; CLIM's own buffers ask the X server several questions for each pane and picture. While ticks
-;;; pass as fast as they can, each answer comes late, and pictures with them. So a pane has a pixmap
-;;; of its own, as large as it is; nothing is asked. It takes a pane that the X server knows as a
-;;; window, as CLIM's port to it makes them; others are painted by CLIM's buffers.
+;;; CLIM's own buffers ask the X server several questions for each pane and picture. At full speed
+;;; each answer comes late, and so do pictures. So a pane has a pixmap of its own size and asks
+;;; nothing. This works for panes that the X server has as windows, as CLIM's port makes them;
+;;; others are painted by CLIM's buffers.
 
 (defclass buffered-pane ()
   ((buffer :initform nil :accessor pane-buffer)
-   ;; Its width and height, in pixels of the screen.
+   ;; Its width and height, in screen pixels.
    (buffer-size :initform nil :accessor pane-buffer-size))
-  (:documentation "What a pane needs in order to be painted out of sight."))
+  (:documentation "What a pane needs in order to be painted off-screen."))
 
 (defun forget-buffer (pane)
   (let ((old (shiftf (pane-buffer pane) nil)))
     (when old (clim:deallocate-pixmap old))))
 
 (defun buffer-of (pane width height)
-  "Return a pixmap of WIDTH times HEIGHT of the screen's pixels for PANE."
+  "Return a pixmap of WIDTH times HEIGHT screen pixels for PANE."
   (let ((size (list width height)))
     (unless (and (pane-buffer pane) (equal size (pane-buffer-size pane)))
       (forget-buffer pane)
@@ -27,8 +27,8 @@
     (pane-buffer pane)))
 
 (defun call-in-buffer (function pane width height)
-  "Call FUNCTION, which paints PANE, of WIDTH times HEIGHT of the screen's pixels; show all of that
-at once."
+  "Call FUNCTION, which paints PANE, of WIDTH times HEIGHT screen pixels; then show all of that at
+once."
   (let ((buffer (buffer-of pane width height)) (medium (clim:sheet-medium pane)))
     (setf (clim:medium-drawable medium) buffer)
     (unwind-protect (funcall function)
@@ -37,7 +37,7 @@ at once."
     (clim:medium-force-output medium)))
 
 (defun call-buffered (function pane)
-  "Call FUNCTION, which paints PANE; nothing is seen of that before it returns."
+  "Call FUNCTION, which paints PANE; nothing of that is visible before it returns."
   (multiple-value-bind (width height) (size-on-screen pane)
     (flet ((paint () (call-magnified function pane (magnification pane))))
       (cond ((not (and (plusp width) (plusp height))))
@@ -46,8 +46,8 @@ at once."
 
 ;;;; Panes
 
-;;; A pane paints all of itself, from the window's last snapshot, whenever CLIM or a new snapshot
-;;; asks for it; it does so only when what it shows has changed. Painting records nothing.
+;;; A pane paints all of itself from the window's last snapshot, when CLIM or a new snapshot asks
+;;; for it, and only if its contents have changed. Painting records nothing.
 
 (defclass display-pane (buffered-pane clim:basic-pane)
   ((display :initarg :display :initform nil :reader pane-display)
@@ -107,7 +107,7 @@ would be cut; remember what was painted where."
 
 (defmethod clim:handle-repaint ((pane display-pane) region)
   (declare (ignore region))
-  ;; CLIM narrows painting down to REGION, but the rest may have changed as well.
+  ;; CLIM limits painting to REGION, but the rest may have changed as well.
   (setf (clim:medium-clipping-region (clim:sheet-medium pane)) clim:+everywhere+)
   (repaint pane))
 

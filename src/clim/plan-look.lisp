@@ -1,24 +1,24 @@
-;;;; plan-look.lisp -- what a window knows of the plans of its run: images, made aside.
+;;;; plan-look.lisp -- images of the plans of a window's run, made in another thread.
 
 (in-package :ars-magna.clim)
 
-;;; The pacer makes the images (watcher.lisp): neither the thread that paints nor the one that runs
-;;; the ticks waits for that. It looks only where plans are to be seen, and only if they have gone
-;;; on since; it takes them as they are between two of their reactions, and if they are at work just
-;;; then, comes again. What looking costs, plans stand still for: so that is a tenth of the time at
-;;; most.
+;;; The pacer makes the images (watcher.lisp), so neither painting nor ticks wait for them. It looks
+;;; only while plans are displayed and have progressed. It reads the plans between two of their
+;;; reactions; if they are busy, it tries again later. Plans stand still during a look, so looks
+;;; take a tenth of the time at most.
 
-(defconstant +most-rows+ 300 "How many tasks or rows of a timeline are shown.")
+(defconstant +most-rows+ 300 "Most tasks, or rows of a timeline, that are shown.")
 (defconstant +longest-trace+ 200000
-  "From how many entries of a trace on no timeline is made of it by itself.")
-(defconstant +idleness+ 9 "How many times as long as a look took plans are left alone after it.")
+  "A trace with more entries than this gets no timeline automatically.")
+(defconstant +idleness+ 9 "Plans are left alone after a look for this many times as long as the look
+took.")
 
 (defstruct (plan-look (:constructor make-plan-look ()) (:copier nil))
-  "What is known of the plans of SIMULATION. VIEW is what is to be seen, :TREE or :TIMELINE;
-SHOWN-P, a function, says whether anything is. FOLDED are the numbers of the tasks whose parts are
-folded away. MARK is what changes when the plans do, as it was at the last look; the next is DUE, in
-seconds. TREE is an image, PAGE a timeline, :UNTRACED or :TOO-LONG; both may be NIL. ENDED says in
-words how the last plan ended."
+  "The state of looking at the plans of SIMULATION. VIEW is the display, :TREE or :TIMELINE;
+SHOWN-P, a function, says whether it is visible. FOLDED are the numbers of the tasks whose parts are
+folded. MARK is a value that changes when the plans do, as of the last look; the next look is DUE,
+in seconds. TREE is an image, PAGE a timeline, :UNTRACED or :TOO-LONG; both may be NIL. ENDED says
+in words how the last plan ended."
   (simulation nil)
   (view :tree :type (member :tree :timeline))
   (shown-p (constantly nil) :type function)
@@ -54,15 +54,14 @@ words how the last plan ended."
 
 ;;; Looking.
 
-;; A plan that has broken, or stops as it is stepped, is at work and stands still: only its own
-;; thread can look at it.
+;; A plan that has broken, or is stepped, is busy and stands still: only its own thread can read it.
 (defun call-at-rest (interface function)
-  "Call FUNCTION while the plans of INTERFACE are at rest, or as they stand if this thread lets them
-react. Return its value; or :BUSY."
+  "Call FUNCTION while the plans of INTERFACE are at rest, or at once if this thread runs their
+reactions. Return its value, or :BUSY."
   (if (holding-p interface) (funcall function) (participant-at-rest interface function)))
 
 (defun see-timeline (look interface)
-  "Let LOOK have the timeline of the plans of INTERFACE. NIL if they are at work just now."
+  "Give LOOK the timeline of the plans of INTERFACE. Return NIL if they are busy."
   (let* ((runner (interface-runner interface)) (trace (runner-trace runner)))
     (if (null trace)
         (setf (plan-look-page look) :untraced)
@@ -79,7 +78,7 @@ react. Return its value; or :BUSY."
             t)))))
 
 (defun see-tree (look interface)
-  "Let LOOK have the tree of the tasks of INTERFACE. NIL if they are at work just now."
+  "Give LOOK the tree of the tasks of INTERFACE. Return NIL if they are busy."
   (let ((seen (call-at-rest interface
                             (lambda ()
                               (image-of-tasks (interface-runner interface)
@@ -90,7 +89,7 @@ react. Return its value; or :BUSY."
       t)))
 
 (defun see-plans (look interface)
-  "Let LOOK have what it is to see of the plans of INTERFACE, if any. NIL if they are at work."
+  "Give LOOK what it displays of the plans of INTERFACE, if any. Return NIL if they are busy."
   (setf (plan-look-robot look) (and interface (interface-robot interface)
                                     (robot-name (interface-robot interface)))
         (plan-look-traced-p look) (traced-p interface))
@@ -101,7 +100,7 @@ react. Return its value; or :BUSY."
         (t (see-tree look interface))))
 
 (defun look-now (look interface mark)
-  "Look at the plans of INTERFACE, of which MARK is what changes. True if they were seen."
+  "Look at the plans of INTERFACE, whose mark of change is MARK. True if this succeeded."
   (let ((began (seconds-now)))
     (when (see-plans look interface)
       (setf (plan-look-mark look) mark
@@ -109,19 +108,20 @@ react. Return its value; or :BUSY."
       t)))
 
 (defun look-at-plans (look)
-  "Look at the plans again if they have gone on, and are to be seen. True if something has changed."
+  "Look at the plans again if they have progressed and are displayed. True if something has
+changed."
   (when (and (funcall (plan-look-shown-p look))
              (plan-look-simulation look)
              (>= (seconds-now) (plan-look-due look)))
     (let* ((interface (interface-of (plan-look-simulation look)))
            (mark (plans-mark look interface)))
       (unless (equal mark (plan-look-mark look))
-        ;; A plan that does not return keeps its run's plans, and says so elsewhere.
+        ;; A plan that does not return blocks the plans of its run. That is reported elsewhere.
         (handler-case (look-now look interface mark)
           (misuse () nil))))))
 
 (defun look-as-it-stands (look)
-  "Look at the plans as they stand, if this thread is letting them react. True if they were seen."
+  "Look at the plans as they are, if this thread runs their reactions. True if this succeeded."
   (let* ((simulation (plan-look-simulation look)) (interface (interface-of simulation)))
     (and interface
          (holding-p interface)

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.clim)
 
-;;; What is painted is what the watcher's look at the plans has (plan-look.lisp). A row of switches
-;;; stays on top; below it the picture scrolls.
+;;; It paints what the watcher's look at the plans has (plan-look.lisp). A row of switches stays on
+;;; top; below it the picture scrolls.
 
 (defconstant +plan-head+ 23 "How high the row of switches is, in pixels.")
 
@@ -51,7 +51,7 @@
   (let* ((look (plan-look-of pane))
          (view (plan-look-view look))
          (traced-p (plan-look-traced-p look)))
-    (list (make-switch "Tree" "Show what the tasks of the plans are at, and wait for"
+    (list (make-switch "Tree" "Show what the tasks of the plans do and wait for"
                        (lambda () (show-plans-as pane :tree)) (eq view :tree))
           (make-switch "Timeline" "Show what the tasks have done, over ticks"
                        (lambda () (show-plans-as pane :timeline)) (eq view :timeline))
@@ -72,7 +72,7 @@
     (when robot
       (draw-glyphs canvas draw-gcontext* (+ x 4) 15 (format nil "of ~(~A~)" robot)))))
 
-;;; Where there is nothing to be seen, how that can be changed.
+;;; If there is nothing to show, it says how to change that.
 
 (defun say-lines (canvas y &rest lines)
   "Write LINES from Y down: strings, and switches. Return where they end."
@@ -95,7 +95,7 @@
 
 (defun say-no-plan (canvas pane)
   (let ((interface (interface-of (plan-look-simulation (plan-look-of pane)))))
-    ;; Plans may be under way that have not been looked at yet.
+    ;; There may be running plans that have not been looked at yet.
     (if (and interface (plan-runner-tasks (interface-runner interface)))
         (say-text canvas pane +plan-head+ "Looking at the plans ...")
         (let ((y (say-text canvas pane +plan-head+
@@ -152,9 +152,8 @@
 
 ;;;; The mouse
 
-;;; A click on a task of the tree, or on the name of one beside the timeline, tells of it; one on
-;;; the timeline itself takes the run back to that moment. The right button offers lines of the
-;;; prompt.
+;;; A click on a task of the tree, or on its name beside the timeline, shows details; a click on the
+;;; timeline itself rewinds the run to that tick. The right button offers lines of the prompt.
 
 (defstruct (plan-moment (:constructor make-plan-moment (tick bar)) (:copier nil))
   "The TICK of a timeline, and the BAR or text that is drawn there, or NIL."

@@ -1,4 +1,4 @@
-;;;; pointing.lisp -- the mouse: hovering tells, a click picks, the right button offers.
+;;;; pointing.lisp -- the mouse: hovering describes, a click selects, the right button opens a menu.
 
 (in-package :ars-magna.clim)
 
@@ -9,24 +9,23 @@
   (repaint-if-changed (pane-named window 'strip)))
 
 (defun point-at-place (pane x y)
-  "Note that the mouse rests at X, Y of PANE, and let the status strip tell of what is there."
+  "Note that the mouse rests at X, Y of PANE, and show in the status strip what is there."
   (let ((text (hover-text pane x y)))
     (setf (window-pointed (window-of pane)) (list pane x y text))
     (hint (window-of pane) text)))
 
 (defmethod hover ((pane display-pane) x y) (point-at-place pane x y))
 
-;; Where the strip says something else meanwhile, that stays until the mouse moves.
+;; If the strip shows something else meanwhile, that stays until the mouse moves.
 (defun point-again (pane)
-  "PANE was painted: if the strip tells of what lies under the mouse there, let it tell of what does
-now."
+  "PANE was painted: if the strip describes what is under the mouse there, update it."
   (let ((window (window-of pane)))
     (destructuring-bind (&optional pointed x y text) (window-pointed window)
       (when (and (eq pane pointed) (eq text (window-hint window)))
         (point-at-place pane x y)))))
 
 (defun point-nowhere (window)
-  "Let the strip of WINDOW tell of nothing, as the mouse is nowhere, or what was there has moved."
+  "Clear the strip of WINDOW, as the mouse has left or what was there has moved."
   (setf (window-pointed window) nil
         (window-hint window) ""))
 
@@ -98,8 +97,8 @@ or was being dragged, has gone."
       (offer pane (picked-first (window-of pane) (subjects-under pane x y)) x y)
       (pick-next pane x y)))
 
-;;; In the display of designators, the right button scrolls up and the left one down where there is
-;;; more than fits (manual B); then the middle one offers. As readings 26 and 28 say.
+;;; In the display of designators, the right button scrolls up and the left one down if they do not
+;;; all fit (manual B); then the middle one opens the menu. Readings 26 and 28.
 
 (defclass designators-pane (detail-pane) ())
 
@@ -155,11 +154,11 @@ OPENER had opened.")
     (setf (pane-drag pane) nil)
     (point-at-mouse (window-of pane))))
 
-;; While something is dragged, the strip tells of that, wherever the mouse is.
+;; During dragging, the strip describes that, wherever the mouse is.
 (defun dragging-pane (window)
   (find-if #'pane-drag (display-panes window)))
 
-;; What comes up under the mouse, or goes from there, makes events of a mouse that rests.
+;; Panels that open or close under the mouse make events of a mouse that rests.
 (defun note-mouse (pane event)
   "Note where in the window of PANE the mouse is, by EVENT. True if it was elsewhere before."
   (let* ((window (window-of pane))
@@ -186,7 +185,7 @@ OPENER had opened.")
     (point-nowhere (window-of pane))
     (repaint-if-changed (pane-named (window-of pane) 'strip))))
 
-;;; A turn of the wheel is an event of a button, too, but no press of it.
+;;; A turn of the wheel is a button event, too, but not a press.
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-event))
   (let ((steps (position (clim:pointer-event-button event)
                          (list clim:+pointer-wheel-up+ nil clim:+pointer-wheel-down+))))
@@ -195,8 +194,8 @@ OPENER had opened.")
 
 ;;; What is shown of the robot's parts.
 
-;;; What is drawn there is not where it lies, so it cannot be dragged. Who tries to is told what to
-;;; do instead. (PANE-DRAG PANE) is (thing from-x from-y moved-p).
+;;; What is drawn there is not where it lies, so it cannot be dragged. If you try, the strip says
+;;; what to do instead. (PANE-DRAG PANE) is (thing from-x from-y moved-p).
 
 (defun instead-of-dragging (image window)
   "Return in words why the thing of IMAGE cannot be dragged out of a display of WINDOW."

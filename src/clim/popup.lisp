@@ -2,12 +2,12 @@
 
 (in-package :ars-magna.clim)
 
-;;; A window has one, shown or not. It is a pane above the others, so nothing waits for it: the
-;;; world goes on behind it. It is painted again whenever a pane below it is.
+;;; A window has one popup, shown or not. It is a pane above the others, so nothing waits for it and
+;;; the world continues behind it. It is painted again whenever a pane below it is.
 
 (defstruct (row (:constructor make-row (text &key action tick stays-p)) (:copier nil))
-  "ACTION, a function of no arguments or NIL, is what a click on the row TEXT does; the popup goes
-away then unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cannot be."
+  "A click on the row TEXT calls ACTION, a function of no arguments or NIL, and closes the popup
+unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cannot be."
   (text "" :type string :read-only t)
   (action nil :type (or null function) :read-only t)
   (tick nil :type (or null function) :read-only t)
@@ -21,7 +21,7 @@ away then unless STAYS-P. TICK, a function, says whether the row is ticked; NIL 
    (pointed :initform nil :accessor pane-pointed)
    ;; The command or menu that has opened it, or T.
    (opener :initform t :accessor pane-opener)
-   ;; When the click came that has put these rows in the place of others, in milliseconds, or NIL.
+   ;; The time of the click that has replaced the rows, in milliseconds, or NIL.
    (turned :initform nil :accessor pane-turned))
   (:default-initargs :background clim:+gray97+)
   (:documentation "A list of rows on top of the window."))
@@ -132,8 +132,8 @@ so, a symbol, or the menu, or T."
   (setf (pane-pointed pane) (row-at pane y))
   (repaint-if-changed pane))
 
-;;; A click on a row may put other rows in the place of these. Who clicks twice, as elsewhere, has
-;;; not seen those yet.
+;;; A click on a row may replace the rows. The second click of a double click is not meant for
+;;; these.
 
 (defconstant +double-click+ 500 "Within how many milliseconds two clicks are one deed.")
 
@@ -154,7 +154,7 @@ so, a symbol, or the menu, or T."
     "  drag a thing        while time stands still: put it elsewhere"
     "  titles, splitters   fold displays, make them larger"
     "  designators         where they do not fit: left scrolls down, right up, middle offers")
-  "What the help panel says of the mouse.")
+  "The lines of the help panel on the mouse.")
 
 (defun help-rows ()
   (mapcar #'make-row
@@ -176,7 +176,7 @@ so, a symbol, or the menu, or T."
     (repaint-if-changed (pane-named window 'world))))
 
 (defun layer-text (layer)
-  "Return what the panel calls LAYER, with the words for it in lines of the prompt."
+  "Return the name of LAYER in the panel, with the words for it in lines of the prompt."
   (let ((title (layer-title layer)) (words (layer-words layer)))
     (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
 

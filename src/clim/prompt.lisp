@@ -1,12 +1,11 @@
-;;;; prompt.lisp -- each window has a prompt of its own, which is that of the terminal.
+;;;; prompt.lisp -- each window has a prompt of its own, the same as the terminal's.
 
 (in-package :ars-magna.clim)
 
-;;; The prompt runs in a thread, so that a line that takes long does not keep the window from
-;;; painting. The window hands over the keys that are pressed, as a terminal does; the prompt's own
-;;; editor makes lines of them. What is written goes to the transcript, and the line that is being
-;;; typed is shown by the interactor. So history, Tab, control C, the debugger and questions are
-;;; what they are at the terminal.
+;;; The prompt runs in a thread, so that the window paints during a long line. The window passes on
+;;; the keys that are pressed, as a terminal does; the prompt's editor makes lines of them. Output
+;;; goes to the transcript, and the interactor shows the line being typed. So history, Tab,
+;;; Control-C, the debugger and questions work as at the terminal.
 
 (defclass window-console (ars-magna.cli:console)
   ((transcript :initarg :transcript :reader console-transcript)
@@ -48,7 +47,7 @@ being typed."))
 (defmethod ars-magna.cli:tell-asking ((console window-console))
   (tell-news console))
 
-;; The transcript breaks its lines itself, anew whenever its width changes.
+;; The transcript breaks its lines itself, again whenever its width changes.
 (defmethod ars-magna.cli:fitted (text (console window-console) &optional label)
   (declare (ignore label))
   text)
@@ -99,7 +98,7 @@ this thread."
         (start-thread (lambda () (converse conversation simulation robot-name))
                       (format nil "prompt of ~A's window" robot-name))))
 
-;; The window does this, not the thread that ends: when Lisp ends all threads, none may begin.
+;; The window does this, not the thread that ends: when Lisp ends all threads, no new one may begin.
 (defun restart-if-lost (conversation simulation robot-name)
   "If the thread of the prompt was ended, as a line or a program may do to any, begin anew."
   (when (conversation-lost-p conversation)
@@ -122,7 +121,7 @@ this thread."
   (say-in conversation "~A: first say how what has broken goes on, by one of ~A.~%"
           what (ars-magna.cli:ways-awaited (conversation-session conversation))))
 
-;; Where a break is answered, what is no answer would be taken for a wrong one.
+;; While a break waits for an answer, other lines would be taken for a wrong answer.
 (defun answered-first-p (conversation line)
   "True if the prompt waits for an answer that LINE is not; then that is said."
   (when (and (ars-magna.cli:ways-awaited (conversation-session conversation))

@@ -1,11 +1,10 @@
-;;;; transcript-pane.lisp -- the transcript as it is seen: broken into rows, scrolled, selected.
+;;;; transcript-pane.lisp -- the transcript on the screen: broken into rows, scrolled, selected.
 
 (in-package :ars-magna.clim)
 
-;;; The end of the text is in view, unless the user has scrolled up: then what is in view stays, as
-;;; long as it is kept and until a line is entered.
-;;; Dragging selects; what is selected can be pasted by the middle button of the mouse, here and in
-;;; other programs, and copied.
+;;; It shows the end of the text unless the user has scrolled up. Then the view stays, as long as
+;;; its lines are kept and until a line is entered. Dragging selects. The middle button pastes the
+;;; selection, here and in other programs; it can also be copied.
 
 (defclass transcript-pane (display-pane)
   (;; The number of the line that the user has scrolled to, or NIL for the newest, and how many
@@ -65,8 +64,8 @@ the line."
             when (<= rows above) return number))))
 
 (defun kept-in-view (pane last)
-  "Return the number of the line that PANE ends with if it is to end with the line LAST, or NIL if
-that is the newest: no line that is no longer kept, and a whole page of them."
+  "Return the number of the last line that PANE shows if LAST is wanted there, or NIL for the
+newest: no line that is no longer kept, and a whole page of them."
   (let ((oldest (last-of-first-page pane)))
     (and oldest
          (< last (transcript-newest (pane-transcript pane)))

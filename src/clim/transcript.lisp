@@ -1,9 +1,9 @@
-;;;; transcript.lisp -- what a window has said, also of what goes wrong in it.
+;;;; transcript.lisp -- the messages of a window, also of errors in it.
 
 (in-package :ars-magna.clim)
 
-;;; The thread of a window handles its mouse and its keys: were it to wait in a debugger, nobody
-;;; could answer that there.
+;;; The thread of a window handles its mouse and its keys. If it waited in a debugger, nobody could
+;;; answer there.
 
 (defun refuse-debugger (condition hook)
   "Signal MISUSE, as CONDITION calls for a debugger in the thread of a window."
@@ -28,8 +28,8 @@
 
 ;;;; The transcript
 
-;;; Any thread may say something; lines are kept newest first, the last few thousand of them. Each
-;;; has a number, counted from the first there was. Lines have colours in them as at a terminal.
+;;; Any thread may add lines; they are kept newest first, the last few thousand of them. Each has a
+;;; number, counted from the first there was. Lines have colours in them as at a terminal.
 
 (defconstant +transcript-length+ 2000 "How many lines of a transcript are kept.")
 (defconstant +longest-line+ 4000 "How many characters a line has at most; what goes on is another.")
@@ -42,7 +42,7 @@
   (count 1 :type fixnum)
   ;; The number of the newest line.
   (newest 0 :type fixnum)
-  ;; How often something has been said, to know whether there is more.
+  ;; How many messages there have been, to see whether there are new ones.
   (total 0 :type fixnum)
   ;; How many lines the user has entered.
   (entered 0 :type fixnum))

@@ -1,18 +1,18 @@
-;;;; watcher.lisp -- how time goes in a run, and a snapshot of it, at no cost to its ticks.
+;;;; watcher.lisp -- the state of time in a run, and snapshots of it, at no cost to its ticks.
 
 (in-package :ars-magna.clim)
 
 (defstruct (progress (:copier nil))
-  "How time goes. STATE is a word, MORE a text that goes on from it or NIL; RATE as set, a number or
-:FREE, or NIL; REACHED in ticks a second, or NIL if that is not known."
+  "The state of time in a run. STATE is a word, MORE a text that continues it or NIL; RATE as set, a
+number or :FREE, or NIL; REACHED in ticks a second, or NIL if that is not known."
   (state :still :type symbol :read-only t)
   (more nil :type (or null string) :read-only t)
   (rate nil :read-only t)
   (reached nil :type (or null real) :read-only t))
 
 (defstruct (pulse (:copier nil))
-  "What was seen of a run before: the tick at the last look and how many calls of users' code there
-had been; the tick and second from which on the rate is being measured, and that rate."
+  "The last look at a run: its tick and the number of calls of user code then; the tick and second
+at which measuring the rate began, and that rate."
   (last-tick 0 :type fixnum)
   (calls nil :type (or null fixnum))
   (tick 0 :type fixnum)
@@ -118,13 +118,13 @@ had been; the tick and second from which on the rate is being measured, and that
 
 ;;;; Snapshots
 
-;;; Three threads meet here. The one that runs the ticks calls the observer, which makes a snapshot
-;;; if one is wanted and else only notes that the last one is stale. The one that paints is told
-;;; of each snapshot, and says when it has PAINTED. The pacer, in between, wants the next snapshot
-;;; a while after that: so a picture is painted at most 30 times a second, however fast the ticks
-;;; pass, and never when nothing happens. What is changed between ticks (a robot put somewhere, a
-;;; thing moved at the prompt) calls no observer, nor does a run that pauses; the pacer looks for
-;;; such things twice a second.
+;;; Three threads meet here. The thread that runs the ticks calls the observer, which makes a
+;;; snapshot if one is wanted and otherwise notes that the last one is stale. The thread that paints
+;;; is notified of each snapshot, and reports when it has PAINTED. The pacer, in between, requests
+;;; the next snapshot a while after that. So the window paints at most 30 times a second, however
+;;; fast the ticks pass, and never when nothing happens. Changes between ticks (a robot put
+;;; somewhere, a thing moved at the prompt) call no observer, nor does a run that pauses; the pacer
+;;; looks for such changes twice a second.
 
 (defconstant +pause+ 0.028
   "How long to wait after painting before wanting the next picture, in seconds.")
@@ -138,7 +138,7 @@ is watched has been over for a while."
   (robot nil :type symbol)
   (news nil :type function :read-only t)
   (gone nil :type function :read-only t)
-  ;; The run was over when somebody looked last.
+  ;; The run was over at the last look.
   (over-before-p nil)
   (simulation nil)
   (observer nil)
@@ -199,7 +199,7 @@ itself: it will come with the next tick."
       (setf (watcher-wanted-p watcher) t)
       (fetch watcher))))
 
-;; What is started anew is over for a moment.
+;; A run that is being started again is over for a moment.
 (defun look-whether-over (watcher)
   "Tell of it if the run that WATCHER watches is over, and was so when it was looked for before."
   (let* ((simulation (watcher-simulation watcher))
@@ -212,7 +212,7 @@ itself: it will come with the next tick."
   "Find out how time goes in what WATCHER watches; tell if that has changed."
   (let ((simulation (watcher-simulation watcher)))
     (when simulation
-      ;; The run goes on meanwhile, and a look may come just when something is half done.
+      ;; The run continues meanwhile, and a look may come when something is half done.
       (let ((new (or (ignore-errors (progress-of simulation (watcher-pulse watcher)))
                      (watcher-progress watcher))))
         (unless (equalp new (watcher-progress watcher))
@@ -255,7 +255,7 @@ itself: it will come with the next tick."
   (when simulation
     (asking (simulation) (remove-observer observer simulation))))
 
-;; Other threads read what WATCHER watches: between two runs there is no moment without one.
+;; Other threads read the watched run of WATCHER: between two runs there must always be one.
 (defun watch-simulation (watcher simulation)
   "Let WATCHER watch SIMULATION, from now on and instead of what it watches. Return WATCHER."
   (let ((old (watcher-simulation watcher)) (observer (watcher-observer watcher)))
@@ -303,7 +303,7 @@ itself: it will come with the next tick."
   (direct-look (watcher-plans watcher) nil)
   (leave-simulation (shiftf (watcher-simulation watcher) nil) (watcher-observer watcher))
   (let ((pacer (watcher-pacer watcher)))
-    ;; When Lisp exits, the pacer may have been ended before.
+    ;; When Lisp exits, the pacer may have ended before.
     (when (and pacer (not (eq pacer (current-thread))))
       (join-thread pacer)))
   (values))

@@ -1,9 +1,9 @@
-;;;; window.lisp -- the window: its parts, where they are, and how they are kept up to date.
+;;;; window.lisp -- the window: its parts, where they are, and how they are updated.
 
 (in-package :ars-magna.clim)
 
 ;;; A new snapshot, or a new line of the transcript, queues one event, however many come before it
-;;; is handled; handling it paints the panes that have changed, as one picture. Everything in the
+;;; is handled. Handling it paints the panes that have changed, as one picture. Everything in the
 ;;; window happens in its own thread.
 
 (defparameter *parts*
@@ -23,30 +23,30 @@
 
 (clim:define-application-frame robot-window ()
   ((watcher :initarg :watcher :accessor window-watcher)
-   ;; Which layers its display of the world shows.
+   ;; The layers of its display of the world.
    (layers :initarg :layers :initform *picture-layers* :accessor window-layers)
    (color-p :initarg :color-p :initform t :accessor window-color-p)
-   ;; How many of the screen's pixels one of its own is across, if its user wants nothing else.
+   ;; How many screen pixels wide one of its own is, unless its user chooses.
    (usual-magnification :initarg :usual-magnification :initform 1
                         :reader window-usual-magnification)
-   ;; How the user wants its parts to be arranged.
+   ;; The user's preferences for the arrangement.
    (wishes :initform (make-wishes) :accessor window-wishes)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
    ;; The names of the robots that it has shown.
    (robots-shown :initform '() :accessor window-robots-shown)
-   ;; The run that is over, of which that has been said.
+   ;; The run that is over, if this has been reported.
    (known-over :initform nil :accessor window-known-over)
    ;; For how many columns and rows its transcript has room.
    (text-size :initform '(80 24) :accessor window-text-size)
-   ;; What the mouse points at, as text; the key of what is picked, or NIL.
+   ;; What the mouse is on, as text; the key of the selection, or NIL.
    (hint :initform "" :accessor window-hint)
    (selection :initform nil :accessor window-selection)
-   ;; Where the mouse rests, as (pane x y text): what was told of that; or NIL.
+   ;; Where the mouse rests, as (pane x y text), with the text shown; or NIL.
    (pointed :initform nil :accessor window-pointed)
-   ;; Where in the window the mouse was last, in pixels of the screen, as (x y); NIL at first.
+   ;; Where in the window the mouse was last, in screen pixels, as (x y); NIL at first.
    (mouse :initform nil :accessor window-mouse)
-   ;; The pane that has the keys whenever the window has them, or NIL before there is one.
+   ;; The pane that has the keys while the window has the focus, or NIL before there is one.
    (focus :initform nil :accessor window-focus)
    ;; True if a line was begun by a key that came to a display.
    (typing-p :initform nil :accessor window-typing-p)
@@ -54,7 +54,7 @@
    (panes-found :initform (make-hash-table :test 'eq) :reader window-panes)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
-   ;; True if what is on the screen may be gone: all is to be painted, changed or not.
+   ;; True if the screen may have been erased: everything must be painted, changed or not.
    (torn-p :initform nil :accessor window-torn-p)
    (painted :initform nil :accessor window-painted)
    (thread :initform nil :accessor window-thread))
@@ -168,7 +168,7 @@ nothing."
   (setf (window-torn-p window) t)
   (request-refresh window))
 
-;;; CLIM's loop reads commands, of which none come: all that happens are events.
+;;; CLIM's loop reads commands, but there are none: everything is an event.
 
 (defmethod clim:read-frame-command ((window robot-window) &key stream)
   (declare (ignore stream))

@@ -2,10 +2,9 @@
 
 (in-package :ars-magna.clim)
 
-;;; The wheel zooms. The left button picks what is clicked, moves the view if dragged, and, while
-;;; time stands still, drags a thing or a robot to another place: a ghost shows where it would be,
-;;; and what is given to the prompt then is what a user would type. (PANE-DRAG PANE) is (subject
-;;; from-x from-y moved-p).
+;;; The wheel zooms. The left button selects by a click and moves the view by dragging. While time
+;;; stands still, it drags things and robots to another place: a ghost shows where, and the prompt
+;;; then gets the line that a user would type. (PANE-DRAG PANE) is (subject from-x from-y moved-p).
 
 (defmethod wheel ((pane world-pane) steps x y)
   (zoom pane (expt 2 (- (signum steps))) x y))

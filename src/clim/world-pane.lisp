@@ -1,9 +1,9 @@
-;;;; world-pane.lisp -- the bird's eye view in the window: which part is in view, and how large.
+;;;; world-pane.lisp -- the world from above in the window: the view and its scale.
 
 (in-package :ars-magna.clim)
 
-;;; The view fits the whole map, on opening and whenever the pane or the map changes, until the user
-;;; zooms or moves it, or sets GRAPHICS-SCALE*. LEFT and TOP are the pixels of the whole picture
+;;; The view fits the whole map at first, and again whenever the pane or the map changes, until the
+;;; user zooms or moves it or sets GRAPHICS-SCALE*. LEFT and TOP are the pixels of the whole picture
 ;;; that lie left of and above the pane.
 
 (defclass view ()
@@ -12,7 +12,7 @@
    ;; Pixels to a cell.
    (scale :initform 8 :accessor pane-scale)
    (fitting-p :initform t :accessor pane-fitting-p)
-   ;; The pane's size and the map that the view was fitted to; what GRAPHICS-SCALE* was then.
+   ;; The pane's size and the map that the view was fitted to; GRAPHICS-SCALE* then.
    (fitted :initform nil :accessor pane-fitted)
    (scale-seen :initform graphics-scale* :accessor pane-scale-seen)
    (following-p :initform nil :accessor pane-following-p))
@@ -55,7 +55,7 @@
   "What the strip says when there is nothing to follow.")
 
 (defun fit-no-longer (pane)
-  "Let the view of PANE be what the user makes of it; the strip says no longer that it fits."
+  "Note that the user has changed the view of PANE; the strip no longer says that it fits."
   (setf (pane-fitting-p pane) nil)
   (when (equal *all-in-view* (window-hint (window-of pane)))
     (setf (window-hint (window-of pane)) "")
@@ -150,8 +150,8 @@
 
 ;;;; The pane
 
-;;; The terrain in view is kept in a pixmap and painted anew only when the view, the map or the
-;;; colours change; the movers are painted over a copy of it.
+;;; The terrain in view is kept in a pixmap and painted again only when the view, the map or the
+;;; colours change; moving things are painted over a copy of it.
 
 (defclass world-pane (view display-pane)
   ((terrain :initform nil :accessor pane-terrain)

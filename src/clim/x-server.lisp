@@ -1,13 +1,13 @@
-;;;; x-server.lisp -- the X server: reaching it, what goes wrong with it, and what ends windows.
+;;;; x-server.lisp -- the X server: connecting, its errors, and which of them close windows.
 
 (in-package :ars-magna.clim)
 
-;;; CLIM has one thread that reads the events of all windows. When the X server goes, that thread is
-;;; the first to know; it must not take Lisp along. But not all errors there mean that: CLIM asks
-;;; the server about windows that have just been closed, and other programs may send events that
-;;; make no sense. These events are dropped, and all windows stay.
+;;; CLIM has one thread that reads the events of all windows. It is the first to see that the X
+;;; server has gone, and must not end Lisp then. But not all errors there mean that: CLIM asks the
+;;; server about windows that have just been closed, and other programs may send invalid events.
+;;; These events are dropped, and all windows stay.
 
-;;; What users set for all programs on a screen, a fine one above all.
+;;; Settings that users make for all programs on a screen, such as its resolution.
 
 (defun resolution-in (resources)
   "Return the number of Xft.dpi in RESOURCES, the lines that xrdb keeps on an X server, or NIL."
@@ -52,7 +52,7 @@ reads its events."
            (clim:frame-exit window))
           ((event-called-p "WINDOW-MAP-EVENT" event) (request-repaint window)))))
 
-;; McCLIM would take the window off the screen itself then, after the manager has put it there.
+;; McCLIM would now take the window off the screen, after the manager has put it there.
 (defmethod clim:handle-event :around ((sheet clime:top-level-sheet-mixin)
                                       (event clim:window-event))
   (unless (and (robot-window-of sheet) (event-called-p "WINDOW-UNMAP-EVENT" event))
@@ -63,31 +63,31 @@ reads its events."
   (when (eql 0 (search "Received CLX" (princ-to-string condition)))
     (muffle-warning condition)))
 
-;; CLX keeps an event that led to an error, and would come to it again.
+;; CLX keeps an event that led to an error, and would process it again.
 (defgeneric drop-event (port)
   (:documentation "Forget the event that PORT is reading.")
   (:method ((port clim:basic-port)))
   (:method ((port clim-clx:clx-port))
     (xlib:discard-current-event (clim-clx:clx-port-display port))))
 
-;; McCLIM warns of what the server could not do at once, such as to give keys to a window that is
-;; just being hidden. That is nobody's fault, and nothing for the terminal.
+;; McCLIM warns of what the server could not do at once, such as giving the focus to a window that
+;; is just being hidden. That is harmless and not shown at the terminal.
 (defun call-dropping-trouble (port function)
   "Call FUNCTION, which reads an event of PORT; if that makes trouble, drop it, or lose PORT."
   (handler-bind ((warning #'muffle-warning)
                  (error (lambda (condition)
-                          ;; What comes of one event says nothing of the connection.
+                          ;; An error from one event does not mean that the connection is lost.
                           (cond ((typep condition '(or xlib:request-error xlib:lookup-error
                                                     type-error))
                                  (drop-event port)
-                                 ;; It may have been the word that something is to be painted.
+                                 ;; The event may have requested painting.
                                  (mapc #'request-repaint (windows-on port))
                                  (return-from call-dropping-trouble t))
                                 (t (lose-port port))))))
     (funcall function)))
 
-;;; The user may end that thread, as any of Lisp's. Then windows would hear of nothing any more; one
-;;; of them starts another. (That is not for the thread that ends: Lisp may be ending all.)
+;;; The user may end that thread, as any of Lisp's. Then windows would get no events; one of them
+;;; starts another. (The thread that ends cannot do it: Lisp may be ending all.)
 
 (defvar *unread-ports* '()
   "The ports whose events nobody reads any more, though windows are there.")
@@ -110,7 +110,7 @@ reads its events."
                       (setf ended-p nil))
       (when ended-p (note-unread port)))))
 
-;;; Connecting, and what is said if that fails.
+;;; Connecting, and the message if that fails.
 
 ;;; If the X server cannot be reached, another value of DISPLAY may help. If it answers and a
 ;;; library fails then, only another library does.
@@ -158,13 +158,13 @@ is at fault if CLX-FAILS-P."
   (handler-case (clim:find-port)
     (error (condition) (reject-use "~A" (words-for-no-port condition)))))
 
-;;; Waiting for what the X server says, in several threads of one connection.
+;;; Waiting for the X server's answers in several threads of one connection.
 
-;;; A thread that waits for an answer of the X server, or for an event, first looks whether that has
-;;; come. Then CLX lets it read, as the only thread, and wait until there is something. What came in
-;;; between was read by the thread that had its turn before; then the new reader would wait for the
-;;; next event, perhaps for ever: the picture would stand still until the mouse is moved. So it is
-;;; made to look once more, now that nobody else reads.
+;;; A thread that waits for an answer or an event of the X server first checks whether it has come.
+;;; Then CLX lets it read, as the only thread, and wait until there is something. In between, the
+;;; thread that read before may have read its event. Then the new reader would wait for the next
+;;; event, perhaps for ever, and the picture would stand still until the mouse moves. So it checks
+;;; once more when no other thread reads.
 
 (defvar *come-p* (constantly nil)
   "A function that says whether what the X server is read for, in this thread, has come.")
