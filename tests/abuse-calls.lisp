@@ -1,8 +1,8 @@
-;;;; abuse-calls.lisp -- commands and functions that are called with what they do not expect.
+;;;; abuse-calls.lisp -- commands and functions called with wrong arguments.
 
 (in-package :ars-magna.tests)
 
-;;; In an example :SENSIBLE stands for an argument that makes sense, chosen where it is tried.
+;;; In an example :SENSIBLE stands for a valid argument, which is chosen when the example is tried.
 
 (defun run-about ()
   "Let a dozen ticks pass; the world must not contradict itself."

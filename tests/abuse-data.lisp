@@ -1,8 +1,8 @@
-;;;; abuse-data.lisp -- journals, caches and lines of the prompt that are not as they should be.
+;;;; abuse-data.lisp -- damaged journals, caches and lines of the prompt.
 
 (in-package :ars-magna.tests)
 
-;;; Journals. All but the end is damaged: that a run idles for long is no abuse.
+;;; Journals. Anything but the end is damaged: a long idle run is not an error.
 
 (defvar *abused-journal* nil "The data of a journal, once recorded.")
 

@@ -1,8 +1,8 @@
-;;;; abuse-definers.lisp -- definitions that are not as they should be.
+;;;; abuse-definers.lisp -- damaged definitions.
 
 (in-package :ars-magna.tests)
 
-;;; Each form is good before it is damaged. What is accepted all the same has to work: it is used
+;;; Each form is valid before it is damaged. A damaged form that is accepted must work: it is used
 ;;; for some ticks, and the world must not contradict itself.
 
 (defun find-contradictions (world)

@@ -1,21 +1,21 @@
-;;;; abuse-outcomes.lisp -- what becomes of abuse: who tries it, and how it ends.
+;;;; abuse-outcomes.lisp -- who tries an example of abuse, and how it can end.
 
 (in-package :ars-magna.tests)
 
-;;; A kind of abuse makes, by the roll of dice, something that is not as it should be, and tries it.
-;;; Each try ends in one of these ways, the bad ones last:
-;;;   :fine      it was done, and nobody minded
-;;;   :warned    it was done, and somebody was told
-;;;   :refused   one of our conditions says what is wrong, in few words
-;;;   :typed     Lisp says that something is not of a type of ours (a reader was given another
-;;;              thing), or that arguments by keyword are no pairs
-;;;   :foreign   something signalled that is no condition of ours
-;;;   :disguised one of our conditions says no more than what Lisp says of its own insides
-;;;   :wordy     one of our conditions takes thousands of characters
-;;;   :wrong     it was done, and the world contradicts itself
-;;;   :crashed   stack or heap did not suffice
-;;;   :hung      it took longer than the watchdog waits, if there is one
-;;;   :executed  data have been executed
+;;; Each kind of abuse makes random wrong input and tries it. A try has one of these outcomes, the
+;;; bad ones last:
+;;;   :fine      accepted, without a message
+;;;   :warned    accepted, with a warning
+;;;   :refused   one of our conditions, with a short message
+;;;   :typed     a type error of Lisp's about a type of ours (a reader got another object), or
+;;;              keyword arguments that are not in pairs
+;;;   :foreign   a condition that is not ours
+;;;   :disguised one of our conditions that only repeats an internal message of Lisp's
+;;;   :wordy     one of our conditions, with thousands of characters
+;;;   :wrong     accepted, and the world contradicts itself
+;;;   :crashed   the stack or heap was exhausted
+;;;   :hung      it took longer than the watchdog's limit, if there is one
+;;;   :executed  data were executed as code
 
 (defparameter *bad-outcomes*
   '(:foreign :disguised :wordy :wrong :crashed :hung :executed))

@@ -1,10 +1,10 @@
-;;;; abuse.lisp -- nothing that users or files say breaks the simulator, or makes data run.
+;;;; abuse.lisp -- wrong input by users and files neither breaks the simulator nor runs as code.
 
 (in-package :ars-magna.tests)
 
 (def-suite* abuse :in ars-magna)
 
-;;; The same some dozens of each kind in each run; tests/benchmarks has the same for any number.
+;;; Each run tries the same few dozens of each kind; tests/benchmarks/abuse.lisp tries any number.
 
 (test abuse.begins-with-what-makes-sense
   "Else nothing would be learnt from its damage."

@@ -1,4 +1,4 @@
-;;;; agreement-making.lisp -- random scripts: worlds, robots, deeds.
+;;;; agreement-making.lisp -- random scripts: worlds, robots, actions.
 
 (in-package :ars-magna.tests)
 (in-suite agreement)

@@ -1,18 +1,18 @@
-;;;; agreement-scripts.lisp -- what a run is asked, and when, as data that any run can be given.
+;;;; agreement-scripts.lisp -- random scripts: what is asked of a run and when, as data.
 
 (in-package :ars-magna.tests)
 
 (def-suite* agreement :in ars-magna)
 
-;;; A script says which world and robots there are, and lists deeds: what is done between ticks, and
-;;; what an observer does inside of them. It names things, parts and designators by where they stand
-;;; among those that are there: runs in the same state do the same. Nothing outside of a run counts.
+;;; A script has a world, robots and a list of actions: requests between ticks, and what an observer
+;;; does inside of ticks. It refers to things, parts and designators by their index among those that
+;;; exist, so runs in the same state do the same. Nothing outside of a run has an effect.
 
 (defstruct script
-  "What a run is asked: CLAUSES of a map of WIDTH and HEIGHT, ROBOTS as DEFINE-ROBOT takes them,
+  "The requests to a run: CLAUSES of a map of WIDTH and HEIGHT, ROBOTS as DEFINE-ROBOT takes them,
 and STEPS, (tick :between deed) or (tick :observer deed). At the tick AT the run is forked, saved
-and gone back to: if LATE-P, when what is to be done between ticks has been done. KEEP is how many
-forks it keeps, STRIDE how many ticks pass at once."
+and rewound to; if LATE-P, after the steps between ticks. KEEP is the number of forks kept, STRIDE
+the number of ticks passed at once."
   (seed 0) (width 12) (height 12) (clauses '()) (robots '()) (thinking :free)
   (keep 2) (stride 1) (ticks 0) (at 0) (late-p nil) (steps '()))
 
@@ -146,9 +146,8 @@ forks it keeps, STRIDE how many ticks pass at once."
 (define-deed parameter (symbol value) (setf (symbol-value symbol) value))
 (define-deed thinking (mode) (run:set-thinking mode))
 
-;;; Events. Those that look at what they have closed over have the robots and things of one run. No
-;;; two share a variable: where a run is repeated, each has the variables that it saw when the tick
-;;; began that took it, and copies of its own.
+;;; Events. Closures refer to the robots and things of one run. No two events share a variable: in a
+;;; repeated run, each has its own copies of the variables, as they were when its tick began.
 
 (define-deed kick-later (thing timer dx dy)
   (time:schedule (nil :timer timer) (world:kick-thing thing dx dy nil)))

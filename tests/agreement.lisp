@@ -1,11 +1,12 @@
-;;;; agreement.lisp -- forked, rewound, saved or replayed, a run goes the same way.
+;;;; agreement.lisp -- a run that is forked, rewound, saved or replayed goes on the same way.
 
 (in-package :ars-magna.tests)
 (in-suite agreement)
 
-;;; A run of a random script is forked and saved at a tick, goes to its end, is rewound to that tick
-;;; and goes on again, and its journal is replayed; another run of the script keeps neither journal
-;;; nor forks. All are asked the same, and must come to the same digests and the same journal.
+;;; A run of a random script is forked and saved at a tick, and continues to its end. Then it is
+;;; rewound to that tick and continues again, and its journal is replayed. Another run of the script
+;;; has neither journal nor forks. All get the same requests, and must have the same digests and the
+;;; same journal.
 
 (defun define-accord-world (script)
   "Define map and robots of SCRIPT. Return the robots' names."
@@ -17,8 +18,8 @@
           collect name)))
 
 ;;; A moment is (tick digest digest-with-plans messages). How much of it must agree depends on the
-;;; way: who loads a run has no plans of it, and is warned anew; who acts in the place of a
-;;; continuation is warned otherwise.
+;;; way of repeating. A loaded run has no plans, and gives its warnings again. Where observers act
+;;; in place of continuations, the warnings differ.
 
 (defun accord-moment ()
   (list (tick-of-run) (run:state-digest) (run:state-digest time:*simulation* t)
@@ -94,8 +95,8 @@ MOMENTS and ENTRIES: a list of lists (way what where)."
 (defstruct record moments entries answers journal)
 
 (defun told-here (record)
-  "Return what observers are to do where continuations of commands under way are not called: all
-that any did since, as things must come in order; NIL if there was no such continuation."
+  "Return the actions for observers where continuations of commands in progress are not called: all
+actions since then, because order matters; NIL if there was no such continuation."
   (let* ((at (script-at *script*))
          (since (remove-if-not (lambda (answer) (> (first answer) at)) (record-answers record))))
     (and (some (lambda (answer) (<= (second answer) at)) since)

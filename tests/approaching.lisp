@@ -1,12 +1,12 @@
-;;;; approaching.lisp -- thousands of approaches in rooms made at random, which must all arrive.
+;;;; approaching.lisp -- thousands of approaches in random rooms, all of which must arrive.
 
 (in-package :ars-magna.tests)
 
 (def-suite* approaching :in ars-magna)
 
-;;; A setting is a room with walls and obstacles, something to go to, and where the robot starts.
-;;; All coordinates are rational, so that the judge here knows exactly which cells the straight way
-;;; crosses: he uses nothing of the simulator's geometry. Where it is free, the robot must arrive.
+;;; A setting is a room with walls and obstacles, a thing to go to, and the robot's start. All
+;;; coordinates are rational, so the test can compute exactly which cells the straight way crosses,
+;;; without the simulator's geometry. If these are free, the robot must arrive.
 
 (defstruct (setting (:copier nil))
   "A room of WIDTH by HEIGHT: WALLS and OBSTACLES are lists of cells (x y); KIND is that of what
@@ -27,8 +27,8 @@ stands at TARGET, in a cell of its own."
 ;;; The judge.
 
 (defun overlap (from to low)
-  "Return where on the way from FROM to TO, from 0 to 1, one is within LOW and LOW + 1: a list
-(first last), or NIL. A way along the border belongs to the cell behind it."
+  "Return the part of the way from FROM to TO that is between LOW and LOW + 1: a list (first last)
+of fractions from 0 to 1, or NIL. A way along the border belongs to the cell behind it."
   (let ((way (- to from)))
     (if (zerop way)
         (and (<= low from) (< from (1+ low)) (list 0 1))

@@ -1,4 +1,4 @@
-;;;; architecture.lisp -- what holds of the sources: exports documented, one door per library.
+;;;; architecture.lisp -- rules for the sources: exports are documented, one file per library.
 
 (in-package :ars-magna.tests)
 

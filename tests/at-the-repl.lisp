@@ -1,4 +1,4 @@
-;;;; at-the-repl.lisp -- what Lisp, and editors that ask it, tell of what users define.
+;;;; at-the-repl.lisp -- what Lisp and editors show about users' definitions.
 
 (in-package :ars-magna.tests)
 

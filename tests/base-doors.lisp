@@ -1,4 +1,4 @@
-;;;; base-doors.lisp -- what the doors to SBCL and the operating system promise.
+;;;; base-doors.lisp -- the interface to SBCL and the operating system.
 
 (in-package :ars-magna.tests)
 

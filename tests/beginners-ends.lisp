@@ -1,4 +1,4 @@
-;;;; beginners-ends.lisp -- what ends before beginners expect it, or is not there at all.
+;;;; beginners-ends.lisp -- things that end early or are missing, unexpectedly for beginners.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; beginners-hints.lisp -- what beginners meant by names, calls and files that mean nothing here.
+;;;; beginners-hints.lisp -- hints for names, calls and files that beginners confuse.
 
 (in-package :ars-magna.tests)
 

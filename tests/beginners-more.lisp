@@ -1,4 +1,4 @@
-;;;; beginners-more.lisp -- what beginners forget: waits, parentheses, whose robot it is.
+;;;; beginners-more.lisp -- what beginners forget: waits, parentheses, which robot is meant.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; beginners-slips.lisp -- what beginners take for something else: results, worlds, walls, types.
+;;;; beginners-slips.lisp -- what beginners confuse: results, worlds, walls, types.
 
 (in-package :ars-magna.tests)
 

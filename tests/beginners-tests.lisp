@@ -1,4 +1,4 @@
-;;;; beginners-tests.lisp -- what code tests and what is never so, or always.
+;;;; beginners-tests.lisp -- conditions in code that are never true, or always.
 
 (in-package :ars-magna.tests)
 

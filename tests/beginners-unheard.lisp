@@ -1,4 +1,4 @@
-;;;; beginners-unheard.lisp -- what kickers tell plans, tests in plans, fluents taken for values.
+;;;; beginners-unheard.lisp -- what kickers set for plans, tests in plans, fluents taken for values.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; beginners-words.lisp -- what beginners write for something else: tests, waits, keywords, lines.
+;;;; beginners-words.lisp -- what beginners write instead: tests, waits, keywords, lines.
 
 (in-package :ars-magna.tests)
 

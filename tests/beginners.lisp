@@ -1,4 +1,4 @@
-;;;; beginners.lisp -- frequent mistakes are told with what to write instead.
+;;;; beginners.lisp -- messages about frequent mistakes show what to write instead.
 
 (in-package :ars-magna.tests)
 

@@ -1,9 +1,9 @@
-;;;; budgets.lisp -- how many seconds each suite may take before somebody should look why.
+;;;; budgets.lisp -- how many seconds each suite may take.
 
 (in-package :ars-magna.tests)
 
-;;; About twice what a suite takes on two cores of a shared machine. One that takes longer has not
-;;; failed; ./tests/run says so at its end.
+;;; A budget is about twice what the suite takes on two cores of a shared machine. A suite that
+;;; takes longer has not failed; ./tests/run lists it at its end.
 
 (defparameter *usual-budget* 2 "How many seconds a suite may take that *BUDGETS* does not name.")
 

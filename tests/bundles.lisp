@@ -1,4 +1,4 @@
-;;;; bundles.lisp -- pictures of many ways at once, and of one run: what lies on what, and legends.
+;;;; bundles.lisp -- pictures of many ways at once, and of one run: order of layers, legends.
 
 (in-package :ars-magna.tests)
 

@@ -1,10 +1,10 @@
-;;;; children-uses.lisp -- what a process of its own returns, prints and leaves.
+;;;; children-uses.lisp -- what a child process returns, prints and leaves behind.
 
 (in-package :ars-magna.tests)
 
 (def-suite* children :in ars-magna)
 
-;;; A Lisp with several threads cannot be copied: so not after tests that have left some.
+;;; A Lisp with several threads cannot be forked, so these are skipped after tests that left some.
 
 (defun play-child (name)
   (print name)

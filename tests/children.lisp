@@ -1,11 +1,11 @@
-;;;; children.lisp -- suites in processes of their own, as many at once as there are processors.
+;;;; children.lisp -- suites in child processes, one per processor at a time.
 
 (in-package :ars-magna.tests)
 
-;;; A child is a copy of this Lisp as it stands when the tests have been loaded. It runs one suite,
-;;; with a directory of its own for what is temporary; what it prints and, in the end, what it
-;;; returns stand in files. So suites disturb each other in nothing, and one that ends its Lisp or
-;;; fills its memory ends no other: it has failed.
+;;; A child is a forked copy of this Lisp after the tests have been loaded. It runs one suite, with
+;;; a temporary directory of its own. It writes what it prints, and at the end what it returns, to
+;;; files. So suites cannot disturb each other. A suite that ends its Lisp or fills its memory has
+;;; failed; the others go on.
 
 (defun child-directory (name root)
   (uiop:subpathname root (format nil "~(~A~)/" name)))

@@ -1,4 +1,4 @@
-;;;; cli-answers.lisp -- programs that read what is typed, in the thread of a run or of plans.
+;;;; cli-answers.lisp -- programs that read typed lines, in the thread of a run or of plans.
 
 (in-package :ars-magna.tests)
 

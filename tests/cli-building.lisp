@@ -1,4 +1,4 @@
-;;;; cli-building.lisp -- what the shell compiles, of what, and what it says when that goes wrong.
+;;;; cli-building.lisp -- what the shell compiles and from what, and its messages about failures.
 
 (in-package :ars-magna.tests)
 

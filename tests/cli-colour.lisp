@@ -1,4 +1,4 @@
-;;;; cli-colour.lisp -- what the prompt shows in colours, what it hushes, and WATCH.
+;;;; cli-colour.lisp -- colours at the prompt, ECHO, and WATCH.
 
 (in-package :ars-magna.tests)
 

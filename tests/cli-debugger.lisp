@@ -1,4 +1,4 @@
-;;;; cli-debugger.lisp -- programs that break, where somebody sits at the prompt and where nobody.
+;;;; cli-debugger.lisp -- breaks, with a user at the prompt and without one.
 
 (in-package :ars-magna.tests)
 
@@ -23,7 +23,7 @@
   "True if LINE begins one of the lines WRITTEN, perhaps after prompts."
   (find-if (lambda (other) (eql 0 (search line (without-prompts other)))) written))
 
-;;; Where nobody sits.
+;;; Without a user.
 
 (test break.is-a-message-where-nobody-sits
   (is (equal '("*ERROR* -> Break: oh" "4" "5")

@@ -1,11 +1,11 @@
-;;;; cli-door.lisp -- what --window says and does where there is no X server or no McCLIM.
+;;;; cli-door.lisp -- --window without an X server or without McCLIM.
 
 (in-package :ars-magna.tests)
 
 (def-suite* cli-door :in ars-magna)
 
-;;; The program is started in a home directory of its own, where nothing is installed and nothing
-;;; has been compiled; what makes windows is never reached, so no X server is needed.
+;;; The program starts in a new home directory, in which nothing is installed or compiled. It never
+;;; gets so far as to open a window, so no X server is needed.
 
 (defvar *no-libraries* "CL_SOURCE_REGISTRY=(:source-registry :ignore-inherited-configuration)"
   "What in the environment lets ASDF find nothing.")

@@ -1,4 +1,4 @@
-;;;; cli-files.lisp -- the file of a world means the same on all roads, and sources what they say.
+;;;; cli-files.lisp -- the file of a world means the same however it is loaded; source places.
 
 (in-package :ars-magna.tests)
 
@@ -7,8 +7,8 @@
 ;;; Roads to a world.
 
 (defun substance-on-road (road)
-  "Return the parameter of a wall in the world of a file that is loaded by ROAD, a function of its
-name, in Nisp's syntax and with a decimal fraction."
+  "Load a file in Nisp's syntax, with a wall whose parameter is a decimal fraction, by ROAD, a
+function of its name. Return that parameter."
   (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
     (format out "(defmap barn (9 9) (rect (0 0) (8 8) bricks 0.1))~@
                  (defvar *truth* #t)~@

@@ -1,4 +1,4 @@
-;;;; cli-going-on.lisp -- where prompts go on when one of them ends the run; no window is needed.
+;;;; cli-going-on.lisp -- in which run prompts continue after one of them ends the run.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; cli-hostile.lisp -- nothing that is typed at the prompt brings it down.
+;;;; cli-hostile.lisp -- no typed input crashes the prompt.
 
 (in-package :ars-magna.tests)
 

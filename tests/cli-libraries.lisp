@@ -1,11 +1,11 @@
-;;;; cli-libraries.lisp -- a saved core is made anew when SBCL or its libraries have changed.
+;;;; cli-libraries.lisp -- a saved core is rebuilt when SBCL or its libraries have changed.
 
 (in-package :ars-magna.tests)
 
 (def-suite* cli-libraries :in ars-magna)
 
-;;; What is listed beside a core, and looked at by the shell at each start: see library_state in
-;;; cli/setup.sh and list-libraries in cli/build.lisp. To make cores here would take too long.
+;;; These test the list beside a core, which the shell checks at each start: see library_state in
+;;; cli/setup.sh and list-libraries in cli/build.lisp. Building cores here would take too long.
 
 (defparameter *changing-libraries*
   "root=$(mktemp -d)/'a b'
@@ -36,7 +36,7 @@
    rm \"$root/one.lisp\";                          look 'no file'
    CL_SOURCE_REGISTRY=/elsewhere:;               look 'a variable'
    rm -r \"$(dirname \"$root\")\""
-  "A script that says of changes whether a core counts as one of other libraries after them.")
+  "A script that prints for each change whether the libraries then count as others.")
 
 (test libraries.that-have-changed-are-noticed
   (is (equal '("same: nothing" "other: an older file" "same: an asd that ASDF does not see"
@@ -65,10 +65,10 @@
       (line-p "directory /" "/systems/"))
     (is (notany (lambda (line) (mentions-p line "ars-magna.asd")) lines))))
 
-;;; Versions of CLX that do not work, which are refused before McCLIM is compiled.
+;;; Versions of CLX that do not work are refused before McCLIM is compiled.
 
 (defun clx-made-like (version &rest files)
-  "Return a system of ASDF's as CLX of VERSION would be, of FILES."
+  "Return an ASDF system like CLX of VERSION, with FILES."
   (let ((system (make-instance 'asdf:system :name "clx" :version version
                                             :pathname #p"/usr/share/clx/"
                                             :source-file #p"/usr/share/clx/clx.asd")))

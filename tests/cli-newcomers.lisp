@@ -1,4 +1,4 @@
-;;;; cli-newcomers.lisp -- what one types who has read nothing: hints, help on all that has a name.
+;;;; cli-newcomers.lisp -- hints for users who have read nothing, and help on every name.
 
 (in-package :ars-magna.tests)
 

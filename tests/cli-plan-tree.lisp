@@ -1,4 +1,4 @@
-;;;; cli-plan-tree.lisp -- plans seen from the prompt: PLAN-TREE, WHY, PLAN-TIMELINE, breaks, steps.
+;;;; cli-plan-tree.lisp -- plans at the prompt: PLAN-TREE, WHY, PLAN-TIMELINE, breaks, steps.
 
 (in-package :ars-magna.tests)
 (in-suite cli-plans)

@@ -1,10 +1,10 @@
-;;;; cli-robots.lisp -- the prompt calls robots by name, wherever they were defined.
+;;;; cli-robots.lisp -- the prompt finds robots by name, wherever they were defined.
 
 (in-package :ars-magna.tests)
 
 (def-suite* cli-robots :in ars-magna)
 
-;;; What is known in ARS-USER is what users see, so these tests leave nothing of theirs in it.
+;;; Users see the names in ARS-USER, so these tests remove theirs from it.
 
 (defun known-as (name)
   "Return the symbol called NAME in ARS-USER, or NIL."

@@ -1,11 +1,11 @@
-;;;; cli-sessions.lisp -- prompts beside one another, as windows have them; no window is needed.
+;;;; cli-sessions.lisp -- several prompts side by side, as windows have them; needs no window.
 
 (in-package :ars-magna.tests)
 
 (def-suite* cli-sessions :in ars-magna)
 
-;;; A talk is a prompt in a thread of its own, to which keys are handed over. It says before it
-;;; reads a line, and after, so that whoever waits need not look at a clock.
+;;; A talk is a prompt in a thread of its own that receives keys. It signals before and after it
+;;; reads a line, so tests that wait need no clock.
 
 (defclass mute-console (cli:console) ()
   (:documentation "A console that does not show the line that is being typed."))

@@ -1,4 +1,4 @@
-;;;; cli-telling.lisp -- what somebody is told who sits at the prompt, and how often.
+;;;; cli-telling.lisp -- messages to a user at the prompt, and how often they come.
 
 (in-package :ars-magna.tests)
 

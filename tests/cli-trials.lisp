@@ -1,4 +1,4 @@
-;;;; cli-trials.lisp -- the prompt inside of a trial of an experiment.
+;;;; cli-trials.lisp -- the prompt inside a trial of an experiment.
 
 (in-package :ars-magna.tests)
 

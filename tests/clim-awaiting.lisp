@@ -1,4 +1,4 @@
-;;;; clim-awaiting.lisp -- what waits in a debugger is seen in the window, and answered there.
+;;;; clim-awaiting.lisp -- programs that wait in a debugger are shown and answered in the window.
 
 (in-package :ars-magna.tests)
 

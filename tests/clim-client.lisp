@@ -1,6 +1,6 @@
-;;;; clim-client.lisp -- a window from outside: by errands for its thread, and as another X client.
+;;;; clim-client.lisp -- the window from outside: functions run in its thread, and another X client.
 
-;;; Loaded by the window's tests, and by those of the benchmarks that measure it.
+;;; Loaded by the tests and benchmarks of the window.
 
 (defpackage :ars-magna.window-client
   (:documentation "What tests and benchmarks ask of a window that is on the screen.")

@@ -1,4 +1,4 @@
-;;;; clim-clipboard.lisp -- what is copied between programs arrives whole, however long it is.
+;;;; clim-clipboard.lisp -- text copied between programs arrives whole, however long it is.
 
 (in-package :ars-magna.tests)
 

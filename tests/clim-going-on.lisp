@@ -1,4 +1,4 @@
-;;;; clim-going-on.lisp -- where windows go on when their run is over, on CLIM's null port.
+;;;; clim-going-on.lisp -- which run windows continue in after theirs is over, on CLIM's null port.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; clim-holding.lisp -- what the window says and offers of what a robot holds.
+;;;; clim-holding.lisp -- what the window shows and offers about things that a robot holds.
 
 (in-package :ars-magna.tests)
 

@@ -4,8 +4,8 @@
 
 (in-suite clim)
 
-;;; What X lists of the keys 7 and Q of a German keyboard, of Q of an American one, and of a key of
-;;; two layouts, the second of which is Russian.
+;;; Key symbols as X lists them: the keys 7 and Q of a German keyboard, Q of an American one, and a
+;;; key with two layouts, the second of which is Russian.
 (defparameter *symbols-of-7* #(#x37 #x2f #x37 #x2f #x7b #xac5))
 (defparameter *symbols-of-q* #(#x71 #x51 #x71 #x51 #x40 #x7d9))
 (defparameter *symbols-without* #(#x71 #x51 #x71 #x51 0 0))

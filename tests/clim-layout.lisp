@@ -1,4 +1,4 @@
-;;;; clim-layout.lisp -- where the parts of the window are, and that all of them can be reached.
+;;;; clim-layout.lisp -- positions of the parts of the window; all of them can be reached.
 
 (in-package :ars-magna.tests)
 

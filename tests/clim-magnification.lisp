@@ -1,4 +1,4 @@
-;;;; clim-magnification.lisp -- a window on a fine screen.
+;;;; clim-magnification.lisp -- a window on a screen with high resolution.
 
 (in-package :ars-magna.tests)
 

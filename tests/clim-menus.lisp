@@ -1,4 +1,4 @@
-;;;; clim-menus.lisp -- the bar of menus: each entry can be reached, at any size of the window.
+;;;; clim-menus.lisp -- the menu bar: each entry can be reached, at any size of the window.
 
 (in-package :ars-magna.tests)
 

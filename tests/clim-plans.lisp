@@ -1,4 +1,4 @@
-;;;; clim-plans.lisp -- plans in the window, and windows that go along into other runs.
+;;;; clim-plans.lisp -- plans in the window, and windows that follow into other runs.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; clim-progress.lisp -- what the window says of how time goes, and how often it looks.
+;;;; clim-progress.lisp -- what the window shows about time, and how often it updates.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; clim-talking.lisp -- what one types in the window, on CLIM's null port. See clim.lisp.
+;;;; clim-talking.lisp -- typing in the window, on CLIM's null port. See clim.lisp.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; clim-truths.lisp -- what the window says is so: of time in trials and forks, of the view.
+;;;; clim-truths.lisp -- what the window shows is correct: time in trials and forks, the view.
 
 (in-package :ars-magna.tests)
 

@@ -4,8 +4,8 @@
 
 (in-suite clim)
 
-;;; The server is Xvfb, which shows nothing anywhere. The tests look at what is on its screen as a
-;;; second client, and wait by asking the window's thread; its start is looked for repeatedly.
+;;; The server is Xvfb, which has no visible screen. The tests read its screen as a second client.
+;;; They wait by calling functions in the window's thread, and poll only for the server's start.
 
 (defun start-x-server ()
   "Start an X server; return its process and the number of its display."

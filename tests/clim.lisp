@@ -1,11 +1,11 @@
-;;;; clim.lisp -- tests of the window, where McCLIM is to be had.
+;;;; clim.lisp -- tests of the window, if McCLIM is available.
 
 (in-package :ars-magna.tests)
 
 (def-suite* clim :in ars-magna)
 
-;;; The rest of these tests, ars-magna/clim-tests, names McCLIM's packages: it is loaded besides
-;;; where McCLIM is found.
+;;; The rest of these tests, ars-magna/clim-tests, names McCLIM's packages. It is loaded only if
+;;; McCLIM is found.
 
 (test window.tests-need-mcclim
   (if (find-package :ars-magna.clim)

@@ -1,4 +1,4 @@
-;;;; completing.lisp -- Tab: what a line that is being typed could become.
+;;;; completing.lisp -- Tab: completions of a line being typed.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; definitions-maps.lisp -- what becomes of runs and robots when maps and robots are defined anew.
+;;;; definitions-maps.lisp -- runs and robots when maps and robots are defined again.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; definitions-mistakes.lisp -- mistakes are met where they are made, by clause, file and line.
+;;;; definitions-mistakes.lisp -- mistakes in definitions are reported with clause, file and line.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; definitions-names.lisp -- names that Common Lisp has, words of one's own, and locks.
+;;;; definitions-names.lisp -- names of Common Lisp, users' own words, and package locks.
 
 (in-package :ars-magna.tests)
 

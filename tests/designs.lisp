@@ -1,4 +1,4 @@
-;;;; designs.lisp -- points from ranges: how evenly they lie, and experiments that try them.
+;;;; designs.lisp -- points drawn from ranges: how evenly they lie, and experiments that use them.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; digests.lisp -- the digest is the state: what kinds call state decides, and nothing else does.
+;;;; digests.lisp -- the digest covers all of the state, of each kind, and nothing else.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; display-drawing.lisp -- things that draw themselves: how a :draw-function is said, and fails.
+;;;; display-drawing.lisp -- things that draw themselves: :draw-function, and its failures.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; editing-history.lisp -- what was typed is kept, in this session and in files.
+;;;; editing-history.lisp -- the history of typed lines, in a session and in files.
 
 (in-package :ars-magna.tests)
 

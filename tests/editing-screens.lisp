@@ -4,7 +4,8 @@
 
 (def-suite* editing-screens :in ars-magna)
 
-;;; A terminal that obeys what ours is told, and nothing else. It has as many rows as it needs.
+;;; A simulated terminal that understands only the control codes we use. It has as many rows as it
+;;; needs.
 
 (defstruct (paper (:constructor make-paper (columns)) (:copier nil))
   "A terminal of COLUMNS. ROWS are strings; FULL-P is true when the last column has been written."

@@ -4,7 +4,7 @@
 
 (def-suite* editing :in ars-magna)
 
-;;; A keyboard whose keys are known. Nothing is typed before it is read, unless that is the point.
+;;; A keyboard with given keys. Each is typed when it is read, unless a test is about type-ahead.
 
 (defclass keyboard (trivial-gray-streams:fundamental-character-input-stream)
   ((octets :initarg :octets :accessor keyboard-octets)

@@ -1,4 +1,4 @@
-;;;; examples.lisp -- what the folders' pages show is so, and which names they show.
+;;;; examples.lisp -- the examples of the folders' pages are correct and show every name.
 
 (in-package :ars-magna.tests)
 

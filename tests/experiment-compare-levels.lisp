@@ -1,4 +1,4 @@
-;;;; experiment-compare-levels.lisp -- values of what varies, all else equal, and over all.
+;;;; experiment-compare-levels.lisp -- values of one factor, all else equal, and over all.
 
 (in-package :ars-magna.tests)
 

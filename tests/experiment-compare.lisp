@@ -4,8 +4,8 @@
 
 (def-suite* experiment-compare :in ars-magna)
 
-;;; Tables that are made up. A row is a list (plan noise seed outcome ticks way digest); the
-;;; number of the trial is the seed less 7.
+;;; Made-up tables. A row is a list (plan noise seed outcome ticks way digest). The number of the
+;;; trial is the seed minus 7.
 
 (defun made-up-line (row fingerprint)
   (destructuring-bind (plan noise seed outcome ticks way digest) row

@@ -1,4 +1,4 @@
-;;;; experiment-shell-code.lisp -- at a shell: what the code of experiments decides; shards.
+;;;; experiment-shell-code.lisp -- at a shell: which code an experiment depends on; shards.
 
 (in-package :ars-magna.tests)
 

@@ -1,10 +1,10 @@
-;;;; experiment-shell.lisp -- experiments at a shell: options, files, tables, control C.
+;;;; experiment-shell.lisp -- experiments at a shell: options, files, tables, Ctrl-C.
 
 (in-package :ars-magna.tests)
 
 (def-suite* experiment-shell :in ars-magna)
 
-;;; A directory to work in, with a name that a shell would take apart.
+;;; A working directory whose name a shell would split.
 
 (defvar *place* nil "The name of the directory that a test works in.")
 

@@ -1,4 +1,4 @@
-;;;; experiments-files.lisp -- what tables look like to other programs, and what is no table's file.
+;;;; experiments-files.lisp -- how other programs read tables, and files that are no tables.
 
 (in-package :ars-magna.tests)
 (in-suite experiments-tables)

@@ -1,4 +1,4 @@
-;;;; experiments-fingerprints.lisp -- what decides a trial is noticed, and nothing else matters.
+;;;; experiments-fingerprints.lisp -- what a trial depends on is in its fingerprint, nothing else.
 
 (in-package :ars-magna.tests)
 

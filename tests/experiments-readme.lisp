@@ -1,4 +1,4 @@
-;;;; experiments-readme.lisp -- what src/experiment/README.md shows is so.
+;;;; experiments-readme.lisp -- the examples of src/experiment/README.md are correct.
 
 (in-package :ars-magna.tests)
 

@@ -1,10 +1,10 @@
-;;;; experiments-report.lisp -- what is said of results: summaries, the printed report, remarks.
+;;;; experiments-report.lisp -- reports on results: summaries, the printed report, remarks.
 
 (in-package :ars-magna.tests)
 
 (def-suite* experiments-report :in ars-magna)
 
-;;; Tables that are made up. A condition is a list (texts row...), a row a list (outcome &key reason
+;;; Made-up tables. A condition is a list (texts row...), a row a list (outcome &key reason
 ;;; ticks measures error), and the texts are the values of FACTORS.
 
 (defun report-line (factors measures texts trial row)

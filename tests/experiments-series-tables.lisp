@@ -1,4 +1,4 @@
-;;;; experiments-series-tables.lisp -- the table of what :each-tick records: the same in any way.
+;;;; experiments-series-tables.lisp -- the table of :each-tick is the same however it is made.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; experiments-tables.lisp -- the tables of experiments: the same however they came about.
+;;;; experiments-tables.lisp -- the tables of experiments are the same however they are made.
 
 (in-package :ars-magna.tests)
 

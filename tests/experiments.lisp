@@ -1,4 +1,4 @@
-;;;; experiments.lisp -- what an experiment is, and what becomes of its trials.
+;;;; experiments.lisp -- definitions of experiments, and their trials.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; floors-hostile.lisp -- floors that cannot be used, and what is said of them.
+;;;; floors-hostile.lisp -- floors that cannot be used, and the messages about them.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; floors-png-hostile.lisp -- PNG files that cannot be used, and what is said of them.
+;;;; floors-png-hostile.lisp -- PNG files that cannot be used, and the messages about them.
 
 (in-package :ars-magna.tests)
 

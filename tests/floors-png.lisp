@@ -4,8 +4,8 @@
 
 (in-suite floors)
 
-;;; PNG files, written here as strings with a character for each octet. What they have is not
-;;; compressed, but stored as it is, in blocks as zlib keeps such.
+;;; PNG files, written here as strings with a character for each octet. Their data is not compressed
+;;; but in zlib's stored blocks.
 
 (defun octet-string (number count &key low-first)
   "Return NUMBER as COUNT octets, the high one first unless LOW-FIRST."

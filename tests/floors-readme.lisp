@@ -1,4 +1,4 @@
-;;;; floors-readme.lisp -- what src/floors/README.md shows is so, and the shipped floor is as drawn.
+;;;; floors-readme.lisp -- the examples of src/floors/README.md and the shipped floor are correct.
 
 (in-package :ars-magna.tests)
 

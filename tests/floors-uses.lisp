@@ -1,4 +1,4 @@
-;;;; floors-uses.lisp -- maps from elsewhere in use: metres of elsewhere, robots, journals.
+;;;; floors-uses.lisp -- imported maps in use: coordinates of the source, robots, journals.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; forking-borders.lisp -- what a fork must not reach across: dead frames, other runs, threads.
+;;;; forking-borders.lisp -- what a fork must not share: exited frames, other runs, threads.
 
 (in-package :ars-magna.tests)
 (in-suite forking)

@@ -1,4 +1,4 @@
-;;;; forking-fluents.lisp -- fluents and valves are what they are to whoever meets them in a run.
+;;;; forking-fluents.lisp -- fluents and valves in forks.
 
 (in-package :ars-magna.tests)
 (in-suite forking)

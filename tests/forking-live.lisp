@@ -1,4 +1,4 @@
-;;;; forking-live.lisp -- forks of a run that goes on by itself.
+;;;; forking-live.lisp -- forks of a live run.
 
 (in-package :ars-magna.tests)
 (in-suite forking)

@@ -1,13 +1,13 @@
-;;;; forking-oracle.lisp -- the slow way to know what a run and its fork share: go and look.
+;;;; forking-oracle.lisp -- finds what a run and its fork share by a full, slow search.
 
 (in-package :ars-magna.tests)
 
 (def-suite* forking :in ars-magna)
 
-;;; A survey has all that can be reached from a run: by all slots of structures and instances, in
-;;; lists, arrays and tables, by what closures have closed over, and the cells of their variables.
-;;; It knows nothing of kinds, nor of how the copier goes about it. It stops at what is code, a
-;;; definition, or a note of what has been: these are everybody's.
+;;; A survey has all objects that can be reached from a run: through slots of structures and
+;;; instances, lists, arrays, tables, closures and the cells of their variables. It does not use
+;;; kinds or the copier. It stops at code, definitions and records of the past, which all runs
+;;; share.
 
 (defparameter *everybodys*
   '(number character symbol string package pathname class generic-function method
@@ -71,8 +71,8 @@
            '()))))
 
 (defun survey (&rest roots)
-  "Return a table of all objects that can be reached from ROOTS and are not everybody's, each with
-(where . from whom) it was come to first."
+  "Return a table of all objects that can be reached from ROOTS and are not shared by all runs, each
+with (where . parent) of the first path to it."
   (let ((table (make-hash-table :test 'eq)) (work '()))
     (flet ((visit (object whence)
              (unless (or (null object) (everybodys-p object) (gethash object table))

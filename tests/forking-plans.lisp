@@ -1,4 +1,4 @@
-;;;; forking-plans.lisp -- plans that are forked in the midst of what plans can do.
+;;;; forking-plans.lisp -- plans forked at each tick, for all constructs.
 
 (in-package :ars-magna.tests)
 (in-suite forking)

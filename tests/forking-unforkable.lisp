@@ -1,4 +1,4 @@
-;;;; forking-unforkable.lisp -- what is part of the world outside, what users say of their own.
+;;;; forking-unforkable.lisp -- objects that cannot be copied, and users' own rules for theirs.
 
 (in-package :ars-magna.tests)
 (in-suite forking)

@@ -1,4 +1,4 @@
-;;;; forking-uses.lisp -- forks as they are made and used: seeds, continuations, threads, live runs.
+;;;; forking-uses.lisp -- making and using forks: seeds, continuations, threads, live runs.
 
 (in-package :ars-magna.tests)
 (in-suite forking)

@@ -1,4 +1,4 @@
-;;;; forking-values.lisp -- what becomes of all that plans have in their variables when they fork.
+;;;; forking-values.lisp -- the values of plans' variables in forks.
 
 (in-package :ars-magna.tests)
 (in-suite forking)

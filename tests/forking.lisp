@@ -1,10 +1,10 @@
-;;;; forking.lisp -- forks at random moments of random runs: they go the way of their originals.
+;;;; forking.lisp -- forks at random moments of random runs continue as their originals do.
 
 (in-package :ars-magna.tests)
 (in-suite forking)
 
-;;; Commands at random, with what their continuations go on to do: copied along, these do the same
-;;; in the fork.
+;;; Random commands whose continuations issue further ones. Copied continuations do the same in the
+;;; fork.
 
 (defun call-in-rides (function rides moments seed)
   "Call FUNCTION with a simulation, in which much is under way, MOMENTS times in each of RIDES."

@@ -1,4 +1,4 @@
-;;;; geometry-limits.lisp -- points and boxes where floats end.
+;;;; geometry-limits.lisp -- points and boxes at the limits of floats.
 
 (in-package :ars-magna.tests)
 

@@ -5,8 +5,8 @@
 (def-suite* homes :in ars-magna)
 
 ;;; The worlds in tests/homes share names on purpose: RED, ROOM, MAX, STEP and more. Each file
-;;; defines a package with a function CHECK, headless, and one LIVE-CHECK, which return NIL or a
-;;; list of the claims that do not hold.
+;;; defines a package with the functions CHECK, headless, and LIVE-CHECK. Both return a list of the
+;;; claims that do not hold, or NIL.
 
 (defparameter *homes* '("bakery" "ward" "workshop"))
 

@@ -1,4 +1,4 @@
-;;;; hostile-numbers.lisp -- whatever number is given where, it is used or refused with a word.
+;;;; hostile-numbers.lisp -- any number in any place is used or refused with a message.
 
 (in-package :ars-magna.tests)
 

@@ -1,10 +1,11 @@
-;;;; inference-coverage.lisp -- how often intervals hold what they should, and tests err.
+;;;; inference-coverage.lisp -- how often intervals cover the true value, and how often tests err.
 
 (in-package :ars-magna.tests)
 
 (def-suite* inference-coverage :in ars-magna)
 
-;;; Of counts, coverage is reckoned, by adding up what is probable. What is drawn has fixed seeds.
+;;; For counts, the coverage is computed by adding up probabilities. Random samples have fixed
+;;; seeds.
 
 (defun all-bounds (interval trials)
   "Return a list of lists: what the function INTERVAL says of 0, 1 ... TRIALS successes."

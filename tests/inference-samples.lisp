@@ -1,4 +1,4 @@
-;;;; inference-samples.lisp -- means, medians and what is resampled, against published examples.
+;;;; inference-samples.lisp -- means, medians and resampling, against published examples.
 
 (in-package :ars-magna.tests)
 

@@ -1,9 +1,9 @@
-;;;; isolation.lisp -- each test finds everything as it was when the tests were loaded.
+;;;; isolation.lisp -- each test starts from the state after the tests were loaded.
 
 (in-package :ars-magna.tests)
 
-;;; A test has a message queue of its own. What it defines, sets, reads, runs and moves is
-;;; afterwards as before. Variables are set back, not bound: the threads of a test share them.
+;;; A test has a message queue of its own. After it, definitions, variables, names, runs and robots
+;;; are set back. Variables are set back, not bound, because the threads of a test share them.
 
 ;;; Variables.
 

@@ -1,4 +1,4 @@
-;;;; journals-forged.lisp -- journals whose check sums are right, and which make no sense.
+;;;; journals-forged.lisp -- journals with right check sums and invalid contents.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; kinds.lisp -- what kinds say of slots, and a kind of sensor added from outside.
+;;;; kinds.lisp -- the slots of kinds, and a kind of sensor added from outside.
 
 (defpackage :ars-magna.tests.sonar
   (:documentation "A sensor that the simulator does not have, as a user would add it.")

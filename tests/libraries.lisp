@@ -23,7 +23,7 @@
      "(in-package :library-own)"
      "(in-readtable :nisp)"
      "(defun own () (list #t '?x))"))
-  "Files, as lists of lines: a library that knows nothing of Nisp, and a file that does.")
+  "Files, as lists of lines: a library in standard syntax, and a file in Nisp's syntax.")
 
 (defparameter *what-the-library-has*
   "(let ((*package* (find-package :cl-user)) (*readtable* (copy-readtable nil)))
@@ -33,8 +33,8 @@
             :pretty nil))")
 
 (defun form-loading-library (directory start)
-  "Return the text of forms that, after what START says, load the library in DIRECTORY, which has a
-cache of its own, and print what that has then."
+  "Return the text of forms that do START, load the library in DIRECTORY with a cache of its own,
+and print *WHAT-THE-LIBRARY-HAS*."
   (format nil "(progn
                  (asdf:initialize-output-translations
                   '(:output-translations (~S ~S) :inherit-configuration))
@@ -47,8 +47,8 @@ cache of its own, and print what that has then."
           start (namestring (uiop:subpathname directory "library.asd")) *what-the-library-has*))
 
 (test libraries.are-read-as-anywhere-else
-  "Even if they are first compiled by who has said (in-readtable :nisp); what was compiled then is
-as good in the next Lisp. A file that itself asks for Nisp's syntax has it."
+  "Also if they are first compiled after (in-readtable :nisp); the compiled files work in the next
+Lisp. A file that itself asks for Nisp's syntax has it."
   (call-in-new-directory
    (lambda (directory)
      (write-files *library* directory)

@@ -1,4 +1,4 @@
-;;;; lisps-dice.lisp -- what users' code rolls by CL:RANDOM goes by the seed.
+;;;; lisps-dice.lisp -- CL:RANDOM in users' code depends on the seed.
 
 (in-package :ars-magna.tests)
 

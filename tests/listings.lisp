@@ -1,14 +1,14 @@
-;;;; listings.lisp -- the manual's listings, loaded as printed, work: how, and its world (manual 5).
+;;;; listings.lisp -- the manual's listings work as printed; how they are run (manual 5).
 
 (in-package :ars-magna.tests)
 
 (def-suite* listings :in ars-magna)
 
-;;; The listings are no part of the project. They are read where ARS_MAGNA_LISTINGS says, or beside
-;;; the project; where they are not, each test is skipped and says so. A listing that is a program
-;;; is loaded from its file, into a package of its own; one that is a fragment is read from there
-;;; and evaluated with its variables bound. Nothing is changed in either. Each begins with what is
-;;; known to be wrong with it; tests of what follows from that say so.
+;;; The listings are not part of the project. They are read from the directory ARS_MAGNA_LISTINGS,
+;;; or from beside the project. Without them each test is skipped, with a message. A program is
+;;; loaded from its file into a package of its own. A fragment is read and evaluated with its
+;;; variables bound. Neither is changed. Each file begins with its known errors; tests that depend
+;;; on one say so.
 
 (defun listings-directory ()
   "Return the directory of the manual's listings, or NIL if it is not here."

@@ -4,7 +4,7 @@
 
 (in-suite looking)
 
-;;; A track of one thing, and things put in between at random.
+;;; A track of one thing, and things put in between at random points.
 
 (defun put-posts (count dice)
   "Put COUNT things that obstruct sight, anywhere in the hall of WATCHER but in the robot's cell."

@@ -1,4 +1,4 @@
-;;;; main.lisp -- running the tests, in order or shuffled, and counting what came of them.
+;;;; main.lisp -- runs the tests, in order or shuffled, and counts the results.
 
 (in-package :ars-magna.tests)
 

@@ -16,7 +16,7 @@
       (is (near 3 (- (robot-x scout) x))))))
 
 (test manual-2-1.positions-are-real-numbers
-  "2.1, reading 54: robot and things stay exactly where they are put; the grid moves nobody."
+  "2.1, reading 54: robot and things stay exactly where they are put; the grid does not move them."
   (at-each-spot (:clean t)
     (is (equal (mapcar (lambda (x) (coerce x 'double-float)) spot)
                (multiple-value-list (robot-position scout))))
@@ -37,7 +37,7 @@
            (is (eq filled (and (wall-at-p yard (+ x .3) (+ y .7)) t)))))
 
 (test manual-2-1.outside-is-solid
-  "2.1, reading 53: beyond the edge of a map nobody can go, and a camera reads 0 from there."
+  "2.1, reading 53: nothing can leave the map, and a camera reads 0 beyond its edge."
   (with-own-definitions ()
     (defmap common (6 6))
     (defrobot walker (common (3 3) 0) :cameras ((1 3)))
@@ -96,7 +96,7 @@
     (is (equalp '(slate 30) (substance 30.4 5.6)))))
 
 (test manual-2-1.objects-have-a-substance-and-attributes
-  "2.1: objects have a substance too, and besides a set of attributes that describe them."
+  "2.1: objects have a substance, too, and a set of attributes that describe them."
   (with-scout (:clean t)
     (let ((box (put-beside 'box 4 0 :substance '(wood 7) :size 3 :weight 2 :obsview #t)))
       (is (equal '(wood 7) (get-attribute box :substance)))
@@ -105,7 +105,7 @@
             do (is (equal value (get-attribute box key)))))))
 
 (test manual-2-1.attributes-can-be-sensed
-  "2.1: what the robot asks about is in what it learns of an object."
+  "2.1: a designator has the attributes that were asked about."
   (at-each-spot (:clean t)
     (put-beside 'box 4.5 1 :size 3 :weight 2 :color 'red)
     (let ((designator (look '((:size (0 9)) (:weight (0 9)) (:color (red blue))))))
@@ -139,7 +139,7 @@
         (is (equalp spot (multiple-value-list (robot-position scout))))))))
 
 (test manual-2-2.moves-forward-where-it-heads
-  "2.2 and 3.2: the way goes along (cos, sin) of the heading, whatever that is."
+  "2.2 and 3.2: the robot drives along (cos, sin) of any heading."
   (at-each-spot (:clean t)
     (dolist (heading '(0 1 2.5 -2 7))
       (place-robot scout (first spot) (second spot) heading)
@@ -226,7 +226,7 @@
                (answer 'camera-untrack (eye))))))
 
 (test manual-2-2.only-non-local-designators-serve-to-approach
-  "2.2: one goes to what is far; for what is local that is the error :GOTO-LOCAL."
+  "2.2: the robot can go to distant things; going to a local one ends with :GOTO-LOCAL."
   (dolist (case '((.5 :local :goto-local) (4 :non-local nil)))
     (destructuring-bind (dx type code) case
       (with-scout (:clean t)
@@ -289,7 +289,7 @@
                                       designator)))))))
 
 (test manual-2-2.hands-get-at-what-is-inside
-  "2.2: what is in a container can be grasped by a hand that is in there too."
+  "2.2: a hand in a container can grasp the things in it."
   (at-each-spot (:clean t)
     (let ((pen (put 'pen (put-beside 'box .3 0 :capacity 5) :size 1)))
       (tracking (record (look '((:capacity 5)) :type :local))

@@ -78,7 +78,7 @@
                (t (bin-of-scout)))))))
 
 (test manual-3-1-1.get-what-the-headings-say
-  "3.1.1, reading 85: as many arguments after the code, in whatever way a command ends."
+  "3.1.1, reading 85: as many arguments after the code, however a command ends."
   (loop for (name . results) in *headings*
         do (with-scout (:clean t)
              (put-beside 'ball 5 0)
@@ -107,7 +107,7 @@
     (is (near 2 (robot-angle scout)))))
 
 (test manual-3-1-1.continuation-makes-functions
-  "3.1.1: it is used as lambda is; what one does not use is no matter."
+  "3.1.1: it is used as lambda is; unused parameters are no mistake."
   (let ((seen '()))
     (at-each-spot (:clean t)
       (robot-turn scout .3 (continuation (err - SYMBOL robot - ROBOT &rest more)
@@ -126,7 +126,7 @@
     (is (find-if (lambda (line) (search "Oh dear." line)) (said)))))
 
 (test manual-3-1-1.commands-inside-run-from-the-next-tick
-  "Reading 86: what a continuation commands begins in the tick after."
+  "Reading 86: a command issued in a continuation begins in the next tick."
   (at-each-spot (:clean t)
     (let ((ticks '()))
       (camera-view (eye) (continuation (err camera view)
@@ -139,7 +139,7 @@
 ;;; 3.1.2: resources.
 
 (test manual-3-1-2.a-new-command-interrupts
-  "3.1.2: the command under way gets :INTERRUPT, the new one is carried out."
+  "3.1.2: the command in progress gets :INTERRUPT, and the new one runs."
   (at-each-spot (:clean t)
     (recording (record)
       (robot-turn scout 3 (record 'turn))
@@ -229,7 +229,7 @@
                (is (equal track (codes (record))) "~A" command)))))
 
 (test manual-3-1-2.grab-resource-interrupts-all
-  "Readings 37 and 82: what is pending on a part, and its track."
+  "Readings 37 and 82: the pending command of a part, and its track."
   (at-each-spot (:clean t)
     (put-beside 'ball 5 0)
     (tracking (record (look '()))

@@ -156,7 +156,7 @@
       (is (not (in-location pen (hand-of-scout)))))))
 
 (test manual-3-1.values-are-compared-by-name
-  "Reading 38: red is red, whichever package somebody reads it in."
+  "Reading 38: red is the same in all packages."
   (at-each-spot (:clean t)
     (put-beside 'ball 4 0 :color 'common-lisp-user::red)
     (is-true (look '((:color red))))

@@ -133,7 +133,8 @@
          (lift-lbi (at 1 2) (at 5 -2) (at 0 0)) (box 0 5 -2 2)))
 
 (test manual-3-2-1.results-contain-those-of-elements
-  "Reading 42: whatever is in two boxes, sum, difference and distance are in the boxes' own."
+  "Reading 42: for any points in two boxes, sum, difference and distance are in the results for the
+boxes."
   (let ((dice (roll-source 7)))
     (flet ((some-box ()
              (let ((x (funcall dice -5 5)) (y (funcall dice -5 5)))

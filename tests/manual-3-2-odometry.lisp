@@ -17,7 +17,7 @@
         (interval-width (get-odometer-ang odometer))))
 
 (defun drive-about ()
-  "Let SCOUT drive and turn: 8 ticks ahead, 1 to the right, 6 ahead, 2.5 to the left, 5 ahead."
+  "Drive and turn SCOUT: 8 ticks ahead, 1 to the right, 6 ahead, 2.5 to the left, 5 ahead."
   (loop for (command amount) in '((robot-go-forward 8) (robot-turn 1) (robot-go-forward 6)
                                   (robot-turn -2.5) (robot-go-forward 5))
         do (funcall command scout amount)
@@ -177,7 +177,7 @@ side, and its size is random."
       (is (= 0 (third (estimates)))))))
 
 (test manual-3-2-2.positions-are-relative-to-the-heading-at-the-reset
-  "3.2.2, reading 98: whatever the robot's heading was, what it drives from there on is along x."
+  "3.2.2, reading 98: for any heading at the reset, driving straight on from there is along x."
   (dolist (heading '(0 1 -2.5 9))
     (at-each-spot (:clean t)
       (turned-to heading)

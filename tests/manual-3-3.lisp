@@ -47,7 +47,7 @@
                (is (eq code (end-code 'camera-insert (eye) box)))))))
 
 (test manual-3-3.nothing-kicks-itself-out-of-closed-containers
-  "Table 3.3: what is inside of a closed object stays there."
+  "Table 3.3: the contents of a closed object stay inside."
   (with-scout (:clean t)
     (let* ((box (put-beside 'box 3 0 :capacity 5 :closed #t)) (frog (put 'frog box :size 1)))
       (is (null (kick-thing frog 1 0 #t)))
@@ -55,7 +55,7 @@
       (is-true (kick-thing frog 1 0 #t)))))
 
 (test manual-3-3.size-decides-what-fits
-  "Table 3.3: a hand with an object enters only what has room for the object's size."
+  "Table 3.3: a hand with an object enters a container only if it has room for the object."
   (loop for (size code) in '((5 nil) (5.1 :insufficient-capacity))
         do (at-each-spot (:clean t)
              (put 'ball (hand-of-scout) :size size)
@@ -81,7 +81,7 @@
                (is (eq code (end-code 'hand-insert (hand-of-scout) (camera-tracks (eye)))))))))
 
 (test manual-3-3.capacity-is-what-fits-inside
-  "Table 3.3: the sizes of what is inside are taken off."
+  "Table 3.3: the sizes of the contents are subtracted."
   (with-scout (:clean t)
     (let ((box (put-beside 'box 3 0 :capacity 5)))
       (is (= 5 (remaining-capacity box)))
@@ -106,7 +106,7 @@
       (is (equal '(33d0 33d0 33d0 33d0 33d0) (first (answer 'camera-view (eye))))))))
 
 (test manual-3-3.substance-corrupts-what-is-behind
-  "Table 3.3, reading 65: the pixel is the mean of the wall, here 10, and what is before it."
+  "Table 3.3, reading 65: the pixel is the mean of the wall, here 10, and the thing before it."
   (at-each-spot (:clean t)
     (is (= 10 (middle-pixel)))
     (put-beside 'pane 4 0 :substance 40)
@@ -146,7 +146,7 @@
               do (is (equal value (get-attribute thing key)) "~A" key))))))
 
 (test manual-3-3.the-box-can-be-passed-and-holds-things
-  "3.3: the large red box is in nobody's way, and has room for 13."
+  "3.3: the large red box does not block robots, and has room for 13."
   (at-each-spot (:clean t)
     (let ((box (put-described *red-box* 2 0)))
       (put 'ball box :size 13)
@@ -172,7 +172,7 @@
             do (is (eq thing (designator-denotation (look specification))))))))
 
 (test manual-3-3.sensors-estimate-attributes
-  "3.3: what a search asks for is reported of what it finds, with noise."
+  "3.3: the attributes that a search asks for are reported of each finding, with noise."
   (with-scout (:seed 9 :parameters *sure*)
     (put-beside 'box 5 0 :size 14)
     (let ((sizes (look-often 200 (lambda (found) (reading-of :size found))
@@ -182,7 +182,7 @@
       (is (near 14 (/ (reduce #'+ sizes) 200) 1)))))
 
 (test manual-3-3.sameness-is-not-given
-  "3.3: a thing found twice gives two designators; only what they say can tell."
+  "3.3: a thing found twice gives two designators; only their data can show that they are the same."
   (at-each-spot (:clean t)
     (put-beside 'ball 4 0)
     (let ((first (look '())) (second (look '())))

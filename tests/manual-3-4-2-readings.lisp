@@ -62,7 +62,7 @@ deviation .8 and the multiplier 4."
                  "~S" specification))))
 
 (test manual-3-4-2.undefined-attributes-are-read-as-they-are
-  "Reading 124: nobody says how an attribute that is not defined should be misread."
+  "Reading 124: an attribute that is not defined is never misread."
   (with-scout (:seed 17 :parameters *sure*)
     (put-beside 'ball 5 0 :lock-id 7)
     (is (= 200 (find-count 200 '((:lock-id 7 0)))))))
@@ -115,7 +115,7 @@ deviation .8 and the multiplier 4."
       (is (same-distribution-p sizes (normal 7 (deviation .8d0 4 5)))))))
 
 (test manual-3-4-2.what-an-object-lacks-is-not-noticed
-  "3.4.2: only booleans count as there although nobody says so (reading 122)."
+  "3.4.2: only booleans have a value if none is given (reading 122)."
   (with-scout (:clean t :seed 21)
     (put-beside 'ball 5 0 :size 3)
     (let ((keys (remove-duplicates

@@ -25,7 +25,7 @@
   (is (not (fits-p '((:color red)) :color 'lightred))))
 
 (test manual-3-4-2.a-list-of-values-stands-for-any-of-them
-  "3.4.2: (:color (green blue)) specifies what is green or blue."
+  "3.4.2: (:color (green blue)) specifies green or blue objects."
   (loop for (color fits) in '((green t) (blue t) (red nil))
         do (is (eq fits (fits-p '((:color (green blue))) :color color)))))
 
@@ -70,7 +70,7 @@
            (is-true (apply #'fits-p '((:obsview (#t #f))) attributes))))
 
 (test manual-3-4-2.a-list-is-read-by-the-kind-of-attribute
-  "Reading 124: two numbers are a range, of an attribute that nobody defined too."
+  "Reading 124: two numbers are a range, also for an attribute that is not defined."
   (is-true (fits-p '((:lock-id (7 9))) :lock-id 8))
   (is-true (fits-p '((:shape (cube cylinder))) :shape 'cylinder))
   (is (not (fits-p '((:shape (cube cone))) :shape 'cylinder))))
@@ -83,7 +83,7 @@
         do (is (eq fits (fits-p (list specification) :substance '(wood 7))))))
 
 (test manual-3-4-2.nonsense-is-refused-at-once
-  "3.4.2: what is no specification is an error of the program that asks."
+  "3.4.2: an invalid specification is an error in the calling program."
   (with-scout ()
     (dolist (nonsense '(red (:color red) ((:color)) ((:size red)) ((:size 4 -1)) ((:size (5 3)))
                         ((:size (3 4 5))) ((:color purple)) ((:size 4 1 1)) (("size" 4))))

@@ -63,7 +63,7 @@
       (is (same-distribution-p reports (uniform .98d0 1.02d0))))))
 
 (test manual-3-4-3.turning-has-no-errors
-  "3.4.3: whatever the angle, wherever the camera is."
+  "3.4.3: at any angle, wherever the camera is."
   (at-each-spot (:clean t)
     (answer 'camera-insert (eye 1) (bin-of-scout))
     (dolist (camera '(0 1))
@@ -84,8 +84,8 @@
 ;;; Inserting and removing.
 
 (defmacro with-box ((designator &rest attributes) &body body)
-  "Run BODY, cleanly and at each spot, where camera 0 tracks DESIGNATOR of a local BOX that has
-ATTRIBUTES, of capacity 5 unless they say otherwise."
+  "Run BODY without noise and at each spot. Camera 0 tracks DESIGNATOR of a local BOX with
+ATTRIBUTES, by default a capacity of 5."
   `(at-each-spot (:clean t)
      (put-beside 'box .2 0 ,@(or attributes '(:capacity 5)))
      (let ((,designator (look '() :type :local)))
@@ -141,7 +141,8 @@ ATTRIBUTES, of capacity 5 unless they say otherwise."
     (is (eq designator (camera-tracks (eye 0))))))
 
 (test manual-3-4-3.insufficient-capacity
-  "3.4.3, reading 153: what is no container, or has capacity 0; a full one takes a camera."
+  "3.4.3, reading 153: into a thing that is no container, or has capacity 0; a full one takes a
+camera."
   (with-box (designator :capacity 0)
     (is (eq :insufficient-capacity (end-code 'camera-insert (eye) designator)))
     (is (null (camera-location (eye)))))
@@ -149,7 +150,7 @@ ATTRIBUTES, of capacity 5 unless they say otherwise."
     (is (eq :insufficient-capacity (end-code 'camera-insert (eye) designator)))))
 
 (test manual-3-4-3.non-local-designator
-  "3.4.3: a camera does not reach into what is far away."
+  "3.4.3: a camera cannot be inserted into a distant container."
   (at-each-spot (:clean t)
     (put-beside 'box 5 0 :capacity 5)
     (tracking (record (look '()))
@@ -187,8 +188,8 @@ ATTRIBUTES, of capacity 5 unless they say otherwise."
           (is (eq :non-local-designator (code))))))))
 
 (defun insertions (trials)
-  "Return of each of TRIALS insertions into a box what its code was and whether the designator,
-which the other camera tracks too, is valid afterwards."
+  "Return for each of TRIALS insertions into a box its code, and whether the designator is valid
+afterwards. The other camera tracks that designator, too."
   (put-beside 'box .2 0 :capacity 5)
   (loop repeat trials
         collect (let ((designator (first (look-often 1 #'identity :type :local))) (code :none))

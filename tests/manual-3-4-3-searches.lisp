@@ -51,7 +51,7 @@
       (is (eq :camera-enclosed (search-code search))))))
 
 (test manual-3-4-3.designator-not-found
-  "3.4.3: where nothing is to be seen each search answers so, and NIL for what it found."
+  "3.4.3: if nothing is in view, each search ends with an error code and NIL."
   (dolist (search *searches*)
     (at-each-spot (:clean t)
       (turned-to (/ pi 2))
@@ -97,7 +97,7 @@
     (is (null (look-for-place 'doorway)))))
 
 (test manual-3-4-3.desig-type-says-where
-  "3.4.3, reading 131: :local finds what is local and nothing else, :non-local the rest."
+  "3.4.3, reading 131: :local finds only local things, :non-local only the others."
   (at-each-spot (:clean t)
     (put-beside 'here 0 0)
     (put-beside 'near .4 .02)
@@ -116,7 +116,7 @@
                                               (eye) :non-local '()))))))))
 
 (test manual-3-4-3.what-moves-meanwhile-is-left-out
-  "3.4.3: of all that was found, only what is still there is designated."
+  "3.4.3: only findings that are still there get a designator."
   (at-each-spot (:clean t)
     (let ((mouse (put-beside 'mouse 5 0)))
       (put-beside 'ball 5 1)

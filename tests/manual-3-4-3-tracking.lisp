@@ -91,7 +91,7 @@
         (is (eq :local-not-local (end-code 'camera-track (eye) pen)))))))
 
 (test manual-3-4-3.lost-track-of-what-cannot-be-seen
-  "3.4.3: what is hidden when a track should begin; the designator is not lost by that."
+  "3.4.3: a thing that is hidden when its track should begin; its designator remains valid."
   (at-each-spot (:clean t)
     (put-beside 'ball 8 0)
     (let ((designator (look '())) (screen (put-beside 'screen 4 0 :obsview #t)))
@@ -160,7 +160,7 @@
         (is (equal '(nil :lost-track) (codes (record))))))))
 
 (test manual-3-4-3.going-to-a-designator-ends-its-track
-  "3.4.3, readings 108 and 112: the approach is told of its success, then the tracker."
+  "3.4.3, readings 108 and 112: the approach gets its success, then the track ends."
   (with-scout (:clean t)
     (place-robot scout 10.5 10.5 0)
     (put-beside 'ball 6 2)
@@ -199,7 +199,8 @@ distance and 0.2 in angle each tick."
 ;;; Losing.
 
 (defun lifetimes (trials found)
-  "Return how many ticks each of TRIALS tracks of what the function FOUND returns lasts."
+  "Return how many ticks each of TRIALS tracks lasts. FOUND is a function that returns a
+designator."
   (let ((camera-desig-delay* 0))
     (loop repeat trials
           collect (let ((start nil) (end nil))
@@ -291,7 +292,7 @@ view, 45 degrees for this camera and 22.5 for that."
 ;;; camera-untrack.
 
 (test manual-3-4-3.camera-untrack-stops-tracking
-  "3.4.3, reading 84: the track is told :INTERRUPT, then untrack NIL; the designator remains."
+  "3.4.3, reading 84: the track gets :INTERRUPT, then untrack NIL; the designator remains."
   (at-each-spot (:clean t)
     (put-beside 'ball 6 0)
     (let ((designator (look '())))

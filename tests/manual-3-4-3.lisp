@@ -26,7 +26,7 @@
       (is (every #'realp view)))))
 
 (test manual-3-4-3.camera-view-shows-the-nearest-obstruction
-  "3.4.3: the substance parameter of what is nearest in the direction of each sample."
+  "3.4.3: the substance parameter of the nearest object or wall in the direction of each sample."
   (at-each-spot (:clean t)
     (is (= 10 (second (view 1))))
     (put-beside 'screen 12 0 :obsview #t :substance 70)

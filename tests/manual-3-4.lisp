@@ -49,7 +49,7 @@
                     (length (first (answer 'camera-view (eye camera)))))))))
 
 (test manual-3-4.cameras-move-independently
-  "3.4: turning one, or putting it into something, leaves the other as it is."
+  "3.4: turning or inserting one camera does not affect the other."
   (at-each-spot (:clean t)
     (answer 'camera-turn (eye 0) 1)
     (answer 'camera-insert (eye 0) (bin-of-scout))
@@ -59,7 +59,7 @@
     (is (eq (bin-of-scout) (camera-location (eye 0))))))
 
 (test manual-3-4.cameras-look-inside-objects
-  "3.4: a camera in a container sees what is directly in there, and nothing else."
+  "3.4: a camera in a container sees only its direct contents."
   (at-each-spot (:clean t)
     (let ((box (put-beside 'box .2 0 :capacity 9)))
       (put 'pen box)
@@ -141,7 +141,7 @@ where the robot stands has the camera's own angle."
                                           (realp value)))))))))
 
 (test manual-3-4-1.descriptors-of-false-designators-are-random
-  "3.4.1, reading 136: they fit what was asked for, and differ from one to the next."
+  "3.4.1, reading 136: false designators fit the specification, and differ from each other."
   (with-scout (:seed 12 :parameters '((false-thing-prob* 1)))
     (let* ((specification '((:size (3 5)) (:color (red blue))))
            (data (look-often 200 #'designator-data :specification specification))
@@ -152,7 +152,7 @@ where the robot stands has the camera's own angle."
                       200 .5)))))
 
 (test manual-3-4-1.local-designators-are-of-objects-next-to-the-robot
-  "3.4.1: they package what is needed to pick an object up."
+  "3.4.1: they have all data that are needed to pick an object up."
   (at-each-spot (:clean t)
     (let ((ball (put-beside 'ball .3 .1)))
       (tracking (record (look '() :type :local))
@@ -176,7 +176,7 @@ where the robot stands has the camera's own angle."
             (is (= (floor y) (floor (robot-y scout))))))))))
 
 (test manual-3-4-1.untracked-ones-last-until-their-object-moves
-  "Reading 139: whatever the robot does meanwhile; then they are dropped, and say so."
+  "Reading 139: whatever the robot does meanwhile; then they are dropped, with a message."
   (at-each-spot (:clean t)
     (let* ((ball (put-beside 'ball 6 0)) (designator (look '())))
       (turned-to 2)
@@ -189,7 +189,7 @@ where the robot stands has the camera's own angle."
       (is (equal '("*WARNING* -> Removing Designator 0") (said))))))
 
 (test manual-3-4-1.untracked-local-ones-last-within-reach
-  "Reading 139: one that nobody tracks goes when its object is out of reach."
+  "Reading 139: one that no camera tracks is lost when its object is out of reach."
   (at-each-spot (:clean t)
     (put-beside 'ball .3 0)
     (let ((designator (look '() :type :local)))
@@ -199,7 +199,7 @@ where the robot stands has the camera's own angle."
       (is (not (designator-valid-p designator))))))
 
 (test manual-3-4-1.stale-ones-fail-when-tracked
-  "Reading 139: a non-local designator of what has moved answers :LOST-TRACK."
+  "Reading 139: tracking a non-local designator of a thing that has moved ends with :LOST-TRACK."
   (at-each-spot (:clean t)
     (let* ((ball (put-beside 'ball 6 0)) (designator (look '())))
       (move-thing ball (beside 6 1))

@@ -11,19 +11,19 @@
   (third (reply 'ars:camera-get-object-designator camera type `((:tag ,tag)))))
 
 (defun follow-designator (designator &optional (camera (lens)))
-  "Let CAMERA track DESIGNATOR; its answers are those to :TRACK. Return DESIGNATOR."
+  "Track DESIGNATOR with CAMERA, under the name :TRACK. Return DESIGNATOR."
   (setf *answers* '())
   (ars:camera-track camera designator (recorder :track))
   (ars:run-ticks 5)
   designator)
 
 (defun follow-ball (x y &rest attributes)
-  "Let camera 0 track a new ball at (X,Y) with ATTRIBUTES. Return the designator."
+  "Track a new ball at (X,Y) with ATTRIBUTES by camera 0. Return the designator."
   (apply #'put 'ball (list x y) :tag 'ball attributes)
   (follow-designator (spot-tag 'ball)))
 
 (defun approach-it ()
-  "Let SPRINTER go to what camera 0 tracks. Return what the continuation was called with."
+  "Make SPRINTER go to what camera 0 tracks. Return the arguments of the continuation."
   (rest (sprint 'ars:robot-goto-designator (lens))))
 
 (defun sprinter-in-cell-p (x y)
@@ -74,7 +74,7 @@ the approach does, since CAMERA-DESIG-DELAY* is the shorter delay."
       (is (equal (list nil sprinter (lens) designator) (approach-it))))))
 
 (test manual-3-5.goto-designator-follows-what-moves
-  "3.5: it always moves towards the designator, wherever that goes meanwhile."
+  "3.5: the robot always moves towards the designator, also if that moves."
   (with-sprinter (:clean t)
     (let ((designator (follow-ball 12.5 5.5)) (ball (ars:find-thing 'ball)))
       (ars:schedule (:ball :timer 10) (ars:move-thing ball 13.5 7.5))

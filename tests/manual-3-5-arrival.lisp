@@ -9,8 +9,8 @@
   "Settings with which nothing but the noise of motion and angles can spoil an approach.")
 
 (defun approach-from (x y to-x to-y &rest attributes)
-  "Put SPRINTER at (X,Y), heading for a new ball at (TO-X,TO-Y) with ATTRIBUTES, and let it go
-there. Return what its continuation was called with."
+  "Put SPRINTER at (X,Y), facing a new ball at (TO-X,TO-Y) with ATTRIBUTES, and make it go there.
+Return the arguments of the continuation."
   (place-sprinter x y (atan (- to-y y) (- to-x x)))
   (apply #'follow-ball to-x to-y attributes)
   (approach-it))
@@ -38,8 +38,8 @@ nothing."
                (is (= ended (ars:robot-x sprinter)) "~A" command)))))
 
 (test manual-3-5.only-what-a-stop-interrupts-coasts
-  "3.5, reading 95: a motion that something else has interrupted stopped at once, also if the
-robot is told to stop in the same breath."
+  "3.5, reading 95: an interrupted motion stops at once, also if the robot gets a stop in the same
+tick."
   (with-sprinter (:clean t)
     (under-way 'ars:robot-go-forward 50)
     (let ((gone (far-to-x)))
@@ -57,8 +57,8 @@ robot is told to stop in the same breath."
              (is (equal (list nil sprinter) (rest (sprint 'ars:robot-stop)))))))
 
 (test manual-3-5.goto-designator-arrives-at-whole-coordinates
-  "3.5, reading 108: where most of the manual's own things stand, along the axes from all sides
-and askew; what it has got to is local, and the track has ended."
+  "3.5, reading 108: at the places of most of the manual's own things, along the axes from all sides
+and at other angles. At the end the thing is local, and the track has ended."
   (loop for (x y) in '((5 10) (15 10) (10 4) (10 16) (4.5 10) (10 16.5) (5.5 7.5) (15.5 13.5)
                        (5 5) (14.37 12.91))
         do (with-sprinter (:clean t)

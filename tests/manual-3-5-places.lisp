@@ -81,8 +81,8 @@ mistaken about that it aligns, in a cell without directions with its own heading
 ;;; Corners.
 
 (test manual-3-5.turn-corner-goes-round-a-convex-one
-  "3.5, reading 105: who has come along one side of a block turns round its corner, to either
-side, and then looks along the other side."
+  "3.5, reading 105: a robot that has driven along one side of a block turns round its corner, to
+the left or right, and then faces along the other side."
   (with-sprinter (:clean t)
     (loop for (x y heading to) in `((32.5 16.5 0 ,(/ pi 2)) (32.5 16.5 ,(/ pi -2) ,(- pi))
                                     (26.5 16.5 ,pi ,(/ pi 2)) (26.1 16.9 ,(/ pi -2) 0)
@@ -95,7 +95,8 @@ side, and then looks along the other side."
              (is (near (- to heading) turned 1d-6) "~A" (list x y heading)))))
 
 (test manual-3-5.turn-corner-goes-out-of-a-concave-one
-  "3.5, reading 105: who has come along one wall into a corner of the hall turns along the other."
+  "3.5, reading 105: a robot that has driven along one wall into a corner turns along the other
+wall."
   (with-sprinter (:clean t)
     (loop for (x y heading to) in `((1.5 1.5 ,pi ,(/ pi 2)) (1 1 ,(/ pi -2) 0)
                                     (38.5 28.5 0 ,(/ pi -2)) (38.9 28.9 ,(/ pi 2) ,pi)

@@ -5,13 +5,13 @@
 (in-suite manual-3-5)
 
 (defun under-way (command &rest arguments)
-  "Let SPRINTER be amid COMMAND, 8 ticks after that was issued; its answers are those to :MOTION."
+  "Issue COMMAND to SPRINTER, under the name :MOTION, and pass 8 ticks."
   (setf *answers* '())
   (apply command sprinter (append arguments (list (recorder :motion))))
   (ars:run-ticks 8))
 
 (defun under-way-p ()
-  "True if nobody has yet been told of the end of what UNDER-WAY began."
+  "True if the continuation of the command that UNDER-WAY issued has not been called yet."
   (null (answers-to :motion)))
 
 (defun far-to-x ()
@@ -65,8 +65,7 @@ ticks, 2 unless that is set, and then stands. Without braking it stands at once.
     (is-true (sprinter-at-p 5.5 5.5))))
 
 (test manual-3-5.other-interruptions-stop-at-once
-  "3.5, reading 95: whatever else is asked for, or a grab of the robot, ends a motion where it
-is."
+  "3.5, reading 95: any other command, or a grab of the robot, ends a motion at once."
   (with-sprinter (:clean t)
     (loop for stop in (list (lambda () (ars:robot-turn sprinter 1))
                             (lambda () (ars:robot-place sprinter))
@@ -109,7 +108,7 @@ is."
          (append (substitute (ars:robot-camera sprinter 0) :camera (rest sprint)) continuation)))
 
 (test manual-3-5.all-of-these-take-the-robot-over
-  "3.5, reading 94: the robot is the resource of each, so whichever comes ends what is under way."
+  "3.5, reading 94: the robot is the resource of each, so each ends the command in progress."
   (dolist (sprint *sprints*)
     (with-sprinter ()
       (under-way 'ars:robot-go-forward 50)
@@ -131,7 +130,7 @@ is."
             "~A" sprint)))))
 
 (test manual-3-5.commands-of-parts-do-not-disturb-the-robot
-  "3.5, 3.1.2: cameras, hands and bins do what they do while the robot moves."
+  "3.5, 3.1.2: cameras, hands and bins work while the robot moves."
   (with-sprinter (:clean t)
     (under-way 'ars:robot-go-forward 10)
     (is (null (first (reply 'ars:camera-view (ars:robot-camera sprinter 0)))))
@@ -143,7 +142,7 @@ is."
     (is-true (under-way-p))))
 
 (test manual-3-5.a-turn-that-is-interrupted-stays-half-done
-  "3.5: what has been turned until then has been turned; the new command goes on from there."
+  "3.5: the turn so far remains, and the new command continues from there."
   (with-sprinter (:clean t)
     (under-way 'ars:robot-turn 9)
     (is-true (sprinter-heads-p (* 7 .3d0)))
@@ -175,7 +174,7 @@ is."
     (is (= 0 (ars:simulation-tick)))))
 
 (test manual-3-5.a-continuation-can-be-left-out
-  "3.5, reading 39: NIL, or none at all, is nobody to tell."
+  "3.5, reading 39: NIL, or none at all, means that no continuation is called."
   (with-sprinter (:clean t)
     (ars:robot-go-forward sprinter 2 nil)
     (ars:run-ticks 10)
@@ -184,7 +183,7 @@ is."
     (is-true (sprinter-at-p (+ 5.5 (* 4 .8d0)) 5.5))))
 
 (test manual-3-5.what-moved-the-robot-from-outside-is-not-in-its-odometers
-  "3.5, reading 114: who puts the robot elsewhere does not tell the robot."
+  "3.5, reading 114: placing the robot elsewhere does not change its odometers."
   (with-sprinter (:clean t)
     (sprint 'ars:robot-go-forward 5)
     (place-sprinter 30 3 2)

@@ -29,14 +29,14 @@
   (ars:place-robot sprinter x y heading))
 
 (defun sprint (command &rest arguments)
-  "Let SPRINTER carry COMMAND out. Return what its continuation was called with, after the tick: a
-list (tick code robot result...). Claims that it was called once, in 150 ticks."
+  "Issue COMMAND to SPRINTER. Return the tick and the arguments of its continuation, a list (tick
+code robot result...). Checks that it was called once, in 150 ticks."
   (let ((calls (apply #'call-times 150 command sprinter arguments)))
     (is (= 1 (length calls)) "~S was answered ~D times" command (length calls))
     (first calls)))
 
 (defun sprint-code (command &rest arguments)
-  "Let SPRINTER carry COMMAND out. Return the error code."
+  "Issue COMMAND to SPRINTER. Return the error code."
   (second (apply #'sprint command arguments)))
 
 (defun sprinter-at-p (x y &optional (tolerance 1d-6))
@@ -90,7 +90,7 @@ heading lists, and :NO-PLACE-TYPE besides."
 ;;; Speeds.
 
 (test manual-3-5.speeds-are-0.8-and-0.3-at-first
-  "3.5, reading 92: a robot that nobody told otherwise drives at 0.8 and turns by 0.3 a tick."
+  "3.5, reading 92: by default a robot drives at 0.8 and turns by 0.3 a tick."
   (with-sprinter ()
     (is (= .8d0 (ars:robot-speed sprinter)))
     (is (= .3d0 (ars:robot-turn-angle sprinter)))))
@@ -197,7 +197,7 @@ into the angle; the first is that in which the delay is over."
     (is (= (+ 7 10 -1) (first (sprint 'ars:robot-turn 1))))))
 
 (test manual-3-5.angles-are-never-reduced
-  "3.5, reading 50: who turns round and round has an angle of many turns, to either side."
+  "3.5, reading 50: the angle counts whole turns, to either side."
   (with-sprinter (:clean t)
     (loop repeat 5 do (sprint 'ars:robot-about-face))
     (is-true (sprinter-heads-p (* 5 pi)))
@@ -234,7 +234,7 @@ robot drives straight ahead, at its speed."
     (is (= (+ 9 2 -1) (first (sprint 'ars:robot-go-forward 2))))))
 
 (test manual-3-5.go-forward-for-no-time-succeeds
-  "3.5, reading 233: for 0 ticks or fewer the robot does not move, whatever its speed is."
+  "3.5, reading 233: for 0 ticks or fewer the robot does not move, at any speed."
   (with-sprinter ()
     (loop for time in '(0 -3 -1/2)
           do (is (equal (list 5 nil sprinter) (sprint 'ars:robot-go-forward time))))
@@ -254,8 +254,8 @@ robot drives straight ahead, at its speed."
                (is-true (sprinter-heads-p heading))))))
 
 (test manual-3-5.walls-block-the-robot-short-of-their-cells
-  "3.5, readings 53, 100: a robot that hits a wall is told :ROBOT-BLOCKED and stands just short of
-the border of its cell, wherever it came from, with noise and without."
+  "3.5, readings 53, 100: a robot that hits a wall gets :ROBOT-BLOCKED and stands just short of the
+border of its cell, from any side, with noise and without."
   (dolist (clean '(t nil))
     (with-sprinter (:clean clean)
       (loop for (x y heading at-x at-y) in `((5 5 0 20 5) (5 5 ,pi 1 5) (5 5 ,(/ pi 2) 5 29)
@@ -323,7 +323,7 @@ delay and a tick for each step, one at least."
 (ars:defrobot stroller (clearing (4.5 4.5) 0))
 
 (test manual-3-5.the-edge-of-the-map-is-a-wall
-  "3.5, readings 53, 102: where nobody built one, too."
+  "3.5, readings 53, 102: also at an edge of the map without a wall."
   (ars:with-simulation (stroller)
     (is (eq :robot-blocked (end-code 'ars:robot-go-forward stroller 20)))
     (is (near 9 (ars:robot-x stroller) 1d-5))

@@ -106,8 +106,8 @@ like bins, and what has no capacity has no room. The hand stays where it is."
       (is (eq :hand-bump (first (try 0)))))))
 
 (test manual-3-6.hands-are-as-large-as-what-they-hold
-  "3.6, readings 153, 154: an empty hand has no size, so it goes even into what is full; else it
-needs the room that the direct contents leave."
+  "3.6, readings 153, 154: an empty hand has no size, so it fits even into a full container; a thing
+in the hand needs the room that the direct contents leave."
   (with-joiner (:clean t)
     (is (= 2 (ars:remaining-capacity (thing 'toolbox))) "6, less 3 and 1")
     (send (arm 0) 'mallet)
@@ -159,7 +159,7 @@ location, and takes it out; then there is more room in the container."
     (is (= 3 (ars:remaining-capacity (thing 'toolbox))))))
 
 (test manual-3-6.what-the-held-thing-contains-is-held-too
-  "3.6, reading 160: a hand cannot go into what is in the thing that it holds."
+  "3.6, reading 160: a hand cannot go into a container that is inside the thing it holds."
   (with-joiner (:clean t)
     (let ((toolbox (point-out 'toolbox)))
       (ars:set-attribute (thing 'casket) :capacity 40)

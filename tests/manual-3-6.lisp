@@ -38,14 +38,14 @@
   (third (reply 'ars:camera-get-object-designator camera type `((:tag ,tag)))))
 
 (defun point-out (tag &key (type :local) (camera (lamp 0)))
-  "Let CAMERA track what has TAG, and tell :TRACK of that. Return the designator."
+  "Track the thing with TAG by CAMERA, under the name :TRACK. Return the designator."
   (let ((designator (sight-tag tag :type type :camera camera)))
     (ars:camera-track camera designator (recorder :track))
     (ars:run-ticks 5)
     designator))
 
 (defun take-tag (index tag)
-  "Let hand INDEX grasp what has TAG. Return the error code."
+  "Grasp the thing with TAG by hand INDEX. Return the error code."
   (code-of 'ars:hand-grasp-desig (arm index) (lamp 0) (point-out tag)))
 
 (defun held (index)
@@ -184,8 +184,8 @@ designator for hand 0 to grasp by."
                           (reply 'ars:hand-grasp-desig (arm 0) camera designator)))))))
 
 (test manual-3-6.grasp-tests-in-the-printed-order
-  "3.6, reading 164: where several things are wrong the one that is printed first is told: a full
-hand in another place, with a designator that is not valid, and so on."
+  "3.6, reading 164: of several errors the one printed first in the manual is reported: a full hand
+in another place, with an invalid designator, and so on."
   (with-joiner (:clean t)
     (let ((invalid (sight-tag 'shaving)) (far (sight-tag 'crate :type :non-local)))
       (flet ((code (designator) (code-of 'ars:hand-grasp-desig (arm 0) (lamp 0) designator)))
@@ -198,7 +198,7 @@ hand in another place, with a designator that is not valid, and so on."
         (is (eq :hand-grasping (code invalid)))))))
 
 (test manual-3-6.a-miss-comes-before-weakness
-  "3.6, reading 164: who misses does not feel the weight."
+  "3.6, reading 164: a hand that misses does not feel the weight."
   (with-joiner (:clean t :parameters '((ars:prob-miss-grasp* 1)))
     (setf ars:prob-miss-grasp* 1)
     (is (eq :missed-grasp (take-tag 0 'anvil)))))
@@ -222,8 +222,8 @@ hand in another place, with a designator that is not valid, and so on."
       (is (null (held 0))))))
 
 (test manual-3-6.grasping-may-lose-designators-silently
-  "3.6, reading 165: bumping the thing loses its designators, of success or not, and no message
-says so; whoever tracks one is told."
+  "3.6, reading 165: bumping the thing loses its designators, after success or failure, without a
+message; their tracks end."
   (dolist (tag '(mallet anvil))
     (with-joiner (:clean t)
       (setf ars:prob-grasp-lose-desig* 1)
@@ -247,7 +247,7 @@ says so; whoever tracks one is told."
       (is (eq designator (ars:camera-tracks (lamp 0)))))))
 
 (test manual-3-6.one-hand-may-take-from-the-other
-  "3.6, reading 231: the other hand loses its grip, and is told."
+  "3.6, reading 231: the other hand loses its grip, and its track ends with :GRASP-LOST."
   (with-joiner (:clean t)
     (is (null (take-tag 0 'mallet)))
     (let ((*answers* '()))
@@ -294,7 +294,7 @@ odd."
           "it can be grasped again by it"))))
 
 (test manual-3-6.what-is-carried-comes-along
-  "3.6: hands and bins take what is in them wherever the robot goes."
+  "3.6: things in hands and bins move with the robot."
   (with-joiner (:clean t)
     (send (arm 0) 'mallet)
     (send (drawer 1) 'shaving)

@@ -13,8 +13,8 @@
   (uiop:split-string (string-right-trim '(#\Newline) (texts)) :separator '(#\Newline)))
 
 (test manual-3-7.messages-are-queued-until-they-are-displayed
-  "3.7: nothing is printed before ERROR-DISPLAY is called; it prints all, oldest first, whatever
-type they are of."
+  "3.7: nothing is printed before ERROR-DISPLAY is called; it prints messages of all types, oldest
+first."
   (with-stroller ()
     (is (string= "" (with-output-to-string (*standard-output*)
                       (ars:error-set "one")
@@ -46,8 +46,8 @@ type they are of."
       (is (string= (format nil "there~%") (get-output-stream-string stream))))))
 
 (test manual-3-7.no-message-is-lost-for-want-of-a-stream
-  "3.7: NIL and T are standard output, too; what is no stream is refused, and the messages are
-still there."
+  "3.7: NIL and T are standard output, too; anything else than a stream is refused, and the messages
+remain."
   (with-stroller ()
     (dolist (stream '(nil t))
       (ars:message-set "here")
@@ -74,8 +74,8 @@ PRINC prints them."
                       (is (string= (format nil "~A~A~%" marker text) (texts)))))))
 
 (test manual-3-7.items-are-printed-when-they-are-read
-  "3.7: what is queued are the items; variables that say how to print are those of whoever
-displays."
+  "3.7: the queue has the items, not their text; the printer's variables count when they are
+displayed."
   (with-stroller ()
     (ars:message-set 10 " " 'name)
     (let ((*print-base* 2) (*print-case* :downcase))
@@ -149,8 +149,7 @@ the simulator goes on."
     (is (null (end-code 'ars:robot-turn stroller 1)))))
 
 (test manual-3-7.users-may-say-things-themselves
-  "3.7: error and warning messages can also be given by the user, from wherever; they come up
-where they were said."
+  "3.7: users can queue error and warning messages, too, anywhere; they come up in order."
   (with-stroller (:clean t)
     (ars:robot-turn stroller .1 (lambda (err robot angle)
                                   (declare (ignore err angle))
@@ -162,8 +161,8 @@ where they were said."
                (displayed-lines)))))
 
 (test manual-3-7.the-queue-is-bounded
-  "3.7, reading 229: nobody has to read; of many messages the newest 1000 are kept, and a warning
-says how many were forgotten."
+  "3.7, reading 229: messages need not be read; the newest 1000 are kept, and a warning says how
+many were dropped."
   (with-stroller ()
     (loop for i from 1 to 5000 do (ars:message-set "message " i))
     (let ((lines (displayed-lines)))

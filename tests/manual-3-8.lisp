@@ -7,9 +7,10 @@
 (defun now () (ars:simulation-tick))
 
 (defmacro diary ((note &optional (lost (gensym))) &body body)
-  "Run BODY, in which (NOTE what) notes what happens and in which tick, and (LOST what) that WHAT
-was interrupted, in a headless simulation, and then pass 30 ticks. Return in order a list of lists
-(what tick) and (:lost what)."
+  "Run BODY in a headless simulation, then pass 30 ticks. In BODY, (NOTE what) notes WHAT and the
+tick, and (LOST what) notes that WHAT was interrupted. Return the notes in order, lists (what tick)
+and
+(:lost what)."
   (let ((entries (gensym)))
     `(let ((,entries '()))
        (with-stroller ()
@@ -23,7 +24,7 @@ was interrupted, in a headless simulation, and then pass 30 ticks. Return in ord
 ;;; When.
 
 (test manual-3-8.interrupts-are-told-in-the-tick-of-the-event-that-won
-  "3.8: what an event's handler reads as the tick is what a body does."
+  "3.8: an event's handler reads the same tick as its body."
   (let ((ticks '()))
     (is (equal '((b 4))
                (diary (note)
@@ -58,7 +59,7 @@ another is the number of ticks from now."
                (ars:schedule (nil :timer 2) (note 'd))))))
 
 (test manual-3-8.timers-count-from-scheduling
-  "3.8: wherever time stands by then; their forms are evaluated at once."
+  "3.8: at whatever tick; their forms are evaluated at once."
   (is (equal '((a 8) (b 10))
              (diary (note)
                (ars:run-ticks 5)
@@ -153,14 +154,14 @@ is interrupted."
                (ars:schedule (nil) (note 'd))))))
 
 (test manual-3-8.a-handler-is-optional
-  "3.8: who is interrupted without one is just not run."
+  "3.8: an interrupted event without one is just not run."
   (is (equal '((b 1))
              (diary (note)
                (ars:schedule (:arm) (note 'a))
                (ars:schedule (:arm :priority 1) (note 'b))))))
 
 (test manual-3-8.an-event-cannot-be-interrupted-while-it-runs
-  "3.8: what it schedules itself, of whatever priority, comes after it."
+  "3.8: events that it schedules itself, of any priority, come after it."
   (is (equal '((begun 1) (ended 1) (rival 2))
              (diary (note lost)
                (ars:schedule (:arm :interrupt (lost 'a))
@@ -246,7 +247,7 @@ priority, 0, queued after it, loses."
     (is (null code) "the turn has ended")))
 
 (test manual-3-8.events-of-higher-priority-interrupt-commands
-  "3.8: the command gets :INTERRUPT, as from another command; it is told at the end of the tick."
+  "3.8: the command gets :INTERRUPT at the end of the tick, as from another command."
   (is (equal '((a 7) (:interrupt 7))
              (diary (note)
                (ars:robot-go-forward stroller 50 (lambda (err robot)

@@ -6,7 +6,7 @@
 
 (defparameter *steady-eyes* '((ars:prob-lose-track* 0) (ars:miss-thing-prob* 0)
                               (ars:false-thing-prob* 0))
-  "Settings with which chance does not decide what is found and tracked.")
+  "Settings without chance in searches and tracks.")
 
 (defun quick-sight (tag index)
   "Return the designator that JOINER's camera INDEX gets on what has TAG, next to it, and tracks."
@@ -101,8 +101,7 @@ another camera tracks it."
 ;;; Bins.
 
 (test manual-4.bin-close-jam-prob*-jams
-  "4, reading 166: if there is anything in the bin to jam it; what has happened before is no
-matter."
+  "4, reading 166: if there is anything in the bin to jam it, whatever has happened before."
   (with-joiner (:seed 7)
     (flet ((jams (trials)
              (loop repeat trials

@@ -109,8 +109,8 @@ walls, or the edge of the map is reached."
 ;;; How wrongly.
 
 (test manual-4.camera-angle-max-error*-is-uniform
-  "4, readings 138, 144: of the angles of designators, and of what a camera says that it has
-turned; it really turns by what it is told."
+  "4, readings 138, 144: of the angles of designators, and of the angle that a camera reports for
+its turn; it really turns by the angle given."
   (loop for error in '(nil .1d0)
         for most = (or error .02d0)
         do (with-lookout (:seed 6 :parameters *only-truth*)

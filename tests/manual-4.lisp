@@ -33,7 +33,7 @@ unless somebody sets it."
                "~A" symbol)))
 
 (test manual-4.what-the-manual-does-not-list-is-ours
-  "4, reading 135: such as the chance of false things, and what time a tick stands for."
+  "4, reading 135: such as the chance of false things, and the time that a tick stands for."
   (dolist (parameter (ars:all-parameters))
     (let ((symbol (base:parameter-symbol parameter)))
       (is (eq (null (assoc symbol *printed-parameters*)) (base:addition-p symbol)) "~A" symbol)))
@@ -148,7 +148,7 @@ limits, density, thresholds and noise factors stay."
     (is (= .4d0 ars:motion-noise*))))
 
 (defun hike ()
-  "Let SPRINTER move, look and feel. Return all that its continuations get, and where it is."
+  "Make SPRINTER move, look and feel. Return the arguments of its continuations, and its position."
   (flet ((say (calls) (mapcar (lambda (call) (subseq call 0 2)) calls)))
     (list (say (call-times 20 'ars:robot-go-forward sprinter 9))
           (fourth (sprint 'ars:robot-turn 1.5)) (ars:robot-x sprinter) (ars:robot-angle sprinter)
@@ -157,7 +157,7 @@ limits, density, thresholds and noise factors stay."
           (ars:designator-angle (spot-tag 'ball)))))
 
 (test manual-4.a-clean-world-depends-on-no-chance
-  "4: behaviour in a noiseless world is the same whatever the seed is; in a dirty one it is not."
+  "4: behaviour in a noiseless world is the same for all seeds; in a dirty one it is not."
   (flet ((outcomes (clean)
            (loop for seed from 1 to 6
                  collect (with-sprinter (:seed seed :clean clean

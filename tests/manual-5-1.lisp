@@ -208,7 +208,7 @@ container; prototypes have no number."
   (is (equal '("CHEST") (names (list chest*)))))
 
 (test manual-5-1.contents-need-not-fit
-  "5.1, reading 63: what a map says is in something is there, however large it is."
+  "5.1, reading 63: contents given by a map are accepted, however large they are."
   (is (< (get-attribute (find-thing 'crate attic) :capacity)
          (get-attribute (find-thing 'sack attic) :size))))
 
@@ -241,7 +241,7 @@ container; prototypes have no number."
                                  '(defmap den (5 5) (obj a (1) ())))))))
 
 (test manual-5-1.clauses-of-no-kind-are-errors
-  "5.1: there are walls, rects, circles and objects; anything else is refused, and told."
+  "5.1: there are walls, rects, circles and objects; anything else is refused, with a message."
   (dolist (clause '((door (1 1) (2 2)) (wall (1 1) bricks 1) (wall (1 1) (2 2) bricks)
                     (rect (0 0) (4 4)) (circle (2 2) bricks 1) (circle (2 2) -1 bricks 1)
                     (obj (1 1) ()) (obj a (1 1) (:color red)) lamp))

@@ -62,7 +62,7 @@ written."
                             (storage-bin-capacity (robot-storage-bin docker 1))))))
 
 (defun try-to-lift (hand name)
-  "Let DOCKER's HAND grasp the thing called NAME; return the error code."
+  "Grasp the thing called NAME by DOCKER's HAND; return the error code."
   (with-simulation (docker :clean t)
     (let ((camera (robot-camera docker 0)) (weight (get-attribute (find-thing name) :weight)))
       (camera-get-object-designator camera :local `((:weight ,weight .001))
@@ -77,7 +77,7 @@ written."
   (is (equal '(nil :insufficient-strength) (list (try-to-lift 1 'coil) (try-to-lift 1 'bale)))))
 
 (test manual-5-2.capacities-are-size-units
-  "5.2, reading 154: what is in a bin takes its size from the capacity."
+  "5.2, reading 154: things in a bin reduce its free capacity by their size."
   (with-simulation (docker)
     (let ((bin (robot-storage-bin docker 0)))
       (new-thing jug bin ((:size 5) (:weight 90)))
@@ -110,7 +110,7 @@ written."
                              (!_angle (robot-camera docker 1)))))))
 
 (test manual-5-2.each-run-begins-with-the-robot-as-defined
-  "5.2: what a robot did in one run does not matter to the next."
+  "5.2: a run does not depend on what the robot did in the one before."
   (flet ((shape () (list (robot-x docker) (robot-angle docker) (robot-speed docker)
                          (storage-bin-closed-p (robot-storage-bin docker 0)))))
     (let ((before (with-simulation (docker) (shape))))

@@ -75,7 +75,7 @@ does not run; probability and test go together."
                        2000 .5)))
 
 (test manual-5-3-1.tests-are-asked-each-tick
-  "5.3.1: what the test says may change from tick to tick."
+  "5.3.1: the value of the test may change from tick to tick."
   (at-pasture ()
     (set-kicker (calf) 'shy)
     (run-ticks 2)
@@ -145,7 +145,7 @@ name is not globally bound."
     (is (null *runs*))))
 
 (test manual-5-3-1.put-kicker-of-the-same-name-replaces
-  "5.3.1: the name is there so that the kicker can be redefined."
+  "5.3.1: the name serves to redefine the kicker."
   (at-pasture ()
     (put-kicker sway (beast (calf)) () (push :old *runs*))
     (put-kicker sway (beast (calf)) () (push :new *runs*))
@@ -219,7 +219,7 @@ returned; off the map is as in a wall (reading 172)."
     (is (equalp '(22 4) (where (calf))))))
 
 (test manual-5-3-1.kick-over-a-wall
-  "Reading 172: what is on the way does not matter, only where it ends."
+  "Reading 172: only the end of a kick matters, not what is on the way."
   (at-pasture ()
     (is (eq t (kick-thing (calf) 15 0 nil)))
     (is (equalp '(22 7) (where (calf))))))
@@ -250,7 +250,7 @@ there."
                                   (storage-bin-contents (robot-storage-bin shepherd 0))))))))
 
 (test manual-5-3-1.kick-out-of-a-hand
-  "Reading 172: a thing kicked from a hand is lost by it; a hand that is tracked is told."
+  "Reading 172: a hand loses a thing that is kicked from it; its track ends with :GRASP-LOST."
   (at-pasture (:clean t)
     (let* ((hand (robot-hand shepherd 0)) (fish (new-thing fish hand ((:size 1)))) (codes '()))
       (hand-track hand (continuation (err hand) (push err codes)))

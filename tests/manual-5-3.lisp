@@ -152,7 +152,7 @@ descriptor; the prototype stays as it was."
       (is (equal '(1.5 2 red) (attributes rake :size :weight :color))))))
 
 (test manual-5-3.attributes-change-what-is-seen-and-done
-  "5.3: what is set holds for the simulator, too: for sight, and for what stands in the way."
+  "5.3: the simulator uses the values that are set, for sight and for obstacles."
   (with-simulation (farmer :clean t)
     (let ((rake (find-thing 'rake)))
       (set-attribute rake :color 'green)
@@ -208,7 +208,7 @@ and takes nothing; yet GET-ATTRIBUTE answers nil, and no number matches."
       (is (equal '(nil (7d0 7d0)) (list (thing-contents cart) (where hay)))))))
 
 (test manual-5-3.things-can-be-destroyed
-  "Reading 168: a destroyed thing is gone; what was in it stays where it was."
+  "Reading 168: a destroyed thing is gone; its contents stay where they were."
   (with-simulation (farmer :clean t)
     (let* ((cart (find-thing 'cart)) (hay (new-thing hay cart ((:size 1)))))
       (destroy-thing cart)

@@ -14,8 +14,8 @@
 (defrobot groom (stable (5.5 10.5) 0) :cameras ((1 100)))
 
 (defmacro with-attributes ((&rest definitions) (&rest options) &body body)
-  "Run BODY in a stable where attributes are defined by DEFINITIONS, in a simulation with OPTIONS in
-which nothing is missed and nothing is seen that is not there."
+  "Run BODY in a stable with attributes defined by DEFINITIONS, in a simulation with OPTIONS.
+Cameras miss no things and see no false ones."
   `(progn
      ,@(loop for definition in definitions collect `(eval '(defattribute ,@definition)))
      (with-simulation (groom ,@options :parameters '((miss-thing-prob* 0) (false-thing-prob* 0)))
@@ -112,7 +112,7 @@ continuous-noise-factor* = 20 at 20 m, half of m times s; by default, m = 1, it 
 ;;; Noticing.
 
 (defun noticed (trials specification)
-  "Return how many of TRIALS searches by SPECIFICATION tell the gait unasked."
+  "Return how many of TRIALS searches by SPECIFICATION report the gait, which they do not specify."
   (count-if #'identity (readings trials :gait specification)))
 
 (test manual-5-4.noticed-is-0-by-default

@@ -1,8 +1,8 @@
 ;;;; manual-5.lisp -- the package in which the claims of chapter 5 and the appendices are tested.
 
-;;; Each section of the manual has a suite, manual-5-1 for 5.1, in a file of that name. A test is a
-;;; claim that the manual makes, or a reading of it, in a user's words: it speaks ARS and NISP, in
-;;; worlds that its file defines. Its docstring says the section, the reading and the claim.
+;;; Each section of the manual has a suite, manual-5-1 for 5.1, in a file of that name. A test
+;;; checks a claim or a reading of the manual with the exports of ARS and NISP only, in worlds that
+;;; its file defines. Its docstring has the section, the reading and the claim.
 
 ;; Not from ARS-MAGNA.TESTS, where NISP is the nickname of a layer.
 (in-package :ars-user)
@@ -38,8 +38,8 @@ one."
 (defun same-name-p (name other) (string= name other))
 
 (defun answer (command &rest arguments)
-  "Issue COMMAND with ARGUMENTS and let ticks pass until it is answered. Return what its
-continuation was called with."
+  "Issue COMMAND with ARGUMENTS and pass ticks until its continuation is called. Return the
+arguments of the continuation."
   (let ((answers '()))
     (apply command (append arguments (list (continuation (&rest answer) (push answer answers)))))
     (run-until (lambda () answers) :limit 2000)

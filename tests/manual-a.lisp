@@ -16,7 +16,7 @@
 ;;; Loading.
 
 (test manual-a.dsklap-loads-the-simulator
-  "A, reading 41: a directory and ars-magna is the system, wherever it is installed."
+  "A, reading 41: a directory and ars-magna mean the system, wherever it is installed."
   (is-true (dsklap "ars-dir/ars-magna"))
   (is-true (dsklap "ars-magna")))
 
@@ -33,7 +33,7 @@
     (is (= 2 *loaded*))))
 
 (test manual-a.dsklap-says-what-is-not-there
-  "Reading 41: what is neither a file nor a system is an error."
+  "Reading 41: a name of neither a file nor a system is an error."
   (signals unknown-name (dsklap "ars-dir/no-such-thing")))
 
 (test manual-a.ars-is-the-installation-directory
@@ -75,8 +75,8 @@
     (is (equal (list scout) shown))))
 
 (test manual-a.simulator-again-starts-anew
-  "Reading 238: the run of the same world ends, what was asked of it is interrupted; robot and
-things are where they were at first."
+  "Reading 238: the run of the same world ends and its commands are interrupted; robot and things
+are at their start again."
   (simulator scout :display nil :rate :free)
   (robot-go-forward scout 10)
   (is-true (await-idle))
@@ -103,7 +103,7 @@ things are where they were at first."
     (is (near -1 (robot-angle lamb) .02))))
 
 (test manual-a.simulators-can-be-stopped-and-started
-  "Reading 89: a simulator that was stopped stands still until it is started anew."
+  "Reading 89: a stopped simulator stands still until it is started again."
   (simulator scout :display nil :rate :free)
   (robot-turn scout .5)
   (is-true (await-idle))
@@ -150,7 +150,7 @@ LOOKING, the robot looks about all the time."
   (is (not (equal (wandering 3) (wandering 4)))))
 
 (test manual-a.each-purpose-has-dice-of-its-own
-  "Reading 218: that somebody looks does not change how a mouse moves."
+  "Reading 218: looking does not change how a mouse moves."
   (is (equal (wandering 3) (wandering 3 :looking t))))
 
 (test manual-a.seeds-can-be-set

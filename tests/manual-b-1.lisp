@@ -114,7 +114,7 @@ a user's package has them all."
       (is (equal '("NISP") (homes name)) "~A" name))))
 
 (test manual-b-1.drawing-stays-in-the-cell
-  "B.1, reading 214: what is drawn beyond the cell's square is cut off."
+  "B.1, reading 214: drawings are clipped to the cell's square."
   (let ((picture (chapel-picture
                   '((w x y) (xlib:draw-rectangle w draw-gcontext* (- x 4) y 40 40 t)))))
     (is-true (drawn-with :svg picture :x 32 :y 16 :width 8 :height 8 :overflow "hidden"))))

@@ -19,8 +19,8 @@
   :cameras ((1 3) (2 5)) :hands (10 5) :bins (9 9))
 
 (defun picture (&rest options)
-  "Return a picture as OPTIONS have it: unless they say otherwise, of 8 pixels to a cell, and
-without what is ours around the map."
+  "Return a picture with OPTIONS; by default with 8 pixels to a cell, and without our additions
+around the map."
   (apply #'svg-picture guide (append options '(:scale 8 :layers (:places)))))
 
 (defun shows-p (text &rest options)
@@ -32,7 +32,7 @@ without what is ours around the map."
   `(with-simulation (guide :clean t ,@options) ,@body))
 
 (defun sees (what &optional (camera 0))
-  "Let CAMERA of GUIDE turn to, and designate, what is called WHAT; return the designator."
+  "Turn CAMERA of GUIDE to the thing called WHAT and search for it; return the designator."
   (let* ((thing (find-thing what)) (camera (robot-camera guide camera))
          (bearing (atan2 (- (thing-y thing) (robot-y guide)) (- (thing-x thing) (robot-x guide)))))
     (answer 'camera-turn camera (- bearing (robot-angle guide) (camera-angle camera)))
@@ -331,7 +331,7 @@ the estimated distance and the denotation of the designator are shown."
       (is-false (shows-p "non-local" :display :cameras)))))
 
 (defun put-camera-into (name)
-  "Let GUIDE's camera 0 be inserted into the thing called NAME, which it stands beside."
+  "Insert GUIDE's camera 0 into the thing called NAME, which is beside the robot."
   (let ((camera (robot-camera guide 0)) (thing (find-thing name)))
     (place-robot guide (thing-x thing) (thing-y thing) 0)
     (let ((there (third (answer 'camera-get-object-designator camera :local '((:color red))))))

@@ -5,8 +5,8 @@
 
 (def-suite* manual-c-plans :in ars-magna)
 
-;;; Plans drive COOK of manual-c.lisp. "Our RPL" is what the manual takes for granted of the
-;;; language, as we do it.
+;;; Plans drive COOK of manual-c.lisp. "Our RPL" marks features of the language that the manual
+;;; assumes and we chose.
 
 (defmacro alone (&body body)
   "Run BODY as a plan without a robot; return its value, or failure, and how it ended."
@@ -31,8 +31,8 @@
                             (seq (wait-time 3) (set-value f :now))))))))
 
 (test manual-c-plans.pulses-are-for-an-instant
-  "C, reading 177: a pulse sets a fluent to true for an instant: all who wait are woken, once; the
-fluent is then false."
+  "C, reading 177: a pulse sets a fluent to true for an instant: all waiting tasks wake, once; then
+the fluent is false."
   (let ((f (create-fluent 'f nil)))
     (is (equal '((:a 2) (:b 2) (nil 7))
                (log-of (par (seq (wait-for f) (note :a) (note (wait-for f :timeout 5)))
@@ -71,7 +71,7 @@ NOT, AND, = and such of fluents do, too."
     (is (equal '((:done 0)) (log-of (loop UNTIL yes (note :turn)) (note :done))))))
 
 (test manual-c-plans.networks-follow-their-fluents
-  "D.4, reading 184: one can wait for a condition of several fluents; it wakes when that becomes
+  "D.4, reading 184: a task can wait for a condition of several fluents; it wakes when that becomes
 true."
   (let ((a (create-fluent 'a nil)) (b (create-fluent 'b 1)))
     (is (equal '((:there 5))
@@ -211,8 +211,8 @@ ends."
                          heard))))))
 
 (test manual-c-plans.interrupted-commands-tell-so
-  "C, reading 179: when a newer command interrupts an older one that tells :INTERRUPT, then comes
-the answer of the newer."
+  "C, reading 179: when a newer command interrupts an older one, that gets :INTERRUPT; then comes
+the result of the newer."
   (in-pantry ()
     (is (equal '(:interrupt nil)
                (planned
@@ -226,7 +226,7 @@ the answer of the newer."
                    (reverse codes)))))))
 
 (test manual-c-plans.losers-commands-go-on
-  "Reading 185: the plan that loses in PURSUE is dropped; the robot goes on with what it asked for."
+  "Reading 185: the plan that loses in PURSUE is dropped; the robot continues its last command."
   (in-pantry ()
     (planned (pursue (seq (rpl-robot-go-forward 6) (wait-for robot-stopped*))
                      (wait-time 7)))
@@ -250,7 +250,7 @@ the answer of the newer."
 
 (test manual-c-plans.grabbing-stops-what-runs
   "C, reading 179: rpl-grab-robot, -camera, -hand and -bin stop the processes on that resource,
-whose fluents tell :INTERRUPT."
+whose fluents become :INTERRUPT."
   (is (equal '(t :interrupt) (told (robot-stopped* robot-movement-error*)
                                    (seq (rpl-robot-goto-wall) (wait-time 7) (rpl-grab-robot)))))
   (is (equal '(t :interrupt) (told ((vref camera-moved* 1) (vref camera-movement-error* 1))
@@ -300,8 +300,8 @@ whose fluents tell :INTERRUPT."
 ;;; What commands of plans end.
 
 (test manual-c-plans.a-wait-does-not-hear-an-older-command
-  "C, our RPL: a command that interrupts another tells that one first, so that a wait after it waits
-for the new one."
+  "C, our RPL: the interrupted command's fluents are set first, so a wait after the new command
+waits for the new one."
   (in-pantry ()
     (is (equal '(nil 1.0)
                (planned (rpl-robot-goto-wall)

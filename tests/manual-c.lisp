@@ -21,7 +21,7 @@
 (defrobot maid (pantry (12 8.5) 0) :hands (3))
 
 (defmacro in-pantry ((&rest options) &body body)
-  "Run BODY with COOK, whom plans may drive, in a fresh and clean pantry."
+  "Run BODY with COOK, ready for plans, in a fresh pantry without noise."
   `(with-simulation (cook :clean t ,@options)
      (rpl-init-robot cook)
      ,@body))
@@ -146,7 +146,7 @@ strength of hands; capacities of bins. They return values, not fluents."
                  (mapcar (lambda (angle) (code 'rpl-robot-set-turn-angle angle)) '(.2d0 0 3)))))))
 
 (defmacro turned (call &body before)
-  "Return what CALL, a turn, tells: pulse, error and the estimated angle, rounded."
+  "Return the results of CALL, a turn: pulse, error and the estimated angle, rounded."
   `(let ((answer (told (robot-stopped* robot-movement-error* (fluent-value robot-angle-diff*))
                        ,call ,@before)))
      (list (first answer) (second answer)
@@ -226,7 +226,7 @@ before it pulses robot-stopped*."
                 (place-robot cook 5 4.5 0)))))
 
 (defmacro searched (call &body before)
-  "Return what CALL, a search by camera 0, tells: pulse, error, and how many designators."
+  "Return the results of CALL, a search by camera 0: pulse, error, and the number of designators."
   `(told ((vref camera-input* 0) (vref camera-error* 0)
           (length (fluent-value (vref camera-designators* 0))))
          ,call ,@before))
@@ -297,7 +297,7 @@ destination is a designator, a bin or its index."
 ;;; Hands.
 
 (defmacro handled (call &body before)
-  "Return what CALL, a movement of hand 0, tells: pulse, error, what it is inside of and grasps."
+  "Return the results of CALL, a movement of hand 0: pulse, error, container and thing grasped."
   `(told ((vref hand-moved* 0) (vref hand-error* 0)
           (princ-to-string (fluent-value (vref hand-inside* 0)))
           (princ-to-string (fluent-value (vref hand-grasping* 0))))

@@ -5,8 +5,8 @@
 
 (def-suite* manual-d :in ars-magna)
 
-;;; What the appendix says of its programs, told by programs of our own in the same two ways: with
-;;; continuations and as plans.
+;;; The claims of the appendix about its programs, checked by programs of our own in the same two
+;;; styles: with continuations and as plans.
 
 (defmap garden (40 30)
   (rect (0 0) (39 29) stone 10)
@@ -52,7 +52,7 @@
 
 (test manual-d.functions-of-ones-own-take-continuations
   "D: a function that takes a continuation as robot commands do returns at once, after scheduling
-what it needs; what it was asked for is told later."
+what it needs; its result comes later."
   (in-garden (:clean t)
     (let ((answers '()))
       (search-round (eye) :non-local '((:color violet))
@@ -172,7 +172,7 @@ drops the object into it; here the bin is open already (reading 190), which does
     (set-value result (first (fluent-value (vref camera-designators* 0))))))
 
 (test manual-d.fluents-return-results
-  "D.2: a plan may set a fluent that is given to it, as soon as there is something to tell."
+  "D.2: a plan may set a fluent that is given to it, as soon as it has a result."
   (in-garden (:clean t)
     (let ((result (create-fluent 'result nil)))
       (is (eq :succeeded (nth-value 1 (run-plan 'search-plan '((:color violet)) result))))
@@ -263,8 +263,8 @@ the policy that would fail is over."
     (is-true (storage-bin-closed-p (pouch)))))
 
 (test manual-d.grabbing-what-is-too-heavy
-  "D.6: a policy on the error fluent fails the plan in the middle of it; what comes after is not
-done."
+  "D.6: a policy on the error fluent fails the plan in the middle; its remaining steps are not
+run."
   (in-garden (:clean t)
     (place-robot runner 9 25.5 0)
     (planned (rpl-storage-bin-close 0) (wait-for (vref storage-bin-moved* 0)))
@@ -337,8 +337,8 @@ home."
       (is (< (sqrt (+ (expt (- (robot-x runner) 20) 2) (expt (- (robot-y runner) 15) 2))) .51)))))
 
 (test manual-d.odometers-are-inaccurate
-  "D.8: to return by odometry alone is bound to be inaccurate: with noise the robot believes to be
-near, and the truth is in the interval (3.2.2), but off the centre."
+  "D.8: a return by odometry alone is inaccurate: with noise the estimate is near the goal, and the
+true position is in the interval (3.2.2), but off its centre."
   (loop for seed below 4
         do (in-garden (:seed seed)
              (place-robot runner 20 15 0)

@@ -18,8 +18,8 @@
   :cameras ((1 3) (2 5)) :hands (10 4) :bins (20 5))
 
 (defun typed-with (options lines)
-  "Let LINES be typed at a prompt with OPTIONS, and the robot NANNY. Return what it writes, a list
-of lines, and how many errors there were."
+  "Type LINES at a prompt with OPTIONS and the robot NANNY. Return its output, a list of lines, and
+the number of errors."
   (let* ((output (make-string-output-stream))
          (session (apply #'make-session :output output
                                         :input (make-string-input-stream (joined lines)) options)))
@@ -53,7 +53,7 @@ of lines, and how many errors there were."
 ;;; Lines.
 
 (test manual-e.the-prompt-is-robot
-  "E: the prompt Robot> shows that one may type; after an answer there is a new one."
+  "E: the prompt Robot> shows that input is expected; after an answer there is a new one."
   (is (equal '("Robot> stop" "Robot> robot-stop: Robot stopped" "Robot> ") (transcript "stop"))))
 
 (test manual-e.commands-are-a-name-and-arguments
@@ -81,7 +81,7 @@ the robot is never specified."
   (is (= 2 (errors "cam-view 2" "hand-remove -1" "turn .5"))))
 
 (test manual-e.unknown-commands-are-errors
-  "E: what is no command, or has other arguments, is told, and the prompt goes on."
+  "E: an unknown command or wrong arguments give a message, and the prompt continues."
   (is (equal '(1 1 1 0) (list (errors "levitate") (errors "turn") (errors "turn left 2")
                               (errors "turn 1"))))
   (is (equal "7" (last-line "levitate" "(+ 3 4)"))))
@@ -166,7 +166,8 @@ with a command, help for that."
   (is-false (search "BIN-OPEN" (joined (typed "menu-hand")))))
 
 (test manual-e.quit
-  "E, reading 205: QUIT exits the prompt; the simulator keeps running, with what was asked of it."
+  "E, reading 205: QUIT exits the prompt; the simulator keeps running, with the commands in
+progress."
   (is (equal '("7") (typed "(+ 3 4)" "quit" "(+ 1 1)")))
   (with-simulation (nanny :clean t)
     (run-session (make-session :output (make-broadcast-stream) :batch t :patient nil

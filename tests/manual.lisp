@@ -2,8 +2,8 @@
 
 (in-package :ars-user)
 
-;;; These suites are written as a user writes, in a package of the user's: all that they ask of the
-;;; simulator is what ARS and NISP export.
+;;; These suites are written as users write, in a user's package. They use only the exports of ARS
+;;; and NISP.
 
 (define-user-package :ars-test-manual
   (:documentation "Where a user checks the manual's claims, one after another.")

@@ -1,4 +1,4 @@
-;;;; moments.lisp -- what is told of a run besides its ways: what became of plans, errors, trails.
+;;;; moments.lisp -- events shown with the ways of a run: plans, errors, trails.
 
 (in-package :ars-magna.tests)
 (in-suite display)

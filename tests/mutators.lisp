@@ -1,8 +1,8 @@
-;;;; mutators.lisp -- damage by the roll of dice: of forms, of texts and of bytes.
+;;;; mutators.lisp -- random damage to forms, texts and bytes.
 
 (in-package :ars-magna.tests)
 
-;;; What is damaged is copied first. The same dice do the same damage.
+;;; A copy is damaged, not the original. The same dice do the same damage.
 
 (defun one-of (dice &rest elements) (base:roll-element elements dice))
 

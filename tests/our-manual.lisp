@@ -1,10 +1,10 @@
-;;;; our-manual.lisp -- what ./cli/ars-magna --manual writes: pages whose links lead somewhere.
+;;;; our-manual.lisp -- what ./cli/ars-magna --manual writes: pages whose links have targets.
 
 (in-package :ars-magna.tests)
 
 (def-suite* our-manual :in ars-magna)
 
-;;; Without the program that reads Markdown there is no manual.
+;;; Without cmark-gfm, the program that reads Markdown, these tests are skipped.
 
 (defun markdown-program-p ()
   (and (base:run-command "cmark-gfm" '("--version")) t))

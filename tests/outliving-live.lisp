@@ -1,4 +1,4 @@
-;;;; outliving-live.lisp -- a live run, and several, outlive what users' code and other threads do.
+;;;; outliving-live.lisp -- live runs continue after errors in users' code and in other threads.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; outliving.lisp -- a run outlives what users' code does in it: errors, aborts, throws, hanging.
+;;;; outliving.lisp -- a run continues after errors, aborts, throws and hangs in users' code.
 
 (in-package :ars-magna.tests)
 

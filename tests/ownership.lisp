@@ -1,4 +1,4 @@
-;;;; ownership.lisp -- who drives a robot when several do: the newest, and it shows who.
+;;;; ownership.lisp -- several programs drive one robot: the newest does, and it shows which.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; package.lisp -- where all tests live, and the one door to FiveAM.
+;;;; package.lisp -- the package of all tests, and the only file that names FiveAM.
 
 (defpackage :ars-magna.tests
   (:documentation "One suite per layer, and one per section of the manual (see README.md). Other

@@ -1,10 +1,10 @@
-;;;; palette.lisp -- that colours are told apart, and that what is drawn is seen on what it lies on.
+;;;; palette.lisp -- colours can be told apart, and drawings be seen on their background.
 
 (in-package :ars-magna.tests)
 
 (in-suite display)
 
-;;; What eyes see that miss one kind of cones is simulated as by G. M. Machado, M. M. Oliveira and
+;;; Eyes without one kind of cones are simulated by the method of G. M. Machado, M. M. Oliveira and
 ;;; L. A. F. Fernandes, "A Physiologically-based Model for Simulation of Color Vision Deficiency",
 ;;; IEEE Transactions on Visualization and Computer Graphics 15 (2009), 1291-1298: their matrices
 ;;; for severity 1.0, on linear light. A print in grey keeps the luminance. Colours are compared in

@@ -1,4 +1,4 @@
-;;;; picture-margins.lisp -- what stands around a map in a picture, and how large all that is.
+;;;; picture-margins.lisp -- what is drawn around a map in a picture, and its size.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; pictures-kept.lisp -- what was there is as it was where a picture cannot be saved.
+;;;; pictures-kept.lisp -- an existing file is unchanged if a picture cannot be saved.
 
 (in-package :ars-magna.tests)
 

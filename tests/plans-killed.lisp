@@ -1,9 +1,9 @@
-;;;; plans-killed.lisp -- shipped plans that are ended at any tick, and started again, do as well.
+;;;; plans-killed.lisp -- shipped plans ended at any tick and started again succeed as well.
 
 (in-package :ars-magna.tests)
 (in-suite plans)
 
-;;; Three hundred trials of each, (setf *kills* 300), take some minutes.
+;;; For a thorough test, (setf *kills* 300); that takes some minutes.
 
 (defparameter *kills* 8 "How often each errand is ended and started again.")
 
@@ -22,9 +22,9 @@ Return its task, the last, and how many ticks it took in all."
       (values task (run:simulation-tick)))))
 
 (defun count-killed (robots plan arguments done-p)
-  "Run PLAN with the list that ARGUMENTS, a function of a seed, returns, on ROBOTS, *KILLS* times by
-different seeds, whole and again ended at a tick that chance chooses. Return how often the task
-satisfied DONE-P, a function of task, seed and position, whole and ended."
+  "Run PLAN on ROBOTS with *KILLS* seeds, for each seed once to its end and once ended at a random
+tick. ARGUMENTS is a function of the seed that returns the plan's arguments. Return how often the
+task satisfied DONE-P, a function of task, seed and position, whole and ended."
   (flet ((trial (seed kill)
            (run:call-with-simulation
             (lambda ()

@@ -1,10 +1,10 @@
-;;;; plans.lisp -- the shipped plans and programs do what they are for.
+;;;; plans.lisp -- the shipped plans and programs reach their goals.
 
 (in-package :ars-magna.tests)
 
 (def-suite* plans :in ars-magna)
 
-;;; Success is judged by the truth, which no plan knows.
+;;; Success is measured by the true state of the world, which plans cannot see.
 
 (defun distance-from (x y thing)
   (multiple-value-bind (thing-x thing-y) (world:thing-position thing)

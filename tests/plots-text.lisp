@@ -4,7 +4,7 @@
 
 (in-suite plots)
 
-;;; By the widths that the canvas takes text to have at most.
+;;; Measured by the canvas's upper bounds for the width of text.
 
 (defun text-box (element)
   "Return the box left, top, right, bottom, in which the text ELEMENT is."

@@ -1,4 +1,4 @@
-;;;; printing.lisp -- files and other programs get the same, whatever the printer is set to.
+;;;; printing.lisp -- files and data for other programs do not depend on the printer's settings.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; projecting-apart.lisp -- what worlds believed in cannot reach, and what rollouts cost.
+;;;; projecting-apart.lisp -- what worlds of belief cannot reach, and the cost of rollouts.
 
 (in-package :ars-test-projecting)
 (in-readtable :nisp)
@@ -7,7 +7,7 @@
 
 (defrobot second-runner (court (12 10) 0))
 
-;;; Global variables lead from a world believed in to the true run.
+;;; Global variables could lead from a world of belief to the true run.
 
 (defvar *true-runner* nil)
 (defvar *true-ball* nil)

@@ -1,4 +1,4 @@
-;;;; projecting-mistakes.lisp -- projections asked for wrongly, and what plans write in them.
+;;;; projecting-mistakes.lisp -- wrong calls of projections, and what plans write in them.
 
 (in-package :ars-test-projecting)
 (in-readtable :nisp)

@@ -1,4 +1,4 @@
-;;;; projecting.lisp -- plans that are tried in forks, and choose by that.
+;;;; projecting.lisp -- plans that are tried in forks, and choose by the results.
 
 (in-package :ars-user)
 

@@ -1,13 +1,13 @@
-;;;; random-driver.lisp -- a driver who commands robots at random, and who watches it.
+;;;; random-driver.lisp -- a driver that issues random commands, and checks after each tick.
 
 (in-package :ars-magna.tests)
 
 (def-suite* random-driver :in ars-magna)
 
-;;; Two robots in a room full of things that move, change and vanish. The driver issues every
-;;; command there is, with arguments that make sense and with others that do not, and changes the
-;;; world by hand. After each tick the world must not contradict itself; each command must be
-;;; answered exactly as often as its description says; no error may leave the simulator.
+;;; Two robots are in a room full of things that move, change and vanish. The driver issues all
+;;; commands, with valid and invalid arguments, and changes the world directly. After each tick the
+;;; world must not contradict itself. Each continuation must be called exactly as often as its
+;;; command's description says. No error may leave the simulator.
 
 (world:defmap zoo (9 9)
   (rect (0 0) (8 8) bricks 1 4 8 12) (wall (5 1) (5 2) slate 20)

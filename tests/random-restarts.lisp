@@ -1,12 +1,12 @@
-;;;; random-restarts.lisp -- a random driver, while what is defined changes and runs end.
+;;;; random-restarts.lisp -- random commands, while definitions change and runs end.
 
 (in-package :ars-magna.tests)
 
 (in-suite random-driver)
 
-;;; Like the random drive, but now and then a kicker, attribute, manipulation, place type or the map
-;;; itself is defined anew, and the run ends in the midst of everything and another begins. What was
-;;; asked of a run that ends is answered by its end.
+;;; Like the random driver, but now and then a kicker, attribute, manipulation, place type or the
+;;; map is defined again, and the run ends at any moment and another begins. All continuations of a
+;;; run must have been called when it has ended.
 
 (defun redefine-kicker ()
   (world:define-kicker (pick '(ride-hop ride-vanish ride-change)) :prob (pick '(0 .01 .1))

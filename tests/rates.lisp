@@ -1,4 +1,4 @@
-;;;; rates.lisp -- checks that hold plans to their rates: what they decide, and how often wrongly.
+;;;; rates.lisp -- checks of success rates: what they decide, and how often they err.
 
 (in-package :ars-magna.tests)
 

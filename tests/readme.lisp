@@ -1,4 +1,4 @@
-;;;; readme.lisp -- what the first page shows works, typed as it stands there.
+;;;; readme.lisp -- the examples of the first page work as printed.
 
 (in-package :ars-magna.tests)
 

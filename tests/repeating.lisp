@@ -1,11 +1,11 @@
-;;;; repeating.lisp -- runs repeated that ask for something by themselves, inside of ticks.
+;;;; repeating.lisp -- repeated runs with kickers and events that issue requests themselves.
 
 (in-package :ars-magna.tests)
 
 (def-suite* repeating :in ars-magna)
 
-;;; What kickers and events ask for they ask for again, in a replay too. What continuations asked
-;;; for is in the journal.
+;;; In a replay, kickers and events issue their requests again. The requests of continuations are in
+;;; the journal.
 
 (defun is-repeated (journal digest)
   "Check that JOURNAL comes to DIGEST, and the replay to the same journal."

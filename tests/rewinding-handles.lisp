@@ -1,4 +1,4 @@
-;;;; rewinding-handles.lisp -- what users hold of a run that was rewound leads on, nothing back.
+;;;; rewinding-handles.lisp -- users' references to objects of a rewound run remain usable.
 
 (in-package :ars-magna.tests)
 (in-suite rewinding)

@@ -1,4 +1,4 @@
-;;;; rewinding-values.lisp -- what fluents, arguments of plans and dice are, once a run is rewound.
+;;;; rewinding-values.lisp -- fluents, arguments of plans and random numbers after a rewind.
 
 (in-package :ars-magna.tests)
 (in-suite rewinding)

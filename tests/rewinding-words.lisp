@@ -1,9 +1,9 @@
-;;;; rewinding-words.lisp -- whatever is said to a run and its plans, and when, is said again.
+;;;; rewinding-words.lisp -- requests to a run and its plans repeat alike after a rewind.
 
 (in-package :ars-magna.tests)
 (in-suite rewinding)
 
-;;; Plans that wait for each other, think, are watched over by policies, and say what they do.
+;;; Plans that wait for each other, think, run under policies, and print what they do.
 
 (defvar *bell* (rpl:create-fluent 'bell) "What plans listen to.")
 

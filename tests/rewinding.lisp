@@ -1,4 +1,4 @@
-;;;; rewinding.lisp -- runs that go back to an earlier tick are what they were, and go on.
+;;;; rewinding.lisp -- runs that go back to an earlier tick are as they were, and continue.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; rpl-alone.lisp -- what run-plan-alone leaves: nothing, however the plan ends.
+;;;; rpl-alone.lisp -- run-plan-alone leaves nothing behind, however the plan ends.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

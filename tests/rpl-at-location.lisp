@@ -1,9 +1,9 @@
-;;;; rpl-at-location.lisp -- at-location alone: places lost, gone to again, and shared.
+;;;; rpl-at-location.lisp -- at-location alone: places lost, returned to, and shared.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-;;; A robot that is a fluent, its place; to go anywhere takes it three ticks.
+;;; A robot that is only a fluent, its place. It takes three ticks to go anywhere.
 
 (rpl:def-interp-proc go-to-place (robot place)
   (tell (list :go place))

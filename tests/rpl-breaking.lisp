@@ -1,4 +1,4 @@
-;;;; rpl-breaking.lisp -- breaks where plans fail, and going through plans step by step.
+;;;; rpl-breaking.lisp -- breaks where plans fail, and stepping through plans.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

@@ -1,4 +1,4 @@
-;;;; rpl-care.lisp -- plans whose Lisp code is aborted, left or debugged; plans that have to end.
+;;;; rpl-care.lisp -- plans whose Lisp code is aborted, left or debugged; plans that must end.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

@@ -1,4 +1,4 @@
-;;;; rpl-clashes.lisp -- a command that interrupts that of a task beside it is told of, once.
+;;;; rpl-clashes.lisp -- a command that interrupts another task's command is reported, once.
 
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)

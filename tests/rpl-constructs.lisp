@@ -1,4 +1,4 @@
-;;;; rpl-constructs.lisp -- how constructs are defined, and what states they are in.
+;;;; rpl-constructs.lisp -- how constructs are defined, and their states.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

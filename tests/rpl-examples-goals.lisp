@@ -3,8 +3,8 @@
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)
 
-;;; CRAM's plan library: a thing is somewhere by being in the hand, and then put there; when it is
-;;; lost on the way it is fetched again, three times in all.
+;;; CRAM's plan library: to get a thing to a place, grasp it and put it down there. If it is lost on
+;;; the way, fetch it again, three times in all.
 
 (defvar *thefts* 0 "How often the robot is to lose what it has grasped.")
 (defvar *grasped* nil "The colour of what the robot believes to have in its hand.")

@@ -3,7 +3,7 @@
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)
 
-;;; A hall with a lane at 4.5, that a pillar is in, beside it a wall, and a free lane at 2.5.
+;;; A hall with two lanes: one at 4.5 with a pillar in it, beside a wall, and a free one at 2.5.
 (world:defmap mail-hall (44 9)
   (rect (0 0) (43 8) bricks 5)
   (wall (17 5) (23 5) slate 5)

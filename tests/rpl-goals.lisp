@@ -3,7 +3,7 @@
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-;;; What the robot of these tests believes: a list of such as (on a b).
+;;; The robot's beliefs are a list of facts such as (on a b).
 
 (defvar *believed* '() "Goals that are believed.")
 

@@ -1,4 +1,4 @@
-;;;; rpl-gone.lisp -- plans whose robot is gone, and plans that are ended from elsewhere.
+;;;; rpl-gone.lisp -- plans whose robot is gone, and plans ended from elsewhere.
 
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)

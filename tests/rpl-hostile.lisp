@@ -1,4 +1,4 @@
-;;;; rpl-hostile.lisp -- plans that make no sense are refused, in our words.
+;;;; rpl-hostile.lisp -- invalid plans are refused, in our words.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

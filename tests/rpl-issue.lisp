@@ -1,9 +1,9 @@
-;;;; rpl-issue.lisp -- a plan hears at once what its command ends; what it ends when it ends itself.
+;;;; rpl-issue.lisp -- what a plan learns when its commands interrupt others, or it ends.
 
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)
 
-;;; Told at issue.
+;;; Interruptions at issue.
 
 (rpl:def-interp-proc turned (angle)
   "Turn FITTER by ANGLE; return the error code and when that is heard."

@@ -1,10 +1,10 @@
-;;;; rpl-kills.lisp -- random plans killed at random moments in random ways: nothing is left.
+;;;; rpl-kills.lisp -- random plans killed at random moments in random ways leave nothing behind.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-;;; A plan here has parameters f g h (fluents) and v w (valves). Its cleanups end within some ticks
-;;; by themselves, so that all of it must be over some time after it has been killed.
+;;; A plan here has the parameters f g h (fluents) and v w (valves). Its cleanups end by themselves
+;;; within some ticks, so all of it must have ended some time after it has been killed.
 
 (defun random-cleanup (depth dice)
   "Return a random form that ends within some ticks."

@@ -1,4 +1,4 @@
-;;;; rpl-left.lisp -- plans whose caller leaves them, and robots that others come to drive.
+;;;; rpl-left.lisp -- plans whose caller leaves them, and robots taken over by others.
 
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)

@@ -1,9 +1,9 @@
-;;;; rpl-named-policies.lisp -- named policies, counters, waiting for what is no fluent.
+;;;; rpl-named-policies.lisp -- named policies, counters, waiting for other values than fluents.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-;;; What the policies below tell.
+;;; Notes that the policies below make.
 
 (defvar *told* '() "What clauses of policies have told, last first.")
 

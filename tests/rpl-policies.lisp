@@ -33,9 +33,9 @@
       (is (= 5 (turns :all))))))
 
 (defun turns-of-network (missed network &rest then)
-  "Return when (WHENEVER (NETWORK :MISSED MISSED) ...) runs its body. NETWORK is a function of two
-fluents, of which the second is true from tick 1 on; the first is pulsed at the ticks 2 to 5 with
-each of THEN."
+  "Return the ticks in which (WHENEVER (NETWORK :MISSED MISSED) ...) runs its body. NETWORK is a
+function of two fluents. The second is true from tick 1 on; the first is pulsed with each of THEN at
+the ticks 2 to 5."
   (let ((bell (fluent)) (on (fluent)))
     (mapcar #'second
             (with-log (note)

@@ -1,4 +1,4 @@
-;;;; rpl-readme.lisp -- what rpl/README.md shows is so, and it shows every construct.
+;;;; rpl-readme.lisp -- the examples of rpl/README.md are correct and show every construct.
 
 (in-package :ars-magna.tests)
 

@@ -7,7 +7,7 @@
 
 (def-suite* rpl-robot :in ars-magna)
 
-;;; Two rooms and a doorway. FITTER stands among its things, before it a jar in the other room.
+;;; Two rooms and a doorway. FITTER stands among its things, facing a jar in the other room.
 (world:defmap workbench (13 11)
   (rect (0 0) (12 10) bricks 5)
   (wall (6 1) (6 4) slate 20)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)
 
-;;; No test here waits for a time: each waits for facts, and gives up only when these do not come.
+;;; No test here waits for a length of time. Each waits for events, with a limit.
 
 (defun await (fact)
   "Wait until FACT, a function, returns true; return that, or NIL if it does not come."

@@ -1,10 +1,10 @@
-;;;; rpl-robot-published.lisp -- what other threads know of live plans without holding them.
+;;;; rpl-robot-published.lisp -- what other threads can read of live plans without the plans' lock.
 
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)
 
-;;; It is published when the plans' lock is given back. While a thread holds that, the runner may be
-;;; half changed: here its heap of timers is no heap.
+;;; The data are published when the plans' lock is released. While a thread holds the lock the
+;;; runner may be inconsistent; here its heap of timers is broken on purpose.
 
 (defun call-with-half-changed-plans (function)
   "Call FUNCTION with an interface whose plans wait for tick 51, as last published, and the run.

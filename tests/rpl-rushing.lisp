@@ -1,4 +1,4 @@
-;;;; rpl-rushing.lisp -- plans that give command after command and let no time pass fail.
+;;;; rpl-rushing.lisp -- plans that issue command after command without letting time pass fail.
 
 (in-package :ars-magna.tests)
 (in-suite rpl-robot)

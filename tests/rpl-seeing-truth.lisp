@@ -1,4 +1,4 @@
-;;;; rpl-seeing-truth.lisp -- what is seen of plans is so, and can be read.
+;;;; rpl-seeing-truth.lisp -- what is shown of plans is correct and readable.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

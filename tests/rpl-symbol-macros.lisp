@@ -1,4 +1,4 @@
-;;;; rpl-symbol-macros.lisp -- symbol macros in plans stand for plan text; what iterate is told.
+;;;; rpl-symbol-macros.lisp -- symbol macros in plans stand for plan text; the library iterate.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)
@@ -62,8 +62,8 @@
 
 ;; What a pattern matcher makes of (match object ((list x y) ...) ...): to fail is to go on.
 (defmacro match-pair (object pair-form otherwise)
-  "Return what PAIR-FORM returns if OBJECT is a list of two, bound to X and Y, of which X is not
-greater, else what OTHERWISE returns."
+  "If OBJECT is a list of two with the first not greater, return the value of PAIR-FORM with X and Y
+bound to the two, else the value of OTHERWISE."
   (let ((value (gensym)) (next (gensym)))
     `(let ((,value ,object))
        (block match
@@ -90,8 +90,8 @@ greater, else what OTHERWISE returns."
 ;;; Iterate.
 
 (defun call-with-iterate (function)
-  "Call FUNCTION with a symbol that is a macro, named and at home as the one of the library iterate;
-it expands all that is in it, as that does."
+  "Call FUNCTION with a macro with the name and package of ITERATE's ITER. Like that, it expands all
+forms in its body."
   (let* ((there (find-package "ITERATE"))
          (package (or there (make-package "ITERATE" :use '())))
          (symbol (intern "ITER" package)))

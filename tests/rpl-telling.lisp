@@ -1,4 +1,4 @@
-;;;; rpl-telling.lisp -- what plans tell of data without end, and of such as cannot be printed.
+;;;; rpl-telling.lisp -- what plans print of circular, endless and unprintable data.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

@@ -1,4 +1,4 @@
-;;;; rpl-text-places.lisp -- on which line something is wrong with a plan, and what is said of it.
+;;;; rpl-text-places.lisp -- messages about plans name the right line.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

@@ -1,10 +1,10 @@
-;;;; rpl-text.lisp -- what is said of a plan's text before it runs, and to those who look it up.
+;;;; rpl-text.lisp -- messages about a plan's text before it runs, and documentation of plans.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-;;; Files. What is said of one is a list of pairs: the form that the compiler points at, as text,
-;;; and what it says.
+;;; Files. The notes about a file are a list of pairs: the form that the compiler points at, as
+;;; text, and the message.
 
 (defun call-in-own-package (function)
   "Call FUNCTION while there is an empty package for texts, which is current."

@@ -1,9 +1,9 @@
-;;;; rpl-valve-stress.lisp -- random plans about valves: who has lost one does not run.
+;;;; rpl-valve-stress.lisp -- random plans with valves: a task that has lost one does not run.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-;;; A plan here is a form with the variables V and W, valves, and LOOK, a function that looks
+;;; A plan here is a form with the variables V and W (valves) and LOOK, a function that checks
 ;;; whether the task that calls it may run.
 
 (defun random-valve-parts (depth dice)

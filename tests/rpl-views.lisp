@@ -1,4 +1,4 @@
-;;;; rpl-views.lisp -- fl-pulsed and fl-value-changed: what has happened since one looked last.
+;;;; rpl-views.lisp -- fl-pulsed and fl-value-changed: what has happened since the last look.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

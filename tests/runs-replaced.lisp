@@ -3,8 +3,8 @@
 (in-package :ars-magna.tests)
 (in-suite runs)
 
-;;; Each test puts one thread where another can come between, by a wrapper of the function that is
-;;; called there. What comes between is the same in every run.
+;;; Each test stops one thread at a critical point, by a wrapper of the function called there, and
+;;; lets another run. So the interleaving is the same in every run.
 
 (defun call-wrapped-once (name between function)
   "Call FUNCTION. Where NAME, a function's name, is called first, BETWEEN is called instead, with

@@ -1,4 +1,4 @@
-;;;; runs.lisp -- runs beside one another, requests that go wrong, changes from several threads.
+;;;; runs.lisp -- runs side by side, requests that fail, changes from several threads.
 
 (in-package :ars-magna.tests)
 
@@ -23,7 +23,7 @@
     (run:save-journal file simulation)
     (= (run:state-digest simulation) (nth-value 1 (run:replay file)))))
 
-;;; The world that code works in is that of the run it runs for.
+;;; Code works in the world of its own run.
 
 (test run.binds-its-world-in-what-it-calls
   (with-pony ()

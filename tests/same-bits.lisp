@@ -4,9 +4,9 @@
 
 (def-suite* same-bits :in ars-magna)
 
-;;; What one machine recorded stands in tests/same-bits: the digests of 40 set-ups, the journal of
-;;; one of them, and a saved run. All machines must come to the same. After a change of what runs
-;;; do, record it anew: (record-same-bits), and say in the commit why.
+;;; tests/same-bits has the records of one machine: the digests of 40 set-ups, the journal of one of
+;;; them, and a saved run. All machines must produce the same. After a change in behaviour, record
+;;; again with (record-same-bits), and give the reason in the commit.
 
 (defun same-bits-file (name)
   (project-file (format nil "tests/same-bits/~A" name)))

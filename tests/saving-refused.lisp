@@ -1,4 +1,4 @@
-;;;; saving-refused.lisp -- what could not be loaded again is not saved.
+;;;; saving-refused.lisp -- states that could not be loaded again are not saved.
 
 (in-package :ars-magna.tests)
 (in-suite saving)

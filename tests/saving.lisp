@@ -1,4 +1,4 @@
-;;;; saving.lisp -- runs saved in files, and gone on with from there.
+;;;; saving.lisp -- runs saved in files, and continued from there.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; shipped-manipulations.lisp -- what the shipped worlds let robots do to their things.
+;;;; shipped-manipulations.lisp -- the manipulations of the shipped worlds.
 
 (in-package :ars-magna.tests)
 

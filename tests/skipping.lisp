@@ -1,4 +1,4 @@
-;;;; skipping.lisp -- time that is skipped: what a run comes to when a tick stands for more of it.
+;;;; skipping.lisp -- skipped time: results of a run when a tick stands for more time.
 
 (in-package :ars-magna.tests)
 

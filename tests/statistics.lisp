@@ -1,10 +1,10 @@
-;;;; statistics.lisp -- what is seen, as often and as wrongly as the formulas say (manual 3.4.2, 4).
+;;;; statistics.lisp -- perception errs as often as the formulas say (manual 3.4.2, 4).
 
 (in-package :ars-magna.tests)
 
 (def-suite* statistics :in ars-magna)
 
-;;; With fixed seeds these tests always come out the same; of other seeds, one in a thousand or so
+;;; The seeds are fixed, so the results are always the same. About one in a thousand other seeds
 ;;; would fail a claim.
 
 (defun chi-square (counts expected)

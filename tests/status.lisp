@@ -1,4 +1,4 @@
-;;;; status.lisp -- how a robot is, as data, and why its last command failed.
+;;;; status.lisp -- the status of a robot as data, and why its last command failed.
 
 (in-package :ars-magna.tests)
 

@@ -1,11 +1,11 @@
-;;;; tests-readme.lisp -- what tests/README.md says of the suites is so.
+;;;; tests-readme.lisp -- tests/README.md describes the suites correctly.
 
 (in-package :ars-magna.tests)
 
 (def-suite* tests-readme :in ars-magna)
 
-;;; The README has tables whose rows begin with the name of a suite. Those of suites that follow the
-;;; manual go on with the number of their tests.
+;;; The README has tables whose rows begin with the name of a suite. For suites that follow the
+;;; manual, the third cell is the number of their tests.
 
 (defun table-rows (path)
   "Return the rows of tables in the file PATH, each as a list of its cells."
@@ -35,7 +35,7 @@
     (is (member (first row) (suite-names) :test #'string-equal) "~A" (first row))))
 
 (test readme.counts-nothing-that-says-nothing
-  "Each test in these suites says in its documentation what it claims."
+  "Each test in these suites has a claim in its documentation."
   (dolist (suite (manual-suites))
     (dolist (test (suite-tests suite))
       (is (< 0 (length (test-claim test))) "~(~A~) does not say what it claims" test))))

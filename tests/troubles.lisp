@@ -1,4 +1,4 @@
-;;;; troubles.lisp -- errors in users' code are seen by whoever started that code.
+;;;; troubles.lisp -- errors in users' code reach the caller who started that code.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; trying-best.lisp -- plans that do what goes best in rollouts.
+;;;; trying-best.lisp -- plans that choose what does best in rollouts.
 
 (in-package :ars-test-projecting)
 (in-readtable :nisp)

@@ -1,4 +1,4 @@
-;;;; tutorial.lisp -- what the tutorial shows is so.
+;;;; tutorial.lisp -- the tutorial's examples are correct.
 
 (in-package :ars-magna.tests)
 
@@ -17,8 +17,8 @@
         else if (listp block)
           do (push line block)))
 
-;;; Sessions. A line that begins with the prompt has been typed, unless what follows says, by a
-;;; colon, what it is the answer of.
+;;; Sessions. A line that begins with the prompt was typed, unless a word with a colon follows: then
+;;; it is the answer to a command.
 
 (defun typed-line (line)
   "Return what was typed in LINE, of a session, or NIL."

@@ -1,4 +1,4 @@
-;;;; unseen.lisp -- what is most likely a mistake is told, once, and what is right is not.
+;;;; unseen.lisp -- likely mistakes are reported, once, and correct code is not.
 
 (in-package :ars-magna.tests)
 
@@ -17,7 +17,7 @@ output."
   (rpl:par (rpl:wait-for (svref driver:camera-moved* 0))
            (rpl:wait-for driver:robot-stopped*)))
 
-;;; Plans that nothing will wake.
+;;; Plans that wait for something that cannot happen.
 
 (test deadlock.names-the-plan-what-it-waits-for-and-a-remedy
   (is-true (has-words-p (rover-writes () (driver:run-plan 'forlorn))

@@ -1,4 +1,4 @@
-;;;; user-package.lisp -- what a user defines is his: packages, and names in several of them.
+;;;; user-package.lisp -- users' packages, and names in several of them.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; users-hands.lisp -- users change a run by what its journal notes, and by nothing else.
+;;;; users-hands.lisp -- users change a run only by what its journal records.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; users-parts.lisp -- parts, commands and kinds that users add, and the mistakes they make.
+;;;; users-parts.lisp -- parts, commands and kinds that users add, and mistakes in them.
 
 (in-package :ars-magna.tests)
 

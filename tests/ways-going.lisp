@@ -1,4 +1,4 @@
-;;;; ways-going.lisp -- robots that are sent along ways: by programs, and at the prompt; pictures.
+;;;; ways-going.lisp -- robots sent along ways: by programs, and at the prompt; pictures.
 
 (in-package :ars-magna.tests)
 

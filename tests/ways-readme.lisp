@@ -1,4 +1,4 @@
-;;;; ways-readme.lisp -- what src/ways/README.md shows is so.
+;;;; ways-readme.lisp -- the examples of src/ways/README.md are correct.
 
 (in-package :ars-magna.tests)
 

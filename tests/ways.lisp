@@ -1,4 +1,4 @@
-;;;; ways.lisp -- what goals cost, held against slow and simple ways of finding out.
+;;;; ways.lisp -- costs of goals, compared with slow and simple algorithms.
 
 (in-package :ars-magna.tests)
 

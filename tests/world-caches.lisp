@@ -1,4 +1,4 @@
-;;;; world-caches.lisp -- the files that built maps are kept in.
+;;;; world-caches.lisp -- the files in which built maps are kept.
 
 (in-package :ars-magna.tests)
 

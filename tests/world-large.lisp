@@ -1,4 +1,4 @@
-;;;; world-large.lisp -- what large worlds keep in another way, or know before its time.
+;;;; world-large.lisp -- what large worlds store differently, or compute in advance.
 
 (in-package :ars-magna.tests)
 (in-suite world)

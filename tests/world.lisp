@@ -4,7 +4,7 @@
 
 (def-suite* world :in ars-magna)
 
-;;; The place types as shipped come back after a test that defines others.
+;;; After a test that defines other place types, the shipped ones are restored.
 
 (defun call-with-own-definitions (function)
   "Call FUNCTION; what it defines (maps, place types, attributes ...) is forgotten afterwards."

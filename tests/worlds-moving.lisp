@@ -1,4 +1,4 @@
-;;;; worlds-moving.lisp -- the kickers of the shipped worlds: what moves and changes by itself.
+;;;; worlds-moving.lisp -- the kickers of the shipped worlds.
 
 (in-package :ars-magna.tests)
 

@@ -1,4 +1,4 @@
-;;;; worlds-searching.lisp -- three ways of searching, and hiding what is searched for.
+;;;; worlds-searching.lisp -- three ways of searching, and hiding the thing to search for.
 
 (in-package :ars-magna.tests)
 

@@ -1,11 +1,11 @@
-;;;; worlds.lisp -- the shipped worlds: what is in them, and that all of it can be got at.
+;;;; worlds.lisp -- the shipped worlds: their contents, and that all of it can be reached.
 
 (in-package :ars-magna.tests)
 
 (def-suite* worlds :in ars-magna)
 
-;;; Each world with its robots, how many doorways and convex, concave and beak places it has, how
-;;; many metres wide a character of the picture at its file's head is, and how many things it holds.
+;;; For each world: its robots; the numbers of its doorways and of its convex, concave and beak
+;;; places; the metres per character of the map at the head of its file; the number of its things.
 
 (defparameter *shipped-worlds*
   '((watson :robots (robbie) :places (9 6 36 1) :scale 1 :things 100)

@@ -1,8 +1,10 @@
-;;;; abuse.lisp -- the abuse of the tests, as much of it as is asked for, under a watchdog.
+;;;; abuse.lisp -- the abuse of the tests, in any number, under a watchdog.
 
-;;; Prints for each kind how many examples ended how, and the shortest of those that ended badly, of
-;;; which there should be none. ABUSE_COUNT is how many of each kind, 10,000 if it is not set,
-;;; ABUSE_FROM the number of the first, 0, and ABUSE_KINDS their names, all of them.
+;;; Prints for each kind the number of examples by outcome, and the shortest that ended badly. None
+;;; should end badly. Environment variables:
+;;;   ABUSE_COUNT  how many examples of each kind; 10,000 by default
+;;;   ABUSE_FROM   the number of the first; 0 by default
+;;;   ABUSE_KINDS  the names of the kinds; all by default
 
 (in-package :ars-magna.benchmarks)
 

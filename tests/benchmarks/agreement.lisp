@@ -1,9 +1,9 @@
-;;;; agreement.lisp -- random runs, forked, rewound, saved and replayed: do all go the same way.
+;;;; agreement.lisp -- random runs, forked, rewound, saved and replayed, go on the same way.
 
-;;; ./tests/benchmarks/run agreement [COUNT]: so many runs, 500 by default, the same ones each time.
-;;; Prints what disagrees, and for five of them the shortest script that does so; the exit status is
-;;; then 1. What a run is asked, and what cannot agree as no copy has it, stands in
-;;; tests/agreement-scripts.lisp. The tests make some of them.
+;;; ./tests/benchmarks/run agreement [COUNT] makes COUNT runs, 500 by default, the same each time.
+;;; It prints the differences, with the shortest script for five of them; the exit status is then 1.
+;;; tests/agreement-scripts.lisp has the requests, and what no copy can have. The tests make some of
+;;; these runs.
 
 (in-package :ars-magna.benchmarks)
 

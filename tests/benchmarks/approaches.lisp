@@ -1,7 +1,7 @@
 ;;;; approaches.lisp -- the approaches of the tests, ten thousand clean and as many noisy.
 
-;;; Prints how many end with success, of those whose straight way is free. The tests make some
-;;; hundreds of the same settings. Set *COUNT* for another number.
+;;; Prints how many of those with a free straight way succeed. The tests make some hundreds of the
+;;; same settings. Set *COUNT* for another number.
 
 (in-package :ars-magna.benchmarks)
 

@@ -1,4 +1,4 @@
-;;;; display.lisp -- how long pictures take, and what watching a run costs it.
+;;;; display.lisp -- how long pictures take, and what a history costs a run.
 
 ;;; Prints milliseconds for snapshots and SVG documents of an office floor of 300 x 200 cells with
 ;;; 150 rooms and 500 things, and microseconds a tick takes with and without a history kept.

@@ -1,4 +1,4 @@
-;;;; experiments.lisp -- what an experiment costs beside a bare loop of its trials.
+;;;; experiments.lisp -- the cost of an experiment, compared with a bare loop of its trials.
 
 (ars:define-user-package :ars-magna.benchmarks.experiments
   (:documentation "Benchmarks of experiments: trials and rows per second.")
@@ -8,7 +8,7 @@
 
 (in-package :ars-magna.benchmarks.experiments)
 
-;;; The bare loop does what a trial must: it runs, is measured, and has a digest. It keeps nothing.
+;;; The bare loop does what a trial must: a run, its measures and its digest. It stores nothing.
 
 (def-interp-proc three-commands ()
   "Turn, drive, and sense the place."

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.benchmarks)
 
-;;; Success is judged by the truth: the thing lies on the floor within three metres of the start.
+;;; Success is the true state: the thing lies on the floor within three metres of the start.
 
 (defparameter *errands*
   '((globe ((:color world:blue) (:substance world:plastic)) ((109 24)))

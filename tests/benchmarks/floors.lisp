@@ -1,8 +1,8 @@
 ;;;; floors.lisp -- how long it takes to import a floor of 400 x 400 pixels.
 
-;;; Prints milliseconds for a floor as a scanner makes it, rooms of 40 x 40 pixels with walls of
-;;; two, a hundredth of the pixels occupied by mistake, a fifth not known; and for one whose pixels
-;;; are occupied at random, one in two, which is the worst.
+;;; Prints milliseconds for two floors. The first is like a scanner's: rooms of 40 x 40 pixels with
+;;; walls of two pixels, one pixel in a hundred wrongly occupied, and one in five unknown. The
+;;; second is the worst case: every other pixel, at random, is occupied.
 
 (in-package :ars-magna.benchmarks)
 

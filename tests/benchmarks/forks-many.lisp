@@ -1,8 +1,8 @@
-;;;; forks-many.lisp -- ten thousand forks at random moments of random runs: do all go their way.
+;;;; forks-many.lisp -- ten thousand forks of random runs continue as their originals do.
 
-;;; Each fork is compared with its original, and with a fork of its own, tick for tick: digests,
-;;; plans and all, messages, traces. What it shares with its original is looked for. The tests make
-;;; some of them.
+;;; Each fork is compared tick by tick with its original, and with a fork of its own: digests with
+;;; plans, messages, traces. The program also looks for state that a fork shares with its original.
+;;; The tests make some of these forks.
 
 (in-package :ars-magna.benchmarks)
 

@@ -1,9 +1,8 @@
-;;;; kickers.lisp -- how many ticks a second a world full of kickers runs.
+;;;; kickers.lisp -- ticks per second of a world full of kickers.
 
-;;; Prints ticks per second for 100,000 things on a 1000 x 1000 map,
-;;; each with a kicker of probability .01: once with kickers that only count, once with kickers
-;;; that move their things, all the same way or each by a small step drawn anew, and once with one
-;;; roll per thing and tick, for comparison.
+;;; Prints ticks per second for 100,000 things on a 1000 x 1000 map, each with a kicker of
+;;; probability .01. The kickers only count; or they move their things, all the same way or each by
+;;; a small random step. For comparison: one roll per thing and tick.
 
 (in-package :ars-magna.benchmarks)
 

@@ -1,8 +1,8 @@
-;;;; listings.lisp -- how often the manual's own plans, D.2 to D.9, do what they are for.
+;;;; listings.lisp -- how often the manual's own plans, D.2 to D.9, succeed.
 
 (in-package :ars-magna.benchmarks)
 
-;;; The robot, its room and its ball are those of the tests, whose functions judge by the truth.
+;;; The robot, its room and its ball are those of the tests, which check the true state.
 
 (handler-bind ((warning #'muffle-warning))
   (asdf:load-system "ars-magna/tests"))

@@ -1,4 +1,4 @@
-;;;; projecting.lisp -- what it costs to look ahead.
+;;;; projecting.lisp -- the cost of looking ahead.
 
 (defpackage :ars-magna.benchmarks.projecting
   (:documentation "Benchmarks of rollouts.")

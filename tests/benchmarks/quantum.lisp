@@ -1,8 +1,7 @@
-;;;; quantum.lisp -- what skipping time does to accuracy: a row for each tick quantum.
+;;;; quantum.lisp -- how accuracy changes with the time that a tick stands for.
 
-;;; Prints tables of how drives, turns, kickers and the shipped errands go when a tick stands for
-;;; more and more time. Times are ticks times the quantum, so that all rows would be alike if
-;;; skipping cost nothing.
+;;; Prints tables for drives, turns, kickers and the shipped errands, by the time that a tick stands
+;;; for. Times are ticks times the quantum. Without a loss of accuracy all rows would be alike.
 
 (in-package :ars-magna.benchmarks)
 

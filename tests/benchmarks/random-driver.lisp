@@ -1,7 +1,7 @@
 ;;;; random-driver.lisp -- the random driver of the tests, for a million commands.
 
-;;; Prints how many commands a second it issues, with the world watched after each tick, and what
-;;; it found wrong, which should be nothing. The tests drive a twentieth of this.
+;;; Prints the commands per second, with checks of the world after each tick, and the errors found;
+;;; there should be none. The tests issue a twentieth of this number.
 
 (in-package :ars-magna.benchmarks)
 

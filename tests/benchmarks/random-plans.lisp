@@ -1,4 +1,4 @@
-;;;; random-plans.lisp -- random plans, harmed and killed at random: do all end and leave nothing.
+;;;; random-plans.lisp -- random plans, disturbed and killed at random, all end and leave nothing.
 
 ;;; A million kills, ten of each plan; the tests make some of them.
 

@@ -1,8 +1,9 @@
-;;;; rays-in-c.lisp -- the scans of rays.lisp beside the same fans in C, in turns.
+;;;; rays-in-c.lisp -- the scans of rays.lisp compared with the same fans in C.
 
-;;; Compiles peers/rays.c with gcc -O3 and prints rays per second: of C's CAST, which only walks to
-;;; the walls; of its SCAN, which finds cells with things as ours does; and of ours. Each is the
-;;; best of some runs by the time of the processor, as neighbours on the machine only add to that.
+;;; Compiles peers/rays.c with gcc -O3 and prints rays per second of three functions: C's CAST,
+;;; which only walks to the walls; C's SCAN, which finds cells with things, as ours does; and ours.
+;;; Each figure is the best of several runs by processor time, because other users only slow it
+;;; down.
 
 (in-package :ars-magna.benchmarks)
 

@@ -1,8 +1,8 @@
 ;;;; rays.lisp -- rays per second of scans, and ticks per second of robots that look in each.
 
-;;; Prints rays per second of the fans of fans.lisp; then ticks per second of
-;;; robots that search for objects in every tick, with ten things in view and
-;;; with 100,000 more in the world that no camera sees.
+;;; Prints rays per second of the fans of fans.lisp. Then prints ticks per second of robots that
+;;; search for objects in every tick: with ten things in view, and with 100,000 more things that no
+;;; camera sees.
 
 (in-package :ars-magna.benchmarks)
 

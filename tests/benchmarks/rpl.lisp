@@ -1,4 +1,4 @@
-;;;; rpl.lisp -- what plans cost, and whether anything is ever lost.
+;;;; rpl.lisp -- the cost of plans, and whether anything is ever lost.
 
 (defpackage :ars-magna.benchmarks.rpl
   (:documentation "Benchmarks of the plan language.")

@@ -1,8 +1,8 @@
 ;;;; stress.lisp -- ten threads start, stop, rewind, redefine and interrupt live simulators.
 
-;;; ./tests/benchmarks/run stress [SECONDS]: two minutes by default. Prints counts of what went
-;;; wrong, which should all be 0; the exit status is 1 if one is not. STRESS_SEED is the seed of
-;;; what the threads choose, 1 if it is not set.
+;;; ./tests/benchmarks/run stress [SECONDS] takes two minutes by default. It prints counts of
+;;; errors; the exit status is 1 if any is not 0. STRESS_SEED is the seed of the threads' choices, 1
+;;; by default.
 
 (in-package :ars-magna.benchmarks)
 
@@ -30,17 +30,19 @@
               "(defrobot courier (alley (2.5 2.5) 0) :hands (10))")))
   "Two maps and three robots.")
 
-;; A time limit that strikes SBCL 2.5.2 while it compiles can leave a lock of the C library taken,
-;; also without this project: then thread after thread hangs. So nothing is compiled here.
+;; If a time limit interrupts SBCL 2.5.2 while it compiles, a lock of the C library may stay locked,
+;; and thread after thread hangs. This happens without this project, too. So nothing is compiled
+;; here.
 (defun define-anew (definition)
   "Evaluate DEFINITION, a form of *DEFINITIONS*, without its warnings and without compiling it."
   (handler-bind ((warning #'muffle-warning))
     (let ((sb-ext:*evaluator-mode* :interpret))
       (eval definition))))
 
-;; SBCL's own WAIT-ON-SEMAPHORE, in which interrupts are let in, conses: if memory is collected for
-;; that, and a time limit comes meanwhile, its runtime dies, also without this project (2.2.9: four
-;; threads with a time limit each millisecond, in seconds). So memory is collected seldom here.
+;; SBCL's WAIT-ON-SEMAPHORE conses while it allows interrupts. If a time limit interrupts the
+;; garbage collection that this causes, SBCL's runtime crashes. This happens without this project,
+;; too (2.2.9: within seconds, with four threads and a time limit each millisecond). So garbage is
+;; collected seldom here.
 (setf (sb-ext:bytes-consed-between-gcs) (floor (sb-ext:dynamic-space-size) 5/2))
 
 (mapc #'define-anew *definitions*)

@@ -1,4 +1,4 @@
-;;;; trials.lisp -- what a bare trial costs: a fresh world, a short run, its end.
+;;;; trials.lisp -- the cost of a bare trial: a fresh world, a short run, its end.
 
 (ars:define-user-package :ars-magna.benchmarks.trials
   (:documentation "Benchmarks of the loop of trials that experiments stand on.")

@@ -1,4 +1,4 @@
-;;;; ways.lisp -- how long it takes to find a way, and to find another when cells turn out barred.
+;;;; ways.lisp -- how long it takes to find a way, and another after cells are barred.
 
 (in-package :ars-magna.benchmarks)
 

@@ -1,10 +1,10 @@
-;;;; window-figures.lisp -- frames a second, torn frames, and what a window costs a live run.
+;;;; window-figures.lisp -- frames a second, torn frames, and the cost of a window to a live run.
 
 ;;; Loaded by window.lisp. Thirty things, one to a row, move along a map of 75 x 75 cells, 8 pixels
-;;; to a cell, all by the same distance in a tick. So a picture in which they do not stand one
-;;; below the other, or in which one is missing, was grabbed half painted. The grabber is a second
-;;; client of the X server; that it finds torn frames where there are any is shown by the same
-;;; grabs while the pane paints on the screen without a buffer.
+;;; to a cell, all by the same distance in a tick. A picture in which they are not in one column, or
+;;; in which one is missing, was grabbed half painted. The grabber is a second client of the X
+;;; server. As a check that it finds torn frames, it also grabs while the pane paints without a
+;;; buffer.
 
 (in-package :ars-magna.benchmarks)
 

@@ -1,7 +1,7 @@
 ;;;; window.lisp -- how fast the window paints, on a machine with McCLIM and an X display.
 
-;;; Not among the programs that run by default. What it measures is in window-figures.lisp, which
-;;; names McCLIM's packages and so is loaded only where McCLIM is found.
+;;; Does not run by default. The measurements are in window-figures.lisp, which names McCLIM's
+;;; packages and is loaded only if McCLIM is found.
 
 (in-package :ars-magna.benchmarks)
 

@@ -1,4 +1,4 @@
-;;;; newcomer.lisp -- a newcomer types what the pages show into a terminal, and makes mistakes.
+;;;; newcomer.lisp -- a new user types what the pages show into a terminal, and makes mistakes.
 
 (in-package :ars-magna.tests)
 

@@ -1,12 +1,11 @@
-;;;; pages.lisp -- what a page of Markdown shows is typed, and answered as the page shows.
+;;;; pages.lisp -- types what a page of Markdown shows, and checks the answers shown.
 
 (in-package :ars-magna.tests)
 
-;;; A block is what stands between ``` and ```, or lines indented by four. Those that begin with a
-;;; prompt show a session: what is typed follows a prompt, what is answered stands below. An answer
-;;; may be left out whole; of one that is shown, ... stands for any lines, or any part of a line.
-;;; The robot's messages come after a prompt too. What follows one is such a message, and is not
-;;; typed, if its first word ends with a colon.
+;;; A block is the text between ``` and ```, or lines indented by four. A block that begins with a
+;;; prompt shows a session: the text after a prompt is typed, the lines below are the answer. An
+;;; answer may be left out. In an answer ... stands for any lines, or any part of a line. If the
+;;; first word after a prompt ends with a colon it is a message of the robot, and is not typed.
 
 (defparameter *prompts* '("$" "Robot>" "Break>" "Step>" "*") "The prompts that pages show.")
 

@@ -1,9 +1,9 @@
-;;;; screens.lisp -- screens held as text in screens/*.txt, and what of them depends on the machine.
+;;;; screens.lisp -- compares screens with screens/*.txt; masks what depends on the machine.
 
 (in-package :ars-magna.tests)
 
-;;; A screen is compared when the facts have come that its session waits for. If it is another, it
-;;; is given a little longer, so that the last few letters of a line may come.
+;;; A screen is compared after the texts that its session waits for have come. If it differs, it is
+;;; compared again a little later, as the last letters of a line may still be missing.
 
 (defparameter *grace* 2 "For how many seconds nothing comes on a screen that is as it will be.")
 
@@ -11,8 +11,8 @@
   "True if screens are written into their files instead of being held against them.")
 
 (defun masks (home)
-  "Return what is replaced in screens of a terminal whose user lives in HOME: a list of lists of a
-text and of what stands for it."
+  "Return the replacements for screens of a terminal with the home directory HOME: a list of lists
+(text replacement)."
   (list (list home "<home>/")
         (list (string-right-trim "/" (base:native-name (project-file ""))) "<checkout>")
         (list (format nil "SBCL ~A" (lisp-implementation-version)) "SBCL <version>")))

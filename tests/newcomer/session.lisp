@@ -1,9 +1,9 @@
-;;;; session.lisp -- scripted sessions: what is typed, what is waited for, which screens are held.
+;;;; session.lisp -- scripted sessions: what is typed, what to wait for, which screens to compare.
 
 (in-package :ars-magna.tests)
 
-;;; A session is a file of lines, each of which is a word and what follows it; README.md here tells
-;;; the words. It is played with a new home directory in a terminal that begins with a shell's $.
+;;; A session is a file; each line is a word and a text. README.md here lists the words. It is
+;;; played with a new home directory in a terminal that begins with a shell's $.
 
 (defun session-file (name)
   (project-file (format nil "tests/newcomer/sessions/~A.txt" name)))

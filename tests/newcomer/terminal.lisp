@@ -1,12 +1,12 @@
-;;;; terminal.lisp -- a terminal of 80 x 24 that is typed into and whose screen is read.
+;;;; terminal.lisp -- a terminal of 80 x 24 that can be typed into and read.
 
 (in-package :ars-magna.tests)
 
-;;; The terminal is tmux's, which is driven through its control mode: commands go in, one a line,
-;;; and each is answered between %begin and %end; what else comes are notices, such as that the
-;;; screen has got something new. So whoever waits for a text on the screen sleeps until there is
-;;; news, and only what hangs meets the limit. Home directory, history and socket are in a directory
-;;; that is removed; the cache is the checkout's, so that its core is not made again.
+;;; The terminal is tmux's, through its control mode. Commands go in, one a line, and each is
+;;; answered between %begin and %end. All other lines are notices, such as of new output on the
+;;; screen. So a step that waits for a text sleeps until the next notice, and only a step that hangs
+;;; reaches the limit. Home directory, history and socket are in a directory that is removed
+;;; afterwards. The cache is the checkout's, so its core is not built again.
 
 (defparameter *longest-wait* 60 "After how many seconds what is waited for counts as hung.")
 
