@@ -83,8 +83,8 @@
     (is (null (search "turned 2.00" (shown "echo off"))))))
 
 (test echo.says-what-is-so
-  (is-true (has-words-p (joined (type-batch "echo")) "is shown"))
-  (is-true (has-words-p (joined (type-batch "echo off" "echo")) "is not shown"))
+  (is-true (has-words-p (joined (type-batch "echo")) "are shown"))
+  (is-true (has-words-p (joined (type-batch "echo off" "echo")) "are not shown"))
   (is-true (has-words-p (complaint "echo maybe") "maybe" "ECHO OFF")))
 
 (test echo.off-hides-no-failure
