@@ -1,4 +1,4 @@
-;;;; classes.lisp -- the slots of objects: the one door to closer-mop, and a quick way by number.
+;;;; classes.lisp -- classes and slots; slots by number. The only file that uses closer-mop.
 
 (in-package :ars-magna.host)
 
@@ -22,13 +22,13 @@
   (closer-mop:generic-function-methods function))
 
 (defun methods-on-class (name)
-  "Return a list of the methods, of whatever generic functions, that are for objects of the class
-called NAME, if there is one."
+  "Return a list of the methods of all generic functions that specialize on the class NAME; NIL if
+there is none."
   (let ((class (find-class name nil)))
     (and class (closer-mop:specializer-direct-methods class))))
 
 (defun class-ancestors (class)
-  "Return a list of CLASS and those it inherits from, those that are more special first."
+  "Return a list of CLASS and its superclasses, the most specific first."
   (closer-mop:class-precedence-list (closer-mop:ensure-finalized class)))
 
 (defun class-slot-names (class)
@@ -42,7 +42,7 @@ called NAME, if there is one."
           (closer-mop:class-slots class)))
 
 (defun instance-slot-names (class)
-  "Return the names of the slots that each object of CLASS has to itself."
+  "Return the names of the slots of CLASS with instance allocation."
   (mapcar #'closer-mop:slot-definition-name
           (remove :instance (closer-mop:class-slots class)
                   :key #'closer-mop:slot-definition-allocation :test-not #'eq)))
@@ -53,22 +53,22 @@ called NAME, if there is one."
 
 (declaim (inline layout-of layout-number instance-slot (setf instance-slot)))
 (defun layout-of (object)
-  "Return what is the same object for all structures that have their slots in the same places."
+  "Return the layout of OBJECT, a structure: the same object for all with the same slots."
   (internal (:sb-kernel #:%instance-wrapper #:%instance-layout) object))
 
 (defun layout-number (layout)
-  "Return a number that LAYOUT has, and few others."
+  "Return a number of LAYOUT, which few others share."
   (internal (:sb-kernel #:wrapper-clos-hash #:layout-clos-hash) layout))
 
 (defun instance-slot (object index)
-  "Return what is in the slot number INDEX of the structure or condition OBJECT. Can be set."
+  "Return the value of slot number INDEX of OBJECT, a structure or condition. Can be set."
   (internal (:sb-kernel #:%instance-ref) object index))
 
 (defun (setf instance-slot) (value object index)
   (setf (internal (:sb-kernel #:%instance-ref) object index) value))
 
 (defun reference-slots (object)
-  "Return a list (index . name) for each slot of the structure OBJECT that may refer to something."
+  "Return a list (index . name) for each slot of the structure OBJECT that can hold a reference."
   (loop for slot in (internal (:sb-kernel #:dd-slots)
                               (internal (:sb-kernel #:wrapper-info #:layout-info)
                                         (layout-of object)))
@@ -79,7 +79,7 @@ called NAME, if there is one."
                         (internal (:sb-kernel #:dsd-name) slot))))
 
 (defun copy-condition (condition)
-  "Return a new condition like CONDITION, and a list of the numbers of its slots."
+  "Return a copy of CONDITION, and a list of the numbers of its slots."
   (let* ((length (internal (:sb-kernel #:%instance-length) condition))
          (copy (internal (:sb-kernel #:%make-instance) length))
          (indices (loop for index from (internal-value :sb-vm #:instance-data-start) below length

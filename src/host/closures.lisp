@@ -1,14 +1,14 @@
-;;;; closures.lisp -- what functions have closed over, interpreted ones too.
+;;;; closures.lisp -- what closures close over, compiled and interpreted ones.
 
 (in-package :ars-magna.host)
 
 (export '(environment-p environment-values fixed-slot-p closure-p closure-values copy-closure
           replace-closure-values value-cell-p cell-value exit-cell-p make-value-cell))
 
-;;; An SBCL that was built without SB-EVAL has no interpreted functions: there nothing is one.
+;;; An SBCL built without SB-EVAL has no interpreted functions, so no object is one.
 
-;;; A function that is interpreted, as those of plans that programs make are, has its variables in
-;;; an ENVIRONMENT of the interpreter's, which all functions made there share.
+;;; An interpreted function, such as those of plans that programs make, has its variables in an
+;;; ENVIRONMENT of the interpreter. All functions made there share it.
 
 #+#.(cl:if (cl:find-package "SB-EVAL") '(:and) '(:or))
 (progn
@@ -17,7 +17,7 @@
     (internal (:sb-eval #:env-p) object))
 
   (defun environment-values (environment)
-    "Return a list of the values of the variables, and of the functions, in ENVIRONMENT and around."
+    "Return a list of the values of variables and functions in ENVIRONMENT and those around it."
     (loop for each = environment then (internal (:sb-eval #:env-parent) each)
           while each
           append (mapcar #'cdr (internal (:sb-eval #:env-vars) each))
@@ -44,7 +44,7 @@
                                          function)))
 
   (defun same-interpreted-p (function other)
-    "True if FUNCTION and OTHER are interpreted, and made by the same form."
+    "True if FUNCTION and OTHER are interpreted and were made by the same form."
     (and (interpreted-p function)
          (interpreted-p other)
          (eq (internal (:sb-eval #:interpreted-function-body) function)
@@ -53,7 +53,7 @@
 #-#.(cl:if (cl:find-package "SB-EVAL") '(:and) '(:or))
 (progn
   (defun environment-p (object)
-    "True if OBJECT is an environment of the interpreter's: never, as this SBCL has none."
+    "Return NIL: this SBCL has no interpreter."
     (declare (ignore object))
     nil)
   (defun environment-values (environment) (declare (ignore environment)) '())
@@ -66,11 +66,11 @@
   (defun same-interpreted-p (function other) (eq function other)))
 
 (defun fixed-slot-p (name)
-  "True unless what is in the slot NAME of environments belongs to those who have them."
+  "True unless the slot NAME of environments holds what belongs to their users."
   (not (member name '("PARENT" "VARS" "FUNS") :test #'string=)))
 
-;;; A closure is code and values. A variable that is closed over and assigned to is a CELL, which
-;;; all closures over it share. What is interpreted has closed over its environment.
+;;; A closure is code and values. A closed-over variable that is assigned to is a CELL, which all
+;;; its closures share. Interpreted functions close over their environment.
 
 (defun interpreted-closure-p (object)
   (and (interpreted-p object)
@@ -82,13 +82,13 @@
   (internal (:sb-kernel #:closurep) object))
 
 (defun closure-p (object)
-  "True if OBJECT is a function that has closed over something."
+  "True if OBJECT is a function that closes over something."
   (or (compiled-closure-p object)
       (and (internal (:sb-kernel #:funcallable-instance-p) object)
            (interpreted-closure-p object))))
 
 (defun closure-values (closure)
-  "Return a list of what CLOSURE has closed over."
+  "Return a list of what CLOSURE closes over."
   (if (compiled-closure-p closure)
       (internal (:sb-kernel #:%closure-values) closure)
       (list (interpreted-environment closure))))
@@ -104,7 +104,8 @@
       (copy-interpreted closure)))
 
 (defun replace-closure-values (closure function)
-  "Make CLOSURE have closed over what FUNCTION returns for each value and cell. Return CLOSURE."
+  "Replace each value and cell that CLOSURE closes over by what FUNCTION returns for it. Return
+CLOSURE."
   (declare (type function function))
   (if (compiled-closure-p closure)
       (let ((count 0))
@@ -135,8 +136,8 @@
   (internal (:sb-kernel #:value-cell-set) cell value))
 
 (defun exit-cell-p (cell)
-  "True if CELL belongs to a block or tag that closures exit to, and that has not been left. It
-holds a place on the stack, which looks like an integer that nobody would use."
+  "True if CELL is of a block or tag that closures exit to and that has not been exited. It holds a
+stack address, which looks like an integer that no program would use."
   (typep (cell-value cell) '(integer #.(ash #x700000000000 -1) #.(ash #x7FFFFFFFFFFF -1))))
 
 (defun make-value-cell (value)

@@ -1,4 +1,4 @@
-;;;; code.lisp -- what compiled code refers to, and which file it is from.
+;;;; code.lisp -- what compiled code refers to, and which file it comes from.
 
 (in-package :ars-magna.host)
 
@@ -6,9 +6,9 @@
           lambda-list-of takes-count-p callable-with-p function-file files-besides-functions
           call-as-from-file tell-sources))
 
-;;; Since SBCL 2.4.10, the names of called functions are no constants of code: it calls them through
-;;; a linkage table. The names of macros, constants and inline functions that were used are in the
-;;; cross references, those of structures in the types of functions.
+;;; Since SBCL 2.4.10, names of called functions are not among the constants of code but in a
+;;; linkage table. Names of macros, constants and inline functions are in the cross references,
+;;; those of structures in the types of functions.
 
 (defun linked-names (code)
   "Return the names of the functions that CODE calls through a linkage table."
@@ -19,15 +19,15 @@
     (progn code '())))
 
 (defun cross-referenced-names (function)
-  "Return the names of macros, constants, variables and inline functions that FUNCTION, a part of
-code, was made of."
+  "Return the names of the macros, constants, variables and inline functions that FUNCTION, a part
+of code, uses."
   (let ((references (internal (:sb-kernel #:%simple-fun-xrefs) function)))
     (and (vectorp references)
          (remove-if-not (lambda (object) (typep object '(and (or symbol cons) (not null))))
                         (coerce references 'list)))))
 
 (defun names-used (code)
-  "Return what functions in CODE were made of: names, and the types of these functions."
+  "Return the names that the functions in CODE use, and the types of these functions."
   (loop for index below (internal (:sb-kernel #:code-n-entries) code)
         for function = (internal (:sb-kernel #:%code-entry-point) code index)
         append (cross-referenced-names function)
@@ -37,7 +37,7 @@ code, was made of."
   (internal (:sb-kernel #:fun-code-header) (internal (:sb-kernel #:%fun-fun) function)))
 
 (defun same-code-p (function other)
-  "True if FUNCTION and OTHER are one function, or closures of the same code."
+  "True if FUNCTION and OTHER are the same function or closures of the same code."
   (if (or (interpreted-p function) (interpreted-p other))
       (same-interpreted-p function other)
       (eq (internal (:sb-kernel #:%fun-fun) function) (internal (:sb-kernel #:%fun-fun) other))))
@@ -46,15 +46,15 @@ code, was made of."
   (loop for index from start below (internal (:sb-kernel #:code-header-words) code)
         collect (internal (:sb-kernel #:code-header-ref) code index)))
 
-;; SBCL 2.2 begins the constants with the name of each function, local ones included, and so on.
+;; SBCL 2.2 begins the constants with the names of all functions, including local ones.
 (defparameter *described-among-constants-p*
   (eq 'linked-names
       (first (constants-from (code-of #'linked-names)
                              (internal-value :sb-vm #:code-constants-offset))))
-  "True if what describes the functions of code stands before its constants.")
+  "True if the descriptions of functions precede the constants of code.")
 
 (defun first-constant (code)
-  "Return the index of the first constant of CODE, after what only describes its functions."
+  "Return the index of the first constant of CODE after the descriptions of its functions."
   (+ (internal-value :sb-vm #:code-constants-offset)
      (if *described-among-constants-p*
          (* (internal-value :sb-vm #:code-slots-per-simple-fun)
@@ -62,15 +62,15 @@ code, was made of."
          0)))
 
 (defun code-constants (function)
-  "Return a list of what the code of FUNCTION, and of those compiled with it, has as constants, and
-the names of functions that it calls and of what it was made of."
+  "Return a list of the constants of FUNCTION's code and of functions compiled with it, and of the
+names that this code calls and uses."
   (let ((code (code-of function)))
     (append (constants-from code (first-constant code))
             (linked-names code)
             (names-used code))))
 
 (defun constant-meant (constant)
-  "Return what CONSTANT, one of code, stands for: of a call by name that name."
+  "Return what CONSTANT, of code, stands for: the name, if it is a call by name."
   (if (internal-type-p constant :sb-kernel #:fdefn)
       (internal (:sb-kernel #:fdefn-name) constant)
       constant))
@@ -85,13 +85,12 @@ the names of functions that it calls and of what it was made of."
   (internal (:sb-kernel #:%fun-lambda-list) function))
 
 (defun structure-reader-p (function)
-  "True if FUNCTION is the reader of a structure's slot that DEFSTRUCT made."
+  "True if FUNCTION is a slot reader made by DEFSTRUCT."
   (equal (list (internal-name :sb-kernel '#:instance)) (declared-lambda-list function)))
 
 (defun code-references (function)
-  "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
-symbols, other functions, and whatever else stands in its code or was closed over. In it are no
-numbers."
+  "Return a list of what FUNCTION refers to, without numbers: function names (symbols or lists),
+symbols, other functions, constants and closed-over values."
   (remove-if
    (lambda (object) (typep object '(or number character string bit-vector null)))
    (if (typep function 'generic-function)
@@ -104,42 +103,41 @@ numbers."
   (sb-introspect:function-lambda-list name))
 
 (defun takes-count-p (lambda-list count)
-  "True if LAMBDA-LIST, an ordinary one, takes COUNT arguments, of which any may be keywords."
+  "True if LAMBDA-LIST, an ordinary one, accepts COUNT arguments, any of which may be keywords."
   (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list lambda-list)
     (and (<= (length required) count)
          (or rest-p keys (<= count (+ (length required) (length optional)))))))
 
 (defun callable-with-p (function count)
-  "True if FUNCTION, or the one so called, can be called with COUNT arguments, as far as is known."
+  "True if FUNCTION, or the function of that name, accepts COUNT arguments or is not known."
   (multiple-value-bind (list unknown-p) (lambda-list-of function)
     (or unknown-p (takes-count-p list count))))
 
-;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
-;;; said.
+;;; The source files of functions. SBCL must be told if the forms of a file are evaluated singly.
 
 (defvar *dates-of-files* (make-hash-table :test 'equal :synchronized t)
-  "When files were written whose forms have been evaluated one by one, by what they are called.")
+  "The write dates of files whose forms were evaluated singly, by namestring.")
 
 (defun evaluated-file-p (namestring)
-  "True if NAMESTRING, one of Lisp's or NIL, is of a file whose forms have been evaluated."
+  "True if NAMESTRING is the name of a file whose forms were evaluated singly."
   (and namestring
        (not (many-files-p namestring))
        (gethash (native-name namestring) *dates-of-files*)))
 
 (defun call-as-from-file (function path)
-  "Call FUNCTION, which evaluates forms that have been read from the file PATH: the functions that
-come of it are from there."
+  "Call FUNCTION, which evaluates forms read from the file PATH. Functions defined by it are
+recorded as from there."
   (let ((name (native-name path)) (errors *error-output*))
     (setf (gethash name *dates-of-files*) (file-write-date path))
-    ;; What a unit says of itself at its end, that it was left, is no news to whoever leaves it.
+    ;; The summary that a unit was left is useless here: the caller knows.
     (let ((*error-output* (make-broadcast-stream)))
-      ;; SBCL makes a pathname of it, as Lisp reads one.
+      ;; SBCL parses this as a Lisp pathname.
       (with-compilation-unit (:source-namestring (namestring path))
         (let ((*error-output* errors)) (funcall function))))))
 
 (defun file-of-source (source)
-  "Return which file SOURCE, what SBCL knows of a definition, is from, as the system calls it, and
-the time at which that was written by then; NIL if it was typed."
+  "Return the native name of the file of SOURCE, SBCL's definition source, and the write date of the
+file at that time; NIL if it was typed."
   (let ((path (and source (sb-introspect:definition-source-pathname source))))
     (and path
          (let ((name (native-name (translate-logical-pathname path))))
@@ -147,13 +145,12 @@ the time at which that was written by then; NIL if it was typed."
                             (gethash name *dates-of-files*)))))))
 
 (defun function-file (function)
-  "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
-that was written by then; NIL if it was typed."
+  "Return the native name of the file that FUNCTION was compiled from, and its write date at that
+time; NIL if it was typed."
   (file-of-source (ignore-errors (sb-introspect:find-definition-source function))))
 
 (defun files-besides-functions (symbol)
-  "Return lists (file written), as FUNCTION-FILE returns them, of definitions of SYMBOL as anything
-but a function."
+  "Return lists (file written), as of FUNCTION-FILE, for the other definitions of SYMBOL."
   (loop for kind in '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class
                       :structure :condition)
         append (loop for source in (ignore-errors
@@ -161,12 +158,12 @@ but a function."
                      for file = (multiple-value-list (file-of-source source))
                      when (first file) collect file)))
 
-;;; Editors ask Lisp where a name is defined, as a function, a variable and so on. What only we know
-;;; the place of is told with the declarations of that name, as nothing else is free for it.
+;;; Editors ask Lisp where a name is defined as a function, a variable and so on. Our own
+;;; definitions are reported as declarations of that name, since no other type is unused.
 
 (defun tell-sources (function)
-  "Let whoever asks where a symbol is defined be told also what FUNCTION of that returns, lists
-\(file position operator)."
+  "Add the result of FUNCTION, called with a symbol, to the definition sources that Lisp reports for
+it: lists (file position operator)."
   (wrap-function 'sb-introspect:find-definition-sources-by-name
                  (lambda (original name type)
                    (append (funcall original name type)

@@ -1,4 +1,4 @@
-;;;; files.lisp -- files as the operating system knows them, other programs and the environment.
+;;;; files.lisp -- files as the operating system knows them; other programs; the environment.
 
 (in-package :ars-magna.host)
 
@@ -12,26 +12,26 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defconstant +illegible+ (code-char #xFFFD)
-    "Unicode's character for octets that cannot be read as text."))
+    "The Unicode character for octets that are not valid text."))
 
-;;; In a native name no character has a meaning of its own, as * has in one of Lisp's.
+;;; In a native name no character is special, unlike * in a Lisp pathname.
 
 (defun native-name (path)
-  "Return the name by which the operating system knows PATH, a pathname or string; NIL of NIL."
+  "Return the operating system's name of PATH, a pathname or string; NIL for NIL."
   (uiop:native-namestring path))
 
 (defun native-path (name)
-  "Return the pathname of what the operating system calls NAME, a string."
+  "Return the pathname of NAME, a native name."
   (uiop:parse-native-namestring name))
 
-;; UIOP's own way to a directory puts a backslash before a star.
+;; UIOP's function for directories puts a backslash before a star.
 (defun native-path-of-directory (name)
-  "Return the pathname of what the operating system calls NAME, a string, as of a directory."
+  "Return the pathname of the directory NAME, a native name."
   (sb-ext:parse-native-namestring name nil *default-pathname-defaults* :as-directory t))
 
 (defun path-called (name &key directory)
-  "Return the pathname that NAME, a string or pathname, stands for, of a file, or if DIRECTORY of a
-directory; ~ and ~/ are the home directory."
+  "Return the pathname of NAME, a string or pathname, as a file, or as a directory if DIRECTORY is
+true. ~ and ~/ are the home directory."
   (flet ((path (name) (if directory (native-path-of-directory name) (native-path name))))
     (cond ((pathnamep name) (if directory (uiop:ensure-directory-pathname name) name))
           ((string= "~" name) (user-homedir-pathname))
@@ -39,51 +39,50 @@ directory; ~ and ~/ are the home directory."
            (merge-pathnames (path (subseq name 2)) (user-homedir-pathname)))
           (t (path name)))))
 
-;;; Relative names begin where Lisp's functions for files begin, not where the system's calls do.
+;;; Relative names start at the directory of Lisp's file functions, not at that of system calls.
 
 (defun base-directory ()
-  "Return the absolute path of the directory in which relative names of files begin: that of
-*DEFAULT-PATHNAME-DEFAULTS*, which by default is the current directory."
+  "Return the absolute path of the directory in which relative names start: that of
+*DEFAULT-PATHNAME-DEFAULTS*, by default the current directory."
   (uiop:pathname-directory-pathname (uiop:get-pathname-defaults)))
 
 (defun system-name (path)
-  "Return the name of PATH, a pathname or string, for calls of the system: one that is relative
-begins in the BASE-DIRECTORY."
+  "Return the name of PATH, a pathname or string, for system calls. Relative names start in the
+BASE-DIRECTORY."
   (native-name (merge-pathnames path (base-directory))))
 
 (defun many-files-p (name)
-  "True if NAME, a pathname or string, stands for many files, or has a [ that nothing closes."
+  "True if NAME, a pathname or string, is wild, or has an unclosed [."
   (handler-case (wild-pathname-p name)
     (error () t)))
 
 (defun shown-name (file)
-  "Return FILE, a pathname or string, as the operating system writes it; an empty name in quotes."
+  "Return FILE, a pathname or string, as a native name to show; the empty name as two quotes."
   (let ((name (if (and (pathnamep file) (not (many-files-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
 (defun name-in-directory (path)
-  "Return the name of the file PATH, as the system knows it, without its directories."
+  "Return the native name of the file PATH without its directories."
   (let ((name (native-name path)))
     (subseq name (1+ (or (position #\/ name :from-end t) -1)))))
 
 (defun file-size (path)
-  "Return how many bytes the file PATH has."
+  "Return the size of the file PATH in bytes."
   (with-open-file (in path :element-type '(unsigned-byte 8)) (file-length in)))
 
 (defun existing-path (path)
-  "Return the truename of the file PATH, or NIL if there is none, or it is a directory."
+  "Return the truename of the file PATH, or NIL if there is none or it is a directory."
   (uiop:file-exists-p path))
 
 (defun missing-directory (path)
-  "Return the name of the directory that PATH, a pathname or string, is in if there is none such, or
-NIL."
+  "Return the directory of PATH, a pathname or string, as a name if it does not exist, else NIL."
   (let ((directory (uiop:pathname-directory-pathname (merge-pathnames path))))
     (unless (or (many-files-p directory) (uiop:directory-exists-p directory))
       (native-name directory))))
 
 (defun replace-file (file by)
-  "Let the file BY have the name FILE, in place of what is there, at one stroke. Both are pathnames;
-only a directory is filled in. Signals an error if the system refuses."
+  "Rename the file BY to FILE and replace what is there, atomically. Both are pathnames; a missing
+directory is filled in, nothing else. Signals an error if the system refuses."
   (sb-posix:rename (system-name by) (system-name file))
   (values))
 
@@ -94,8 +93,8 @@ only a directory is filled in. Signals an error if the system refuses."
       (sb-posix:chmod (system-name file) (logand #o777 (sb-posix:stat-mode status))))))
 
 (defun plain-file-p (path)
-  "True if PATH is a file of bytes: no directory, device or pipe. Signals an error if there is
-nothing."
+  "True if PATH is a regular file: no directory, device or pipe. Signals an error if it does not
+exist."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (system-name path))))))
 
@@ -106,24 +105,24 @@ nothing."
         (handler-case (progn (sb-posix:access name sb-posix:w-ok) nil)
           (sb-posix:syscall-error () t)))))
 
-;; Renaming asks for the permissions of the directory only, and the superuser may write anything.
+;; Renaming needs only the directory's permissions, and the superuser may write anything.
 (defun check-unprotected (path)
-  "Signal an error if there is a file PATH, a pathname, and it is write-protected."
+  "Signal an error if the file PATH, a pathname, exists and is write-protected."
   (when (and (existing-path path) (write-protected-p path))
     (error "it is write-protected")))
 
 (defun dangling-link-p (path)
-  "True if PATH, a pathname or string, is a link to something that there is not."
+  "True if PATH, a pathname or string, is a link to a missing file."
   (let ((name (system-name path)))
     (and (ignore-errors (sb-posix:lstat name))
          (not (ignore-errors (sb-posix:stat name))))))
 
 (defparameter *many-files-text*
   "its name stands for many files; write \\\\ before each * ? and [ in a string of Lisp"
-  "Why a name that stands for many files cannot be used.")
+  "Why a wild name cannot be used.")
 
 (defun unusable-file-text (path)
-  "Return why PATH, a pathname or string, is the name of no file of bytes, in words, or NIL."
+  "Return in words why PATH, a pathname or string, names no regular file, or NIL."
   (cond ((many-files-p path) *many-files-text*)
         ((string= "" (native-name path)) "that is no name; give the name of a file")
         ((not (ignore-errors (sb-posix:stat (system-name path))))
@@ -131,32 +130,32 @@ nothing."
         ((not (plain-file-p path)) "it is a directory or a device")))
 
 (defun check-name-legible (path)
-  "Signal an error if a byte in the name PATH could not be read as text: other names look the same."
+  "Signal an error if the name PATH has a byte that is not valid text: other names look the same."
   (when (find +illegible+ (native-name path))
     (error "its name has bytes that are not UTF-8; give it a name in UTF-8")))
 
-;;; Text of whatever octets. (SBCL's streams of UTF-8 loop at some that are none.)
+;;; Text of arbitrary octets. (SBCL's UTF-8 streams loop at some invalid ones.)
 
 (defun encoded (text)
-  "Return the octets of TEXT in UTF-8, as a string of characters read as Latin 1."
+  "Return TEXT in UTF-8, each octet as a Latin 1 character."
   (map 'string #'code-char (sb-ext:string-to-octets text :external-format :utf-8)))
 
 (defun decoded (octets)
-  "Return the text in UTF-8 whose octets the characters of OCTETS, read as Latin 1, stand for, with
-+ILLEGIBLE+ for each that cannot be read."
+  "Return the UTF-8 text of OCTETS, a string of Latin 1 characters, with +ILLEGIBLE+ for each
+invalid octet."
   (sb-ext:octets-to-string (map '(vector (unsigned-byte 8)) #'char-code octets)
                            :external-format '(:utf-8 :replacement #.+illegible+)))
 
-;;; Files that several processes may have.
+;;; Files shared by several processes.
 
 (defun cut-file (path length)
-  "Let the file PATH end after LENGTH octets."
+  "Truncate the file PATH to LENGTH octets."
   (sb-posix:truncate (system-name path) length)
   (values))
 
 (defun make-directories (path)
-  "Make the directory PATH and those that it is in, as far as there are none."
-  ;; Lisp's own function makes others where a name has a star or the like.
+  "Create the directory PATH and its missing parents."
+  ;; Lisp's own function creates other directories if a name has a star or the like.
   (unless (uiop:directory-exists-p path)
     (let ((parent (uiop:pathname-parent-directory-pathname path)))
       (unless (equal parent path) (make-directories parent)))
@@ -167,16 +166,16 @@ nothing."
                  (native-name path)))))))
 
 (defun make-new-directory (path)
-  "Make the directory PATH, in one that is there. True if nothing of that name was there before."
+  "Create the directory PATH in an existing one. True if it did not exist before."
   (handler-case (progn (sb-posix:mkdir (string-right-trim "/" (system-name path)) #o700) t)
     (sb-posix:syscall-error (condition)
-      ;; Whoever had it may have removed it by now.
+      ;; The owner may have removed it by now.
       (unless (= sb-posix:eexist (sb-posix:syscall-errno condition)) (error condition)))))
 
 (defun call-with-file-lock (function path refused)
-  "Call FUNCTION while no other process that asks so has the file PATH, which is made if there is
-none; the system lets go of it when this process ends, in whatever way. Return true and what
-FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFUSED instead."
+  "Call FUNCTION while this process has a lock on the file PATH, which is created if missing. Return
+true and FUNCTION's value, or NIL if another process has the lock. Call REFUSED instead if PATH
+cannot be written. The system releases the lock when this process ends."
   (let ((descriptor (handler-case (sb-posix:open (system-name path)
                                                  (logior sb-posix:o-creat sb-posix:o-rdwr) #o644)
                       (sb-posix:syscall-error () (funcall refused)))))
@@ -187,7 +186,7 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
       (sb-posix:close descriptor))))
 
 (defun process-number ()
-  "Return the number that the system has given to this process."
+  "Return the process ID."
   (sb-posix:getpid))
 
 (defun process-running-p (number)
@@ -195,15 +194,15 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
     (sb-posix:syscall-error (condition)
       (/= sb-posix:esrch (sb-posix:syscall-errno condition)))))
 
-;;; A file is written under a temporary name and renamed when it is complete. The temporary name has
-;;; the host and the process, so files of killed processes can be recognized.
+;;; A file is written under a temporary name and renamed when it is complete. The name contains host
+;;; and process, so files of killed processes can be recognized.
 
 (defun host-file-prefix ()
-  "Return how the names of temporary files of this machine's processes begin."
+  "Return the prefix of temporary files of this host's processes."
   (format nil "ars-magna-~A-" (machine-instance)))
 
 (defun temporary-file-prefix ()
-  "Return how the names of temporary files of this process begin."
+  "Return the prefix of temporary files of this process."
   (format nil "~A~D-" (host-file-prefix) (process-number)))
 
 (defun abandoned-file-p (file)
@@ -220,12 +219,12 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
 ;;;; Other programs, the environment and the clock
 
 (defun environment-value (name)
-  "Return the value of the environment's variable called NAME, a string, or NIL if it is not set."
+  "Return the value of the environment variable NAME, a string, or NIL if it is not set."
   (uiop:getenv name))
 
 (defun real-microseconds ()
   "Return the real time in microseconds since some moment. No result may depend on it."
-  ;; What Lisp itself has for that goes on in steps of 4000.
+  ;; Lisp's own clock has steps of 4000.
   (multiple-value-bind (seconds microseconds) (sb-ext:get-time-of-day)
     (+ (* 1000000 seconds) microseconds)))
 
@@ -236,9 +235,9 @@ FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFU
     (format nil "~D-~2,'0D-~2,'0D ~2,'0D:~2,'0D:~2,'0D UTC" year month day hour minute second)))
 
 (defun run-command (program arguments &key input output)
-  "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS, and wait for its end.
-INPUT is a stream for it to read, :INTERACTIVE to read what this Lisp would, or NIL. Return its exit
-status, or NIL if it cannot be run, and as a string what it wrote if OUTPUT is :STRING."
+  "Run PROGRAM, searched in PATH, with the strings ARGUMENTS, and wait for its end. INPUT is a
+stream, :INTERACTIVE for this Lisp's own input, or NIL. Return the exit status, or NIL if it cannot
+be run, and its output as a string if OUTPUT is :STRING."
   (handler-case
       (multiple-value-bind (text errors status)
           (uiop:run-program (cons program arguments)
@@ -250,14 +249,14 @@ status, or NIL if it cannot be run, and as a string what it wrote if OUTPUT is :
 
 (defparameter *tied-start*
   "setpriv --pdeathsig TERM true 2>/dev/null && exec setpriv --pdeathsig TERM \"$@\"; exec \"$@\""
-  "What a shell does to run a program that the system tells to end when this process ends, however
-it does: where the system can.")
+  "Shell code that runs a program and terminates it when this process ends, however that ends, on
+systems that can.")
 
 (defun run-tied (program arguments &rest streams)
-  "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS and STREAMS, keywords of
-UIOP:LAUNCH-PROGRAM. Wait for its end; if this is left, or this process is killed, it is told to
-end. Return its exit status, as of a shell, or NIL if no program can be run, and as a string what it
-said of errors if STREAMS have that as :STREAM."
+  "Run PROGRAM, searched in PATH, with the strings ARGUMENTS and STREAMS, keywords of
+UIOP:LAUNCH-PROGRAM. Wait for its end. It is terminated on a non-local exit or when this process is
+killed. Return the exit status as a shell gives it, or NIL if no program can be run, and its error
+output as a string if STREAMS ask for that by :STREAM."
   (let ((process (handler-case (apply #'uiop:launch-program
                                       (list* "sh" "-c" *tied-start* "sh" program arguments)
                                       streams)
@@ -275,18 +274,18 @@ said of errors if STREAMS have that as :STREAM."
       (when errors (uiop:close-streams process)))))
 
 (defun run-attached (program arguments)
-  "Do as RUN-TIED does with PROGRAM and ARGUMENTS: it reads and writes what this process would.
-Return its exit status or NIL."
+  "Do as RUN-TIED with PROGRAM and ARGUMENTS, on this process's own streams. Return the exit status
+or NIL."
   (run-tied program arguments
             :input :interactive :output :interactive :error-output :interactive))
 
 (defun run-filter (program arguments input output)
-  "Do as RUN-TIED does with PROGRAM and ARGUMENTS: it reads the string INPUT and writes into the
-stream OUTPUT to a file. Return its exit status, or NIL if there is no such program, and as a string
-what it said of errors."
+  "Do as RUN-TIED with PROGRAM and ARGUMENTS, with the string INPUT as input and the stream OUTPUT,
+to a file, as output. Return the exit status, or NIL if there is no such program, and the error
+output as a string."
   (with-input-from-string (in input)
     (multiple-value-bind (status errors)
         (run-tied program arguments :input in :output output :error-output :stream
                                     :external-format :utf-8)
-      ;; A shell that finds no program of a name ends so.
+      ;; A shell returns this status if it finds no such program.
       (values (if (eql status 127) nil status) errors))))

@@ -1,4 +1,4 @@
-;;;; interrupts.lisp -- when a thread is interrupted, and by what; how what is begun is finished.
+;;;; interrupts.lisp -- deferring interrupts, time limits and signals; certain cleanup.
 
 (in-package :ars-magna.host)
 
@@ -8,23 +8,23 @@
           user-interrupt signal-user-interrupt call-on-interrupt call-on-continuing
           die-of-interrupts die-of-termination))
 
-;;; What interrupts a thread is a time limit, Ctrl-C, another thread, or that it is to end. It may
-;;; leave what it interrupts. Where that would lock others out for ever, it waits for a moment.
+;;; A thread is interrupted by a time limit, Ctrl-C, another thread, or a request to end. An
+;;; interrupt may exit from the code that it hits. It is deferred where that would leave a lock held
+;;; for ever.
 
-;;; SBCL's own way to hold interrupts off and still let them in where something waits is of no use:
-;;; its runtime dies if one comes while memory is collected in a thread that does so
-;;; (WITHOUT-INTERRUPTS with ALLOW-WITH-INTERRUPTS in it); and each lock that is taken lets them in.
-;;; So they are held off strictly, and where they are let in, a function is called that was made
-;;; outside.
+;;; SBCL's WITHOUT-INTERRUPTS with ALLOW-WITH-INTERRUPTS inside cannot be used: the runtime dies if
+;;; an interrupt comes during a garbage collection in that thread, and each lock that is taken
+;;; allows interrupts. So interrupts are deferred strictly. To allow them, code calls a function
+;;; that was made outside.
 
 (defvar *holding* nil
-  "What holds off the interrupts of this thread: NIL if nothing does, :STRICTLY, or a function of
-another that calls that, open to interrupts, or if its second argument is true open to them where
-SBCL waits.")
+  "What defers the interrupts of this thread: NIL if nothing does; :STRICTLY; or a function of
+another function. It calls that with interrupts allowed, or, if its second argument is true, allowed
+where SBCL waits.")
 
 (declaim (inline held-off-p))
 (defun held-off-p ()
-  "True if interrupts of this thread are held off here."
+  "True if interrupts of this thread are deferred here."
   (and *holding* t))
 
 (defun call-deferring-interrupts (function)
@@ -54,34 +54,32 @@ SBCL waits.")
         (funcall function))))
 
 (defmacro deferring-interrupts (&body body)
-  "Run BODY. What interrupts this thread waits, but for the extents of ALLOWING-INTERRUPTS and
-WAITING."
+  "Run BODY with interrupts deferred, except within ALLOWING-INTERRUPTS and WAITING."
   (form-calling 'call-deferring-interrupts body))
 
 (defmacro allowing-interrupts (&body body)
-  "Run BODY, in which this thread can be interrupted."
+  "Run BODY with interrupts allowed."
   (form-calling 'call-allowing-interrupts body))
 
 (defmacro waiting (&body body)
-  "Run BODY, which waits for a semaphore, and can be interrupted while it does."
+  "Run BODY, which waits for a semaphore, with interrupts allowed during the wait."
   (form-calling 'call-waiting body))
 
-;; SBCL lets interrupts in where a protected form has just ended; what is to follow would be
-;; skipped.
+;; SBCL allows interrupts at the end of a protected form. That could skip what is to follow.
 (defmacro protecting-strictly (form &body cleanup)
-  "Do what UNWIND-PROTECT does; but no interrupt comes between FORM, in which it comes as outside,
-and CLEANUP, nor in that."
+  "Do as UNWIND-PROTECT, with no interrupt between FORM and CLEANUP or in CLEANUP. In FORM
+interrupts are as outside."
   `(internal (:sb-sys #:without-interrupts)
      (unwind-protect (internal (:sb-sys #:with-local-interrupts) ,form)
        ,@cleanup)))
 
-;;; Interrupts held off for functions, strictly: what is called in between cannot let any in.
+;;; Strict deferral for functions: code in between cannot allow interrupts.
 
 (defvar *open-to-interrupts* #'funcall
-  "A function that calls another, in which this thread takes interrupts.")
+  "A function that calls another with interrupts allowed.")
 
 (defun call-holding-interrupts (function)
-  "Call FUNCTION. Until it returns, interrupts wait, but in what CALL-OPEN-TO-INTERRUPTS calls."
+  "Call FUNCTION with interrupts deferred, except in what CALL-OPEN-TO-INTERRUPTS calls."
   (internal (:sb-sys #:without-interrupts)
     (let* ((holding *holding*)
            (*open-to-interrupts* (lambda (function)
@@ -92,7 +90,7 @@ and CLEANUP, nor in that."
       (funcall function))))
 
 (defun call-open-to-interrupts (function)
-  "Call FUNCTION, in which this thread takes interrupts, those too that wait."
+  "Call FUNCTION with interrupts allowed, including those that were deferred."
   (funcall *open-to-interrupts* function))
 
 ;;; A deadline, unlike a time limit, interrupts only where a thread waits.
@@ -102,14 +100,14 @@ and CLEANUP, nor in that."
   (internal-name :sb-sys '#:deadline-timeout))
 
 (defmacro waiting-at-most ((seconds) &body body)
-  "Run BODY; signal DEADLINE-PASSED where it still waits for something after SECONDS."
+  "Run BODY. Signals DEADLINE-PASSED where it still waits after SECONDS."
   `(internal (:sb-sys #:with-deadline) (:seconds ,seconds) ,@body))
 
-;;; What has been begun is finished, however that is left.
+;;; Cleanup that always completes.
 
 (declaim (inline call-opening))
 (defun call-opening (open-p function)
-  "Call FUNCTION, in which this thread can be interrupted if OPEN-P."
+  "Call FUNCTION, with interrupts allowed if OPEN-P."
   (if open-p
       (call-allowing-interrupts function)
       (funcall (the function function))))
@@ -125,10 +123,10 @@ and CLEANUP, nor in that."
         (unwind-protect (call-opening open-p first)
           (call-rest others))))))
 
-;; See PROTECTING-STRICTLY. That is for little work that is done often, and lets nothing in.
+;; PROTECTING-STRICTLY is for little work that is done often; it allows no interrupts.
 (defmacro in-any-case (&body forms)
-  "Run FORMS in order, those that follow also if one is left, as by THROW; interrupts of this thread
-wait for the end of these, but at waits and in users' code. Return the values of the first."
+  "Run FORMS in order, the later ones even after a non-local exit such as THROW. Interrupts are
+deferred until all are done, except at waits and in users' code. Return the values of the first."
   (let ((names (loop for nil in forms collect (gensym "PART"))))
     `(flet ,(loop for name in names
                   for form in forms
@@ -137,18 +135,18 @@ wait for the end of these, but at waits and in users' code. Return the values of
        (call-in-any-case ,@(loop for name in names collect `(function ,name))))))
 
 (defun call-each (function list)
-  "Call FUNCTION with each element of LIST in order, with the rest also if a call is left."
+  "Call FUNCTION with each element of LIST in order, also with the rest after a non-local exit."
   (unwind-protect (loop while list do (funcall function (pop list)))
     (when list (call-each function list))))
 
 ;;;; Time limits, and other conditions that are for callers
 
 (deftype time-limit ()
-  "The condition that is signalled when the time for a form is up, as by WITH-TIMEOUT."
+  "The condition that the time for a form is up, as by WITH-TIMEOUT."
   'sb-ext:timeout)
 
-;;; FiveAM signals that a check has failed, and its restart IGNORE-FAILURE lets the test go on after
-;;; it has counted that. Whoever runs the test handles this, also where the check is in a plan.
+;;; FiveAM signals failed checks and continues the test by the restart IGNORE-FAILURE. The caller of
+;;; the test handles this, also where the check is in a plan.
 
 (defun failed-check-p (condition)
   (and (typep condition 'error)
@@ -157,15 +155,15 @@ wait for the end of these, but at waits and in users' code. Return the values of
        t))
 
 (defun let-callers-handle (condition)
-  "Let those who have called the run handle CONDITION first, if it is for them. True if it is a
-limit to their time."
+  "Let callers of the run handle CONDITION first, if it is for them. True if it is a time limit of
+theirs."
   (let ((limit-p (typep condition 'time-limit)))
     (when (or limit-p (failed-check-p condition)) (signal condition))
     limit-p))
 
 (defun call-with-limit (function seconds give-up)
-  "Call FUNCTION. Should it not have returned after SECONDS, call GIVE-UP in this thread, which may
-leave it; and so again and again."
+  "Call FUNCTION. Each time SECONDS have passed without its return, call GIVE-UP in this thread,
+which may exit from it."
   (let ((timer (sb-ext:make-timer give-up)))
     (sb-ext:schedule-timer timer seconds :repeat-interval seconds)
     (unwind-protect (funcall function)
@@ -174,7 +172,7 @@ leave it; and so again and again."
 ;;;; Signals from the system
 
 (deftype user-interrupt ()
-  "The condition that the user has pressed control C."
+  "The condition that the user has pressed Ctrl-C."
   (internal-name :sb-sys '#:interactive-interrupt))
 
 (defun signal-user-interrupt ()
@@ -190,21 +188,21 @@ leave it; and so again and again."
                           (funcall function))))
 
 (defun call-on-interrupt (function)
-  "Call FUNCTION, in any thread, whenever control C is pressed."
+  "Call FUNCTION, in any thread, when Ctrl-C is pressed."
   (call-on-signal sb-posix:sigint function))
 
 (defun call-on-continuing (function)
-  "Call FUNCTION, in any thread, whenever this process goes on that was stopped, as by control Z."
+  "Call FUNCTION, in any thread, when this process continues after a stop, as by Ctrl-Z."
   (call-on-signal sb-posix:sigcont function))
 
-;;; There are states in which no Lisp runs any more that would handle a signal, so the system itself
-;;; ends the process. (With a terminal that goes away it does so anyway, unless it was told NOHUP.)
+;;; In some states Lisp can no longer handle a signal, so the system itself ends the process. (It
+;;; also does when the terminal closes, unless NOHUP is in effect.)
 
 (defun die-of-interrupts ()
-  "Let control C end this process at once, as when its memory is being saved."
+  "Let Ctrl-C end this process at once, as while its memory is being saved."
   (handle-signal sb-posix:sigint :default))
 
 (defun die-of-termination ()
-  "Let this process end at once when it is told to terminate, as by control \\."
+  "Let SIGTERM, or Ctrl-\\, end this process at once."
   (handle-signal sb-posix:sigterm :default)
   (handle-signal sb-posix:sigquit :default))

@@ -17,14 +17,14 @@
   (declare (type (signed-byte 32) bits))
   (internal (:sb-kernel #:make-single-float) bits))
 
-;;; The library ieee-floats reckons the bits from sign, exponent and fraction. That conses and
-;;; takes three times as long, which digests would feel, and it does not know the infinities.
+;;; The library ieee-floats computes the bits from sign, exponent and fraction. That conses, takes
+;;; three times as long, which slows digests, and does not handle infinities.
 
-;;; What is no number must not even be compared with one: that is an arithmetic error.
+;;; A NaN must not even be compared with a number: that is an arithmetic error.
 
 (declaim (inline finite-double-p finite-p))
 (defun finite-double-p (number)
-  "True unless NUMBER, a double-float, is infinite or no number."
+  "True unless NUMBER, a double-float, is infinite or a NaN."
   (declare (type double-float number))
   (/= #x7FF00000 (logand #x7FF00000 (internal (:sb-kernel #:double-float-high-bits) number))))
 
@@ -34,24 +34,24 @@
     (real (<= (abs object) most-positive-double-float))))
 
 (defun finite-p (object)
-  "True of real numbers that are, or could be made, finite floats: not of the infinities, what is no
-number, and integers and ratios that are too large."
+  "True if OBJECT is a real number that is, or can be converted to, a finite float. False for
+infinities, NaNs, and integers and ratios that are too large."
   (if (typep object 'double-float)
       (finite-double-p object)
       (other-finite-p object)))
 
 (defun positive-infinity-p (object)
-  "True of the floats that are positive infinity."
+  "True if OBJECT is a float that is positive infinity."
   (and (floatp object) (sb-ext:float-infinity-p object) (plusp object)))
 
 (declaim (inline double-to-bits bits-to-double))
 (defun double-to-bits (number)
-  "Return the 64 bits of NUMBER, a double-float, as an integer that is not negative."
+  "Return the 64 bits of NUMBER, a double-float, as a non-negative integer."
   (declare (type double-float number))
   (ldb (byte 64 0) (internal (:sb-kernel #:double-float-bits) number)))
 
 (defun bits-to-double (bits)
-  "Return the double-float with BITS, an integer of 64 bits: DOUBLE-TO-BITS undone."
+  "Return the double-float with BITS, an integer of 64 bits: the inverse of DOUBLE-TO-BITS."
   (declare (type (unsigned-byte 64) bits))
   (let ((high (ldb (byte 32 32) bits)))
     (make-double (- (logxor high (ash 1 31)) (ash 1 31))
@@ -64,7 +64,7 @@ number, and integers and ratios that are too large."
   '(unsigned-byte 30))
 
 (deftype tick-count ()
-  "A moment or a span of simulated time, in ticks."
+  "A time or a duration in simulated ticks."
   '(unsigned-byte 61))
 
 (declaim (ftype (function (t) double-float) other-double))
@@ -73,20 +73,20 @@ number, and integers and ratios that are too large."
 
 (declaim (inline double))
 (defun double (number)
-  "Return NUMBER as a double-float. Conses nothing for the usual kinds of numbers."
+  "Return NUMBER as a double-float. Does not cons for the usual kinds of numbers."
   (typecase number
     (double-float number)
     (fixnum (coerce number 'double-float))
     (single-float (coerce number 'double-float))
     (ratio (coerce number 'double-float))
-    ;; Not inline, so that the compiler does not complain where it cannot rule out complex numbers.
+    ;; Not inline, or the compiler would complain where it cannot rule out complex numbers.
     (t (other-double number))))
 
-;;; In all versions of SBCL that were tried a random state is 627 words of the Mersenne Twister
-;;; MT19937: two constants, the place of the next word, and 624 words.
+;;; In all tested versions of SBCL a random state is 627 words of the Mersenne Twister MT19937: two
+;;; constants, the position of the next word, and 624 words.
 
 (deftype random-words ()
-  "What is in a random state."
+  "The words of a random state."
   '(simple-array (unsigned-byte 32) (627)))
 
 (declaim (inline words-of-state fill-words))
@@ -95,10 +95,9 @@ number, and integers and ratios that are too large."
   (the random-words (internal (:sb-kernel #:random-state-state) state)))
 
 (defun fill-words (seed words)
-  "Seed WORDS, of a random state, by SEED, an integer of 32 bits."
+  "Seed WORDS, of a random state, with SEED, an integer of 32 bits."
   (internal (:sb-kernel #:init-random-state) seed words))
 
 (defun wrap-renewal (wrapper)
-  "Call WRAPPER, with SBCL's function and the words, where SBCL makes new words of words that have
-all been read."
+  "Call WRAPPER, with SBCL's function and the words, when SBCL renews used-up words."
   (wrap-function (internal-name :sb-kernel '#:random-mt19937-update) wrapper))

@@ -27,8 +27,8 @@ part per file: threads, files, the compiler. No other folder names what SBCL doe
 (export 'define-package)
 
 (defmacro define-package (name &body options)
-  "Define the package NAME as DEFPACKAGE does. What it exports stands in its files: so a package
-that is defined again, as in an editor, exports what it did."
+  "Define the package NAME as DEFPACKAGE does. Its exports are in its files, so defining the package
+again, as in an editor, keeps them."
   (let ((exported '()))
     (when (find-package name)
       (do-external-symbols (symbol name) (push (make-symbol (symbol-name symbol)) exported)))

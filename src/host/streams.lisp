@@ -10,18 +10,17 @@
   (internal-name :sb-sys '#:fd-stream))
 
 (defun octet-input (descriptor)
-  "Return an input stream on the file DESCRIPTOR, each character of which stands for an octet."
+  "Return an input stream on the file DESCRIPTOR, with one character for each octet."
   (internal (:sb-sys #:make-fd-stream) descriptor :input t :buffering :full
                                                   :external-format :latin-1))
 
 (defun text-output (descriptor)
-  "Return an output stream of UTF-8 on the file DESCRIPTOR."
+  "Return a UTF-8 output stream on the file DESCRIPTOR."
   (internal (:sb-sys #:make-fd-stream) descriptor :output t :buffering :full
                                                   :external-format '(:utf-8 :replacement #\?)))
 
 (defun input-within-p (stream seconds)
-  "Wait until STREAM, on a descriptor, can be read or is at its end, for SECONDS at most. True if it
-can, or is."
+  "Wait at most SECONDS until STREAM, on a descriptor, has input or is at its end. True if so."
   (or (listen stream)
       (internal (:sb-sys #:wait-until-fd-usable)
                 (internal (:sb-sys #:fd-stream-fd) stream) :input seconds)))
@@ -29,11 +28,10 @@ can, or is."
 ;;;; The terminal
 
 (defconstant +ask-for-size+ (if (uiop:featurep :linux) #x5413 #x40087468)
-  "The number of the system's request for the size of a terminal's window.")
+  "The system's request number for the size of a terminal window.")
 
 (defun rows-and-columns ()
-  "Return how many rows and columns the window of this process's terminal has; zeros if the system
-does not know."
+  "Return the rows and columns of the window of this process's terminal; zeros if not known."
   (sb-alien:with-alien ((size (array sb-alien:unsigned-short 4)))
     (setf (sb-alien:deref size 0) 0
           (sb-alien:deref size 1) 0)
@@ -44,33 +42,33 @@ does not know."
     (values (sb-alien:deref size 0) (sb-alien:deref size 1))))
 
 (defun char-width (char)
-  "Return how many columns of a terminal CHAR takes: 0 for accents, 2 for characters of East Asia."
+  "Return the columns that CHAR takes on a terminal: 0 for accents, 2 for East Asian characters."
   (cond ((member (internal (:sb-unicode #:general-category) char) '(:mn :me :cf)) 0)
         ((member (internal (:sb-unicode #:east-asian-width) char) '(:w :f)) 2)
         (t 1)))
 
-;;;; Where LOAD is in a file when it cannot read on
+;;;; The position of LOAD in a file that it cannot read
 
 (defun form-start (stream)
-  "Return at which character the form begins that LOAD reads from STREAM, or 0 if not even its first
-character can be read; NIL of other streams."
+  "Return the position, in characters, of the form that LOAD reads from STREAM, or 0 if not even its
+first character can be read; NIL for other streams."
   (and (internal-type-p stream :sb-int #:form-tracking-stream)
        (or (internal (:sb-int #:form-tracking-stream-form-start-char-pos) stream) 0)))
 
 (defun line-of-next (stream)
-  "Return on which line the character is that LOAD reads next from STREAM, for which FORM-START is
-not NIL."
+  "Return the line of the character that LOAD reads next from STREAM, for which FORM-START is not
+NIL."
   (car (internal (:sb-int #:line/col-from-charpos) stream)))
 
-;; What ends a word may be the newline behind it, and has been read by then.
+;; A word may end by the newline after it, which has been read by then.
 (defun line-reached (stream)
-  "Return on which line the last character is that LOAD has read from STREAM, for which FORM-START
-is not NIL."
+  "Return the line of the last character that LOAD has read from STREAM, for which FORM-START is not
+NIL."
   (destructuring-bind (line . column) (internal (:sb-int #:line/col-from-charpos) stream)
     (if (plusp column) line (max 1 (1- line)))))
 
 (defun encapsulated-condition (condition)
-  "Return the condition that CONDITION only gives a place to, as LOAD's do; NIL of others."
+  "Return the condition that CONDITION wraps to add a position, as LOAD's do; NIL for others."
   (and (internal-type-p condition :sb-int #:encapsulated-condition)
        (internal (:sb-int #:encapsulated-condition) condition)))
 

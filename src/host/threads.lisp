@@ -1,4 +1,4 @@
-;;;; threads.lisp -- threads, locks and atomic changes: the one door to bordeaux-threads.
+;;;; threads.lisp -- threads, locks and atomic operations. The only file that uses bordeaux-threads.
 
 (in-package :ars-magna.host)
 
@@ -8,27 +8,27 @@
           users-thread-p yield-thread spread-specials call-telling-names bound-elsewhere-text
           run-elsewhere-text))
 
-;;; A PLACE here is the slot of a structure, by its accessor, the CAR or CDR of a cons, or the value
-;;; of a symbol.
+;;; A PLACE here is a structure's slot, by its accessor, the CAR or CDR of a cons, or a symbol's
+;;; value.
 
 (deftype atomic-count ()
-  "The type of a structure's slot that ATOMIC-INCF and ATOMIC-DECF can change."
+  "The type of a structure's slot for ATOMIC-INCF and ATOMIC-DECF."
   'sb-ext:word)
 
 (defmacro swap-if (place old new)
-  "Set PLACE to NEW if it is OLD, the same object. True if it was."
+  "Atomically set PLACE to NEW if it is EQ to OLD. True if it was."
   (with-gensyms (before)
     `(let ((,before ,old))
        (eq ,before (compare-and-swap ,place ,before ,new)))))
 
 (defmacro memory-barrier ()
-  "Let other threads see what this one has written so far before it reads or writes any more."
+  "Order memory accesses: what this thread wrote before is visible before it reads or writes more."
   '(sb-thread:barrier (:memory)))
 
 ;;;; Threads and locks
 
-;;; No thread is killed: threads are asked to end, and then joined. One that is in users' code which
-;;; does not return may be interrupted, at the user's word.
+;;; No thread is killed. Threads are asked to end, and then joined. One in users' code that does not
+;;; return may be interrupted, when the user asks for it.
 
 (defun make-lock (name)
   "Return a new lock called NAME."
@@ -39,8 +39,8 @@
   `(bordeaux-threads:with-lock-held (,lock) ,@body))
 
 (defun call-if-free (lock function)
-  "Call FUNCTION while holding LOCK, and return its value and true; NIL and false if another thread
-holds that."
+  "Call FUNCTION while holding LOCK and return its value and true; NIL and false if another thread
+holds LOCK."
   (sb-thread:with-mutex (lock :wait-p nil)
     (return-from call-if-free (values (funcall function) t)))
   (values nil nil))
@@ -50,29 +50,29 @@ holds that."
   (bordeaux-threads:make-semaphore :name name))
 
 (defun wait-on-semaphore (semaphore &optional seconds)
-  "Take one from SEMAPHORE; true if that succeeded within SECONDS (NIL: however long)."
+  "Decrement SEMAPHORE; true if that succeeded within SECONDS (NIL: no limit)."
   (waiting
     (if seconds
-        ;; SBCL takes no 0 for a time.
+        ;; SBCL accepts no timeout of 0.
         (bordeaux-threads:wait-on-semaphore semaphore :timeout (max seconds 1d-6))
         (bordeaux-threads:wait-on-semaphore semaphore))))
 
 (defun wait-a-while (semaphore seconds)
-  "Wait on SEMAPHORE for SECONDS at most, as one of many times; true if that succeeded."
+  "Wait on SEMAPHORE for at most SECONDS, within a loop of such waits; true if that succeeded."
   (yield-foreground)
   (serve-while-waiting *front-end*)
   (wait-on-semaphore semaphore seconds))
 
 (defun wait-patiently (semaphore seconds)
-  "Wait on SEMAPHORE for SECONDS in all, again and again as WAIT-A-WHILE does; true if that
-succeeded. What others need this thread for meanwhile does not count."
+  "Wait on SEMAPHORE for SECONDS in all, by repeated WAIT-A-WHILE; true if that succeeded. Time
+spent serving other threads does not count."
   (loop for left = seconds then (- left 0.2)
         thereis (wait-a-while semaphore (min left 0.2))
         while (< 0.2 left)))
 
 (defun call-when-free (lock function)
-  "Call FUNCTION while holding LOCK, when no other thread holds that, and return its values. What
-others need this thread for meanwhile is done, and what interrupts this thread is let in."
+  "Call FUNCTION while holding LOCK, when no other thread holds it, and return its values. Meanwhile
+this thread serves others and allows interrupts."
   (loop
     (sb-thread:with-mutex (lock :timeout 0.2)
       (return-from call-when-free (funcall function)))
@@ -81,12 +81,11 @@ others need this thread for meanwhile is done, and what interrupts this thread i
 (defvar *own-thread-p* nil "True in threads that START-THREAD has started.")
 
 (defun own-thread-p ()
-  "True if this thread is one of ours, not a REPL or another one of a user's."
+  "True if this thread is one of ours, not a REPL or another thread of a user."
   *own-thread-p*)
 
 (defun users-thread-p ()
-  "True if this thread is one that a program has started: not ours, nor the one that this Lisp began
-with."
+  "True if a program has started this thread: it is neither ours nor Lisp's initial thread."
   (not (or (own-thread-p) (sb-thread:main-thread-p))))
 
 (defun start-thread (function name)
@@ -94,42 +93,43 @@ with."
   (bordeaux-threads:make-thread (lambda () (let ((*own-thread-p* t)) (funcall function)))
                                 :name name))
 
-;; SBCL ends all threads when it is left.
-(defvar *leaving-p* nil "True when this Lisp is being left.")
+;; SBCL ends all threads when it exits.
+(defvar *leaving-p* nil "True while this Lisp exits.")
 
 (defun note-leaving ()
   (setf *leaving-p* t))
 
 (defun call-when-leaving (name)
-  "Let the function called NAME be called when this Lisp is left, before its threads end."
+  "Let the function NAME be called when this Lisp exits, before its threads end."
   (pushnew name sb-ext:*exit-hooks*))
 
 (call-when-leaving 'note-leaving)
 
-;; What Lisp compiles in a thread of ours, as for generic functions, is no loss then.
+;; What Lisp compiles in our threads, as for generic functions, is no loss at exit.
 (defun tell-of-unit (function left-p)
-  "Let FUNCTION tell of the end of a compilation unit, LEFT-P before its end, unless that is so
-since this Lisp is being left."
+  "Let FUNCTION report the end of a compilation unit, aborted if LEFT-P, unless it was aborted
+because this Lisp exits."
   (unless (and left-p *leaving-p* (own-thread-p))
     (funcall function left-p)))
 
 (wrap-unit-summaries #'tell-of-unit)
 
 (defun join-thread (thread)
-  "Wait until THREAD has ended, in whatever way. Return nothing."
-  ;; One that was aborted, as from the debugger, makes this an error.
+  "Wait until THREAD has ended, normally or not. Return nothing."
+  ;; This is an error if the thread was aborted, as from the debugger.
   (ignore-errors (bordeaux-threads:join-thread thread))
   (values))
 
 (defun interrupt-thread (thread function)
-  "Have THREAD call FUNCTION, with no arguments, as soon as it lets that happen. Return nothing."
-  ;; One that has ended makes this an error.
+  "Have THREAD call FUNCTION, without arguments, as soon as its interrupts are allowed. Return
+nothing."
+  ;; This is an error if the thread has ended.
   (ignore-errors (bordeaux-threads:interrupt-thread thread function))
   (values))
 
 (declaim (inline current-thread))
 (defun current-thread ()
-  "Return the thread that asks."
+  "Return the current thread."
   sb-thread:*current-thread*)
 
 (defun yield-thread ()
@@ -137,26 +137,26 @@ since this Lisp is being left."
   (bordeaux-threads:thread-yield))
 
 (defun spread-specials (function &rest symbols)
-  "Return a function that calls FUNCTION with the values that SYMBOLS have here and now.
-Threads start with global values; this carries the dynamic ones over."
+  "Return a function that calls FUNCTION with the current values of SYMBOLS. Threads start with
+global values; this passes dynamic ones on."
   (let ((values (mapcar #'symbol-value symbols)))
     (lambda (&rest arguments)
       (progv symbols values (apply function arguments)))))
 
 ;;;; Names that code of other threads has bound to robots of its own
 
-;;; WITH-SIMULATION binds robots' names, and only the thread of its body sees that. Another thread
-;;; finds the robot of the top level under such a name, perhaps without knowing. Who notices that
-;;; something is asked of that one can tell why.
+;;; WITH-SIMULATION binds robots' names for the thread of its body only. In another thread the same
+;;; name is the top level's robot, which may surprise its user. Code that gets a request for that
+;;; robot can explain why.
 
 (defvar *bound-names* (list '())
-  "A list whose element is a list (thread number name...) for each WITH-SIMULATION under way.")
+  "A list whose element is a list (thread number name...) for each WITH-SIMULATION in progress.")
 
-(defvar *bindings-made* (list 0) "A list of how often names have been bound so.")
+(defvar *bindings-made* (list 0) "A list of one count: how often names have been bound so.")
 
 (defun call-telling-names (names function)
-  "Call FUNCTION, in whose extent NAMES are bound to robots for this thread only, and let others
-know. Return its values."
+  "Call FUNCTION with NAMES bound to robots for this thread only, recorded for other threads. Return
+its values."
   (let ((entry (list* (current-thread) (incf (car *bindings-made*)) names)))
     (in-any-case
       (progn (atomic-push entry (car *bound-names*))
@@ -165,8 +165,8 @@ know. Return its values."
             until (swap-if (car *bound-names*) entries (remove entry entries :test #'eq))))))
 
 (defun bound-elsewhere (name)
-  "Return the thread that has bound NAME last, and a number for when, if it is not this one, and
-this one has not bound NAME itself; or NIL."
+  "Return the thread that bound NAME last, and a number for when, if it is not this one and this one
+has not bound NAME itself; else NIL."
   (let ((entries (remove-if-not (lambda (entry) (member name (cddr entry) :test #'eq))
                                 (car *bound-names*))))
     (if (find (current-thread) entries :key #'first)
@@ -174,7 +174,8 @@ this one has not bound NAME itself; or NIL."
         (values (first (first entries)) (second (first entries))))))
 
 (defun run-elsewhere-text ()
-  "Return in words how code here gets at the run of another thread, or NIL if none has one."
+  "Return in words how code in this thread gets at the run of another thread, or NIL if none has
+one."
   (let ((entry (find (current-thread) (car *bound-names*) :key #'first :test-not #'eq)))
     (and entry
          (format nil "That of (with-simulation (~(~{~A~^ ~}~)) ...), in ~A, is there only. Hand it ~
@@ -183,8 +184,8 @@ this one has not bound NAME itself; or NIL."
                  (cddr entry) (thread-name (first entry))))))
 
 (defun bound-elsewhere-text (name)
-  "Return in words how code here gets at the robot that another thread has bound NAME to, or NIL if
-none has; and a number for that binding."
+  "Return in words how code in this thread gets at the robot that another thread has bound NAME to,
+and a number for that binding; NIL if there is none."
   (multiple-value-bind (thread number) (bound-elsewhere name)
     (values (and thread
                  (let ((name (string-downcase name)))

@@ -4,10 +4,9 @@
 
 (export '(untried-host-text wrap-function unwrap-function wrapped-p))
 
-;;; Internal names of SBCL come and go. INTERNAL looks a name up when a file of this folder is
-;;; compiled, among the names that it has had, and says clearly when there is none. No file names
-;;; such a symbol directly, so none fails to be read. All files here were tried with the same
-;;; versions.
+;;; Internal names of SBCL change. INTERNAL looks a name up when a file of this folder is compiled,
+;;; among all names that it has had, and fails with a clear error. No file names such a symbol
+;;; directly, so every file can be read. All files here were tested with the same versions.
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
 
@@ -15,14 +14,14 @@
     "The versions of SBCL with which the tests pass, oldest first.")
 
   (defun find-internal (package names)
-    "Return the first symbol among NAMES, strings or symbols, that SBCL's PACKAGE has; else NIL."
+    "Return the first symbol of NAMES, strings or symbols, that SBCL's PACKAGE has, or NIL."
     (let ((package (find-package package)))
       (and package
            (some (lambda (name) (find-symbol (string name) package)) names))))
 
   (defun internal-name (package &rest names)
-    "Return the first symbol among NAMES, strings or symbols, that SBCL's PACKAGE has. Signals an
-ERROR if it has none of them."
+    "Return the first symbol of NAMES, strings or symbols, that SBCL's PACKAGE has. Signals an ERROR
+if it has none."
     (or (find-internal package names)
         (error "SBCL ~A has no ~A:~{~A~^ or ~}. ARS MAGNA runs on SBCL ~A to ~A. Use one of ~
                 these, or add the new name to the files in src/host."
@@ -30,20 +29,20 @@ ERROR if it has none of them."
                (first *tried-versions*) (first (last *tried-versions*))))))
 
 (defmacro internal ((package &rest names) &rest arguments)
-  "Call with ARGUMENTS the function or macro that is the first of NAMES in SBCL's PACKAGE. A place,
-if that is one."
+  "Call with ARGUMENTS the first function or macro of NAMES in SBCL's PACKAGE. Is a place if that is
+one."
   `(,(apply #'internal-name package names) ,@arguments))
 
 (defmacro if-internal ((package &rest names) then else)
-  "Do THEN if SBCL's PACKAGE has one of NAMES, or else ELSE. Only that form is compiled."
+  "Do THEN if SBCL's PACKAGE has one of NAMES, else ELSE. Only the form needed is compiled."
   (if (find-internal package names) then else))
 
 (defmacro internal-value (package &rest names)
-  "Return the value of the variable or constant that is the first of NAMES in SBCL's PACKAGE."
+  "Return the value of the first variable or constant of NAMES in SBCL's PACKAGE."
   (apply #'internal-name package names))
 
 (defmacro internal-type-p (object package &rest names)
-  "True if OBJECT is of the type that is the first of NAMES in SBCL's PACKAGE."
+  "True if OBJECT is of the first type of NAMES in SBCL's PACKAGE."
   `(typep ,object ',(apply #'internal-name package names)))
 
 (defun later-version-p (version other)
@@ -54,7 +53,7 @@ if that is one."
     (uiop:version< (numbers other) (numbers version))))
 
 (defun untried-host-text (&optional (version (lisp-implementation-version)))
-  "Return a sentence that says so if VERSION of SBCL is later than all tried, or earlier; else NIL."
+  "Return a warning sentence if VERSION of SBCL is later or earlier than all tested ones; else NIL."
   (flet ((sentence (than)
            (format nil "SBCL ~A is ~A than the versions ARS MAGNA was tested with, ~A to ~A."
                    version than (first *tried-versions*) (first (last *tried-versions*)))))
@@ -63,7 +62,7 @@ if that is one."
 
 (format *error-output* "~@[~&ars-magna: ~A~%~]" (untried-host-text))
 
-;;;; Functions of SBCL's or a library's, replaced by ones that call them
+;;;; Functions of SBCL or a library, wrapped by ours
 
 (defun wrap-function (name wrapper &optional (type 'ars-magna))
   "Call WRAPPER instead of the function NAME, which is not ours, with that function and its
