@@ -1,4 +1,4 @@
-;;;; copiers.lisp -- what copies the objects of a run, and how structures are copied.
+;;;; copiers.lisp -- the object that copies a run, and how structures are copied.
 
 (in-package :ars-magna.copying)
 
@@ -21,27 +21,28 @@ there is to be instead of a copy, and true; or NIL and false" :writable)
   (options '() list "a plist for those who know what to do about it" :writable))
 
 (defun copier-option (copier key)
-  "Return what the one who asked for COPIER said of KEY, or NIL."
+  "Return the value of the option KEY that COPIER was made with, or NIL."
   (getf (copier-options copier) key))
 
 (defun copier-variable (copier symbol)
-  "Return the value that the run that COPIER copies has bound SYMBOL to."
+  "Return the value to which the run of COPIER has bound SYMBOL."
   (cdr (assoc symbol (copier-environment copier) :test #'eq)))
 
 ;;; Noting.
 
 (declaim (inline note-copy))
 (defun note-copy (value copy copier)
-  "Let COPY be what COPIER has for VALUE. Return COPY."
+  "Record COPY as the copy of VALUE by COPIER. Return COPY."
   (setf (gethash value (copier-table copier)) copy))
 
 (declaim (inline settled))
 (defun settled (copy copier)
-  "Return COPY, an object that is made for the fork of COPIER, and all right."
+  "Return COPY, an object made for the fork of COPIER that needs no further work."
   (note-copy copy copy copier))
 
 (defun put-right-later (copy how copier)
-  "Let COPIER put right what is in COPY, HOW: see PUT-RIGHT. Return COPY."
+  "Queue COPY with COPIER, whose references are to be replaced as HOW says: see PUT-RIGHT. Return
+COPY."
   (let ((fill (copier-fill copier)))
     (declare (type (unsigned-byte 40) fill))
     (when (= fill (length (copier-work copier)))
@@ -51,13 +52,13 @@ there is to be instead of a copy, and true; or NIL and false" :writable)
           (copier-fill copier) (+ fill 2))
     copy))
 
-;;; A copier is much larger than what it makes of a small run; so those that have done their work
-;;; are used again.
+;;; A copier is much larger than its copy of a small run, so copiers are reused.
 
 (defvar *idle-copiers* (list '())
-  "A list whose element is the list of the copiers that nobody uses.")
+  "A list whose element is the list of idle copiers.")
 
-(defconstant +largest-idle+ 20000 "How many objects a copier may have copied to be used again.")
+(defconstant +largest-idle+ 20000 "The number of objects that a copier may have copied and still be
+reused.")
 
 (defun take-copier ()
   (loop for copiers = (car *idle-copiers*)
@@ -78,7 +79,7 @@ there is to be instead of a copy, and true; or NIL and false" :writable)
     (atomic-push copier (car *idle-copiers*))))
 
 (defmacro with-copier ((copier &key environment options screen) &body body)
-  "Run BODY with COPIER bound to what copies a run that has bound the variables of ENVIRONMENT, with
+  "Run BODY with COPIER bound to a copier of a run that has bound the variables of ENVIRONMENT, with
 OPTIONS and SCREEN. Return the values of BODY."
   `(let ((,copier (take-copier)))
      (setf (copier-environment ,copier) ,environment
@@ -103,9 +104,9 @@ OPTIONS and SCREEN. Return the values of BODY."
                      (cannot-fork-place condition)
                      (and (cannot-fork-trouble condition)
                           (string-right-trim "." (cannot-fork-trouble condition))))))
-  (:documentation "A fork was asked for, and something in the run is part of the world outside: a
-stream, a thread, a lock. Restarts: SHARE-VALUE, both runs have the same one; LEAVE-OUT-VALUE, the
-fork has NIL instead; MAKE-NO-FORK."))
+  (:documentation "The run to be forked refers to something in the outside world: a stream, a
+thread, a lock. Restarts: SHARE-VALUE, both runs have the same object; LEAVE-OUT-VALUE, the fork has
+NIL instead; MAKE-NO-FORK."))
 
 (addition cannot-fork-value cannot-fork-place share-value leave-out-value make-no-fork)
 (document-restarts
@@ -113,24 +114,24 @@ fork has NIL instead; MAKE-NO-FORK."))
  'leave-out-value "Make the fork; it has NIL instead of the object."
  'make-no-fork "Make no fork. The function that was to make one returns NIL.")
 (setf (documentation 'cannot-fork-value 'function)
-      "Return what cannot be copied."
+      "Return the object that cannot be copied."
       (documentation 'cannot-fork-place 'function)
-      "Return where it was found: a text, such as the name of a plan's variable.")
+      "Return where the object was found: a text, such as the name of a plan's variable.")
 
 (defun found-in (value copier)
-  "Return a text that says where COPIER has come upon VALUE: what its option :PLACE-OF, a function,
-says, or else in what kind of object."
+  "Return in words where COPIER found VALUE: by its option :PLACE-OF, a function, or else by the
+object that holds it."
   (let ((place-of (copier-option copier :place-of)))
     (or (and place-of (funcall place-of value))
         (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))
 
 (defun decision-about (value copier)
-  "Return a cons of VALUE and what the fork is to have for it, if COPIER was told that; else NIL."
+  "Return a cons of VALUE and its replacement in the fork, if COPIER was given one; else NIL."
   (assoc value (copier-option copier :decisions) :test #'eq))
 
 (defun ask-about (value copier)
-  "Return what the fork is to have for VALUE as the option :DECISIONS, an alist, says. Signals
-CANNOT-FORK."
+  "Return the replacement of VALUE in the fork, from the option :DECISIONS, an alist. Signals
+CANNOT-FORK if there is none."
   (let ((decision (decision-about value copier)))
     (if decision
         (cdr decision)
@@ -138,12 +139,12 @@ CANNOT-FORK."
 
 (defgeneric copy-plan-value (value fork)
   (:documentation
-   "Return what FORK, a fork of a run that is being made, is to have for VALUE, which was found in
-the variables of its plans, in closures, or wherever a run keeps things. Lists, vectors, tables,
-structures and instances of classes are copied, with what is in them; what two hold is shared by
-their copies. Functions are shared, those that have closed over something are copied with that. A
-method for a class of one's own may say otherwise: that VALUE itself is shared, by returning it, or
-what stands for it; (forked x fork) is what FORK has for another object x.")
+   "Return what FORK, a fork being made, has for VALUE, an object found in variables of plans, in
+closures or elsewhere in a run. By default, lists, vectors, tables, structures and instances are
+copied with their contents; what two of them share is shared by the copies. Functions are shared,
+closures copied with what they close over. Define a method for a class of your own to change this:
+return VALUE itself to share it, or a replacement. (forked x fork) returns what FORK has for another
+object x.")
   (:method (value fork) (ask-about value fork)))
 
 (addition copy-plan-value)
@@ -162,10 +163,10 @@ what stands for it; (forked x fork) is what FORK has for another object x.")
                              value))))
 
 (defvar *shared-slots* '()
-  "Lists (type slot...): slots of structures without a kind, in which nothing is ever altered.")
+  "Lists (type slot...): slots of structures without a kind, whose contents are never modified.")
 
 (defmacro define-shared-slots (type &rest slots)
-  "Let a run and its forks share what is in SLOTS of structures of TYPE."
+  "Let a run and its forks share the contents of SLOTS of structures of TYPE."
   `(pushnew '(,type ,@slots) *shared-slots* :test #'equal))
 
 (defun shared-slot-p (name object kind)
@@ -180,15 +181,15 @@ what stands for it; (forked x fork) is what FORK has for another object x.")
 ;;; Manners.
 
 (defstruct (manner (:constructor make-manner (way indices fresh)) (:copier nil))
-  "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD, if a method knows; or :ASK,
-of what is the system's own. What is in the slots number INDICES is copied too; FRESH is a list
-(writer . initial) of functions for the slots that are as in a new object."
+  "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD, if there is a method; or
+:ASK, for those of the system. The contents of the slots number INDICES are copied too. FRESH is a
+list (writer . initial) of functions for slots that are as in a new object."
   (way :copy :type (member :share :copy :method :ask) :read-only t)
   (indices #() :type simple-vector :read-only t)
   (fresh '() :type list :read-only t))
 
 (defun default-method-p (object class)
-  "True if OBJECT is copied by our method of COPY-PLAN-VALUE for CLASS, not by another one."
+  "True if OBJECT is copied by our method of COPY-PLAN-VALUE for CLASS."
   (eq (first (compute-applicable-methods #'copy-plan-value (list object nil)))
       (find-method #'copy-plan-value '() (list (find-class class) (find-class t)))))
 
@@ -213,18 +214,17 @@ of what is the system's own. What is in the slots number INDICES is copied too; 
                      (loop for slot in links
                            collect (cons (kind-slot-writer slot) (kind-slot-initial slot)))))))
 
-(defconstant +manners-known+ 4096 "How many manners are remembered at most, a power of 2.")
+(defconstant +manners-known+ 4096 "The number of manners remembered, a power of 2.")
 
 (defun no-manners ()
   (make-array +manners-known+ :initial-element nil))
 
 (defvar *manners* (cons '() (no-manners))
-  "The methods of COPY-PLAN-VALUE, and what was found out when these were all: a vector of lists
-(layout . manner), each where the number of its layout says, the last one of those that belong
-there.")
+  "The methods of COPY-PLAN-VALUE, and a cache of manners found while these were all: a vector of
+\(layout . manner), indexed by the layout's number; a later one replaces an earlier one.")
 
 (defun refresh-manners ()
-  "Forget the manners that were found out before methods of COPY-PLAN-VALUE were defined."
+  "Clear the cache of manners if methods of COPY-PLAN-VALUE were defined since."
   (let ((methods (methods-of-generic #'copy-plan-value)))
     (unless (eq methods (car *manners*))
       (setf *manners* (cons methods (no-manners))))))

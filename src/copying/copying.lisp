@@ -1,13 +1,13 @@
-;;;; copying.lisp -- the objects of a run, copied for another; what users give, copied.
+;;;; copying.lisp -- copies of a run's objects for another run; copies of users' arguments.
 
 (in-package :ars-magna.copying)
 
 (export '(copying copy-values copy-slots given))
 
-;;; A COPIER walks from what it is given to all that can be reached, and remembers what it copied to
-;;; what: two objects that refer to the same one do so in the copies. It copies an object first, and
-;;; puts what is in the copy right later, from a list of work: so lists and chains may be as long as
-;;; they like. What is in structures is known from their kinds, or else from their classes:
+;;; A COPIER walks from an object to all that can be reached, and records the copy of each. So two
+;;; objects that refer to the same one also do so in the copies. It copies an object first and
+;;; replaces the references in the copy later, from a work list. So lists and chains may be of any
+;;; length. Slots of structures are known from their kinds, or else from their classes:
 ;;;
 ;;;   copied   lists, arrays, tables, structures, instances, conditions, closures with their cells;
 ;;;   fresh    the :LINKs of kinds, as in a new object;
@@ -16,8 +16,8 @@
 (declaim (inline forked))
 (addition forked)
 (defun forked (value copier)
-  "Return what a fork has for VALUE: for methods of COPY-PLAN-VALUE, which are given COPIER. It may
-not be complete before they have returned."
+  "Return what a fork has for VALUE. For methods of COPY-PLAN-VALUE, which receive COPIER. The
+result may be incomplete until they have returned."
   (typecase value
     ((or number symbol character) value)
     (t (forked-object value copier))))
@@ -30,7 +30,7 @@ not be complete before they have returned."
           (t (begin-copy value copier)))))
 
 (defun copy-unless-screened (value copier)
-  "Return what COPIER is to have for VALUE as its screen says: that, or a copy."
+  "Return what COPIER has for VALUE: the replacement of its screen, or a copy."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
         (note-copy value instead copier)
@@ -40,7 +40,7 @@ not be complete before they have returned."
   (copy-slots value fork))
 
 (defun copy-slots (object copier &optional (manner (manner object)))
-  "Return what COPIER has for the structure OBJECT: a new one, in whose slots are copies."
+  "Return a copy of the structure OBJECT by COPIER, with copies in its slots."
   (declare #.*hot* (type manner manner))
   (let ((copy (note-copy object (copy-structure (the structure-object object)) copier)))
     (loop for (writer . initial) in (manner-fresh manner)
@@ -93,8 +93,8 @@ not be complete before they have returned."
                copier)))
 
 (defun copy-as-told (value copier)
-  "Return what COPY-PLAN-VALUE returns for VALUE, unless who asks for the copy has decided. An error
-in a user's method is CANNOT-FORK."
+  "Return the value of COPY-PLAN-VALUE for VALUE, unless the caller has decided. Signals CANNOT-FORK
+for an error in a user's method."
   (let ((decision (decision-about value copier)))
     (flet ((blame (condition)
              (unless (typep condition 'ars-magna-error)
@@ -127,21 +127,21 @@ in a user's method is CANNOT-FORK."
                    ((eq t (array-element-type value)) (note (like-array value)))
                    (t (note-copy value (like-array value) copier))))
       (t (cond ((not (value-cell-p value)) (note-copy value (copy-as-told value copier) copier))
-               ;; So that who leaves it later is told, in a fork too, that it is gone.
+               ;; So an exit to it fails properly in a fork too.
                ((exit-cell-p value) value)
                (t (note (make-value-cell (cell-value value)))))))))
 
 (defun copy-function (function copier)
-  "Return what COPIER is to have for FUNCTION, which has closed over nothing: itself. What is a
-function and an instance of a class of a user's may keep anything."
+  "Return what COPIER has for FUNCTION, which closes over nothing: itself. A function that is an
+instance of a user's class may hold anything."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
         ((typep function 'standard-object) (ask-about function copier))
         (t function)))
 
-;;; Putting right.
+;;; Replacing references in copies.
 
 (defun put-list-right (list copier)
-  "Put right what is in LIST, a copy, as far as it goes on into what has not been copied."
+  "Replace the references in LIST, a copy, up to a tail that was copied before."
   (declare #.*hot* (type copier copier))
   (loop
     (setf (car list) (forked (car list) copier))
@@ -153,7 +153,7 @@ function and an instance of a class of a user's may keep anything."
                                 (note-copy tail (cons (car tail) (cdr tail)) copier))))))))
 
 (defun put-right (copy indices copier)
-  "Let what is in COPY be copies too. INDICES are the numbers of slots, or NIL for what has none."
+  "Replace the references in COPY by copies. INDICES are slot numbers, or NIL for objects without."
   (declare #.*hot* (type copier copier))
   (cond (indices
          (loop for index of-type (unsigned-byte 20) across (the simple-vector indices)
@@ -184,7 +184,7 @@ function and an instance of a class of a user's may keep anything."
                         (svref (copier-work copier) (1+ fill))
                         copier))))
 
-;; A key must be complete before a table can know where it belongs.
+;; A key must be complete before its hash value is known.
 (defun fill-tables (tables copier)
   (let ((contents (loop for (table) in tables
                         do (setf (copier-holder copier) table)
@@ -204,18 +204,18 @@ function and an instance of a class of a user's may keep anything."
       (fill-tables tables copier))))
 
 (defmacro copying ((copier) &body body)
-  "Run BODY, which copies things by COPIER, and put all that right. Return the value of BODY, one."
+  "Run BODY, which copies objects by COPIER, then complete the copies. Return the value of BODY."
   (once-only (copier)
     `(progn
        (refresh-manners)
        (prog1 (progn ,@body)
          (finish-copies ,copier)))))
 
-;;; Values alone, of which no run is part.
+;;; Plain values, outside of any run.
 
 (defun plain-value-p (value)
-  "True if VALUE is a list, an array, a table, a closure or a variable of one, or a structure or
-instance of a class of a user's of which nobody has said how it is copied: what has no identity."
+  "True if VALUE has no identity: a list, array, table, closure or closed-over variable, or a
+structure or instance of a user's class without a method for copying."
   (typecase value
     ((or cons array hash-table) t)
     (condition nil)
@@ -225,8 +225,8 @@ instance of a class of a user's of which nobody has said how it is copied: what 
     (t (and (value-cell-p value) (not (exit-cell-p value))))))
 
 (defun copy-values (list instead-of)
-  "Return LIST with copies of the plain values in it, and of those in these; what two hold is shared
-by their copies. For anything else there is what INSTEAD-OF, a function, returns."
+  "Return LIST with the plain values in it, and in these, copied; what two share is shared by the
+copies. Other objects are replaced by the value of INSTEAD-OF, a function of them."
   (if (every (lambda (value) (typep value '(or number symbol character))) list)
       list
       (with-copier (copier :screen (lambda (value)
@@ -235,15 +235,14 @@ by their copies. For anything else there is what INSTEAD-OF, a function, returns
                                          (values (funcall instead-of value) t))))
         (copying (copier) (forked list copier)))))
 
-;;;; What users give
+;;;; Users' arguments
 
-(defconstant +longest-given+ 100000 "How many conses and elements a datum has at most.")
-(defconstant +deepest-given+ 200 "How deep its lists stand in lists at most.")
+(defconstant +longest-given+ 100000 "The limit of conses and elements in an argument.")
+(defconstant +deepest-given+ 200 "The limit of nesting in an argument.")
 
 (defun copy-given (datum)
-  "Return DATUM, what somebody has given us, with the lists and vectors in it copied, so that he can
-change it no more; other objects are shared. A second value is true if that cannot be, as it goes on
-without end or too far."
+  "Return DATUM, an argument, with its lists and vectors copied, so that the caller cannot modify it
+later; other objects are shared. Return NIL and true if it is circular, too long or too deep."
   (let ((left +longest-given+))
     (labels ((deeper (depth)
                (when (or (minusp (decf left)) (> depth +deepest-given+))
@@ -267,8 +266,8 @@ without end or too far."
       (copy datum 1))))
 
 (defun given (operator name datum)
-  "Return a copy of DATUM, which OPERATOR got as its argument NAME. Signals WRONG-ARGUMENT if it has
-no end."
+  "Return a copy of DATUM, the argument NAME of OPERATOR. Signals WRONG-ARGUMENT if it is circular,
+too long or too deep."
   (multiple-value-bind (copy endless-p) (copy-given datum)
     (when endless-p
       (reject-argument operator name "what was given"

@@ -1,4 +1,4 @@
-;;;; state.lisp -- what is in objects: digested, searched, written down, put back, checked.
+;;;; state.lisp -- the contents of objects: digested, searched, saved, restored, checked.
 
 (in-package :ars-magna.copying)
 
@@ -6,18 +6,18 @@
           note-lasting lasting-name lasting-function contradiction contradict must-hold
           proper-list-of-p))
 
-;;; What belongs to an object is digested with it, by its state; what it only refers to, by what
-;;; tells it apart from others, see REFERENCE.
+;;; An object is digested with its state and its parts. Other objects that it refers to are digested
+;;; by their REFERENCE.
 
 (defgeneric reference (object)
   (:documentation
-   "Return plain data that tells OBJECT apart from all others in its run: (KIND argument...), a
-keyword and data. A journal names it so, and DEREFERENCE finds its like in another run. NIL if
-there is nothing to tell it by.")
+   "Return plain data that identifies OBJECT in its run: (KIND argument...), a keyword and data.
+Journals use it, and DEREFERENCE finds the same object in another run. NIL if OBJECT cannot be
+identified.")
   (:method (object) (declare (ignore object)) nil))
 
 (defgeneric digest-state (object digest)
-  (:documentation "Add to DIGEST what tells OBJECT apart, its state, and that of its parts. Return
+  (:documentation "Add to DIGEST the reference of OBJECT, its state, and that of its parts. Return
 DIGEST. A kind may add an :AFTER method.")
   (:method (object digest)
     (digest-add digest object))
@@ -38,7 +38,7 @@ DIGEST. A kind may add an :AFTER method.")
         (t (digest-state value digest)))
       (digest-add digest value)))
 
-(defvar *digest-depth* 0 "How many objects, one in the other, are being digested.")
+(defvar *digest-depth* 0 "The nesting depth of the objects that are being digested.")
 
 (defmethod digest-mention (object digest)
   (let ((reference (reference object)))
@@ -46,12 +46,12 @@ DIGEST. A kind may add an :AFTER method.")
         (digest-add digest reference)
         (let ((*digest-depth* (1+ *digest-depth*)))
           (digest-add digest (first (ensure-list (type-of object))))
-          ;; What contains itself ends somewhere.
+          ;; Circular objects end here.
           (when (< *digest-depth* 20) (digest-contents object digest)))))
   digest)
 
 (defun digest-contents (object digest)
-  "Add to DIGEST what is in OBJECT, an array, table, pathname or structure of a user's."
+  "Add to DIGEST the contents of OBJECT, an array, table, pathname or structure of a user."
   (typecase object
     (array (digest-add digest (array-dimensions object))
      (dotimes (i (array-total-size object)) (digest-add digest (row-major-aref object i))))
@@ -63,17 +63,17 @@ DIGEST. A kind may add an :AFTER method.")
          (digest-add digest (slot-value object slot)))))))
 
 (defun digest-table (table digest)
-  "Add to DIGEST what is in the hash TABLE, in whatever order."
+  "Add to DIGEST the contents of the hash TABLE, independent of their order."
   (let ((sum 0))
     (maphash (lambda (key value)
                (incf sum (digest-value (digest-add (make-digest) (list key value)))))
              table)
     (digest-add digest (list (hash-table-count table) (ldb (byte 64 0) sum)))))
 
-;;;; What is in data
+;;;; The contents of data
 
-;;; For messages that name where something was found. What belongs to a run, such as tasks and
-;;; robots, is not looked into: from there one gets everywhere.
+;;; For messages that name where something was found. Objects of a run, such as tasks and robots,
+;;; are not searched, because everything can be reached from them.
 
 (defun contents-of (object)
   (typecase object
@@ -94,7 +94,7 @@ DIGEST. A kind may add an :AFTER method.")
     (t (if (value-cell-p object) (list (cell-value object)) '()))))
 
 (defun holds-p (object value)
-  "True if VALUE is OBJECT, or in it: in a list, array, table, closure, structure or instance."
+  "True if VALUE is OBJECT or in it: in a list, array, table, closure, structure or instance."
   (let ((seen (make-hash-table :test 'eq)) (work (list object)))
     (loop while work
           do (let ((each (pop work)))
@@ -104,25 +104,26 @@ DIGEST. A kind may add an :AFTER method.")
                        work (append (contents-of each) work)))))))
 
 (defun closed-over (function)
-  "Return a list of what FUNCTION, if it is a closure, has closed over: of variables, their values."
+  "Return a list of what FUNCTION closes over, with variables as their values; NIL if it is no
+closure."
   (when (closure-p function)
     (loop for value in (closure-values function)
           collect (if (and (value-cell-p value) (not (exit-cell-p value)))
                       (cell-value value)
                       value))))
 
-;;;; What is written down and put back
+;;;; Saving and restoring
 
-;;; A copy in a file has what another object of a run would need to go on: of a kind, what its
-;;; roles :FIXED, :STATE and :MEMORY say; what is :SCRATCH or a :LINK is as at first. A structure
-;;; without a kind has no roles, and all that is in it counts.
+;;; A file has what a restored object needs: of a kind, the slots with the roles :FIXED, :STATE and
+;;; :MEMORY; slots that are :SCRATCH or a :LINK start as in a new object. Of a structure without a
+;;; kind it has all slots.
 
 (defun slot-kept-p (slot)
-  "True if what is in SLOT, see FIELDS-OF-TYPE, is to be written down."
+  "True if SLOT, of FIELDS-OF-TYPE, is to be saved."
   (and (member (kind-slot-role slot) '(:fixed :state :memory)) t))
 
 (defun plain-slot (name type)
-  "Return what is known of the slot NAME, of TYPE, of a structure without a kind."
+  "Return a description of the slot NAME, of TYPE, of a structure without a kind."
   (make-kind-slot name :fixed type "" nil nil
                   (constantly nil)
                   (lambda (object) (slot-value object name))
@@ -148,33 +149,33 @@ its initial value, or, if that is not of its type, garbage: do not print the obj
       (ignore-errors
        (funcall (kind-slot-writer field) (funcall (kind-slot-initial field)) object)))))
 
-;;; Functions that objects hold, and that a file may name: none but these.
+;;; Functions that objects hold and that a file may name. Others are refused.
 
 (defvar *lasting-functions* '()
-  "The names of functions that objects of a run hold for as long as they last.")
+  "The names of functions that objects of a run may hold when it is saved.")
 
 (defun note-lasting (name)
-  "Let the function called NAME be one that a file may name as held by an object. Return NAME."
+  "Let a file name the function NAME as held by an object. Return NAME."
   (pushnew name *lasting-functions*)
   name)
 
 (defun lasting-name (function)
-  "Return the name of FUNCTION if it is one of those that NOTE-LASTING was told of, or NIL."
+  "Return the name of FUNCTION if it was passed to NOTE-LASTING, or NIL."
   (find function *lasting-functions* :key #'fdefinition))
 
 (defun lasting-function (name)
-  "Return the function called NAME if NOTE-LASTING was told of it, or NIL."
+  "Return the function NAME if that was passed to NOTE-LASTING, or NIL."
   (and (member name *lasting-functions*) (fdefinition name)))
 
-;;;; What makes no sense
+;;;; Consistency of restored objects
 
-;;; What is put together from a file may contradict itself. Each layer checks its own kinds: nothing
-;;; of a run that was read is used before all of it has been looked at.
+;;; Objects read from a file may contradict each other. Each layer checks its own kinds. No object
+;;; of the run is used before all have been checked.
 
 (define-condition contradiction (error)
   ((text :initarg :text :reader contradiction-text))
   (:report (lambda (condition stream) (write-string (contradiction-text condition) stream)))
-  (:documentation "Objects that belong together do not fit each other."))
+  (:documentation "Restored objects are inconsistent."))
 
 (defun contradict (control &rest arguments)
   "Signal a CONTRADICTION with a text formatted from CONTROL and ARGUMENTS."
@@ -185,5 +186,5 @@ its initial value, or, if that is not of its type, garbage: do not print the obj
   `(unless ,test (contradict ,control ,@arguments)))
 
 (defun proper-list-of-p (predicate object)
-  "True if OBJECT is a list that ends, and PREDICATE is true of each of its elements."
+  "True if OBJECT is a proper list and PREDICATE is true of each of its elements."
   (and (proper-list-p object) (every predicate object)))
