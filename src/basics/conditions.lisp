@@ -1,4 +1,4 @@
-;;;; conditions.lisp -- errors of misuse, refused exits, and the limits of numbers.
+;;;; conditions.lisp -- the errors of misuse, refused exits, and the limits of numbers.
 
 (in-package :ars-magna.basics)
 
@@ -9,19 +9,19 @@
           within-reason-p quantity-p amount-p probability-p whole-p tick-span-p
           define-with-keywords))
 
-;;; A misused library signals one of these. A robot that fails in a task does not: it
-;;; reports an error code through its command's continuation (manual 3.1.1).
+;;; Misuse of the library signals one of these. A robot that fails in a task does not: it reports an
+;;; error code to its command's continuation (manual 3.1.1).
 ;;;
-;;; Who shows a report may have circles marked. What is in it is abridged and has none, but may have
-;;; a text twice, which is to stand there twice.
+;;; *PRINT-CIRCLE* may be true where a report is shown. The text is abridged and has no circles, but
+;;; may contain a text twice, which must be printed twice.
 
 (addition ars-magna-error)
 (define-condition ars-magna-error (error)
   ()
-  (:documentation "The root of every error that ARS MAGNA signals."))
+  (:documentation "The root of all errors that ARS MAGNA signals."))
 
 (defmethod print-object :around ((condition ars-magna-error) stream)
-  "Let nothing that a terminal obeys come to STREAM; what a report that fails has written comes."
+  "Write no terminal control characters to STREAM; what a failing report has written is kept."
   (if *print-escape*
       (call-next-method)
       (let ((out (make-string-output-stream)))
@@ -68,14 +68,14 @@
                        clause
                        (abridged clause)
                        (sentence (malformed-definition-expected condition))))))
-  (:documentation "A defining form (DEFMAP, DEFROBOT ...) has a clause that makes no sense."))
+  (:documentation "A defining form (DEFMAP, DEFROBOT ...) has an invalid clause."))
 
 (setf (documentation 'malformed-definition-definition 'function)
-      "Return what was being defined, in words or as read."
+      "Return the definition, in words or as read."
       (documentation 'malformed-definition-place 'function)
-      "Return the file and line of what makes no sense, a string, or NIL if it was typed."
+      "Return the file and line of the invalid clause, a string, or NIL if it was typed."
       (documentation 'malformed-definition-clause 'function)
-      "Return the clause that makes no sense, as read; NIL where something is missing."
+      "Return the invalid clause, as read; NIL where something is missing."
       (documentation 'malformed-definition-expected 'function)
       "Return in words what should be there instead.")
 
@@ -84,15 +84,15 @@
   ((text :initarg :text :reader definition-warning-text))
   (:report (lambda (condition stream)
              (write-string (definition-warning-text condition) stream)))
-  (:documentation "A definition can be used, but does perhaps not say what its author meant."))
+  (:documentation "A definition is valid, but perhaps not what its author meant."))
 
 (setf (documentation 'definition-warning-text 'function)
-      "Return what a DEFINITION-WARNING says, a string.")
+      "Return the text of a DEFINITION-WARNING, a string.")
 
 (define-condition definition-doubt (definition-warning style-warning)
   ()
-  (:documentation "A definition needs what there is not yet, or has what it does not need; in a file
-that is compiled, which must not fail for that."))
+  (:documentation "A definition needs what is not yet defined, or has what it does not need, in a
+file that is compiled. Compiling must not fail for that."))
 
 (defun text-for-author (control arguments)
   (printing-words ()
@@ -103,17 +103,17 @@ that is compiled, which must not fail for that."))
   (warn 'definition-warning :text (text-for-author control arguments)))
 
 (defun doubt-definition (control &rest arguments)
-  "Do as WARN-OF-DEFINITION. The definition may be what its author meant: so in a file that is
-compiled the warning is a STYLE-WARNING. Scripts, which do not show these, are not compiled."
+  "Do as WARN-OF-DEFINITION, for a definition that may be what its author meant: in a file that is
+compiled the warning is a STYLE-WARNING. Scripts, which do not show those, are not compiled."
   (warn (if *compile-file-truename* 'definition-doubt 'definition-warning)
         :text (text-for-author control arguments)))
 
 (defun plain-name (name)
-  "Return NAME as people write it: a symbol in lower case, without its package."
+  "Return NAME as text: a symbol in lower case, without its package."
   (if (symbolp name) (string-downcase name) name))
 
 (defun names-to-show (names)
-  "Return NAMES as people write them, the first dozen of them if there are more."
+  "Return NAMES as text, at most the first dozen of them."
   (let ((more (- (length names) 12)))
     (append (mapcar #'plain-name (subseq names 0 (min 12 (length names))))
             (when (plusp more) (list (format nil "and ~D more" more))))))
@@ -140,11 +140,11 @@ compiled the warning is a STYLE-WARNING. Scripts, which do not show these, are n
                          (and nearest (plain-name nearest))
                          (names-to-show known)
                          remedy)))))
-  (:documentation "A name was given that nothing of that kind has."))
+  (:documentation "No definition or object of that kind has the given name."))
 
 (defun reject-name (kind name known &optional (meant known))
-  "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME. One of the
-names MEANT could be meant."
+  "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME. Suggests
+one of the names MEANT."
   (error 'unknown-name :kind kind :name name :known known
                        :nearest (and (typep name '(or symbol string))
                                      (nearest-name name meant))))
@@ -153,11 +153,12 @@ names MEANT could be meant."
 (define-condition misuse (ars-magna-error)
   ((text :initarg :text :reader misuse-text))
   (:report (lambda (condition stream) (write-string (misuse-text condition) stream)))
-  (:documentation "An operation was asked for at a moment or in a state that forbids it."))
+  (:documentation "An operation is not allowed at this moment or in this state."))
 
 (define-condition outlived (misuse)
   ()
-  (:documentation "Something was asked of a run that is over, as by a program that was told so."))
+  (:documentation "An operation was requested of a run that is over, as by a program that was told
+so."))
 
 (defun reject-outlived (control &rest arguments)
   "Signal OUTLIVED, a MISUSE, with a text formatted from CONTROL and ARGUMENTS."
@@ -167,13 +168,13 @@ names MEANT could be meant."
   "Signal MISUSE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
   (error 'misuse :text (printing-words () (apply #'format nil control arguments))))
 
-;;;; Code that would end the Lisp in which it runs together with others'
+;;;; Exits of Lisp that are refused, where others' code shares it
 
 (defvar *refusal* nil
-  "What is said, a string, while code runs that is not to end this Lisp; else NIL.")
+  "The text of the refusal, a string, while code may not end this Lisp; else NIL.")
 
 (defun refuse-exit (function &rest arguments)
-  "Apply FUNCTION, which ends this Lisp, to ARGUMENTS. Signals MISUSE if that is refused."
+  "Apply FUNCTION, which ends this Lisp, to ARGUMENTS. Signals MISUSE if exits are refused."
   (when *refusal*
     (reject-use "~A" *refusal*))
   (apply function arguments))
@@ -182,32 +183,31 @@ names MEANT could be meant."
 
 (defun call-refusing-exits (function &optional (text "EXIT would end the whole program here. ~
                                                         Signal an error instead, or return."))
-  "Call FUNCTION, in which EXIT signals MISUSE, with TEXT."
+  "Call FUNCTION; EXIT in it signals MISUSE, with TEXT."
   (let ((*refusal* (format nil text))) (funcall function)))
 
 (defun refuse-exits (text)
-  "Let EXIT signal MISUSE with TEXT in each thread of this Lisp, where nothing else is said; or with
-NIL end this Lisp again."
+  "Let EXIT signal MISUSE with TEXT in all threads of this Lisp, unless overridden; with NIL, let it
+end this Lisp again."
   (setf (global-value '*refusal*) text))
 
 (defun call-allowing-exits (function)
-  "Call FUNCTION, in which EXIT ends this Lisp, whatever goes on around it."
+  "Call FUNCTION; EXIT in it ends this Lisp, even if exits are refused outside."
   (let ((*refusal* nil)) (funcall function)))
 
-;;;; Limits of numbers, and functions that take keywords
+;;;; Limits of numbers
 
-;;; Positions, distances, speeds, angles and times are kept below 1e9 either way: there a
-;;; double-float is exact to 1e-7 metres or radians, so that what is added up in a run stays true,
-;;; and a count of ticks can be added to another for ever. (At 20 ticks a second 1e9 ticks take a
-;;; year and a half.) What things are like, such as weights, is kept below 1e15, where every whole
-;;; number is a double-float of its own, and sums and squares are far from overflowing. Infinities
-;;; and what is no number are nowhere taken. ARGUMENT-TYPES.LISP says all this to users.
+;;; Positions, distances, speeds, angles and times are limited to 1e9 either way. There a
+;;; double-float is exact to 1e-7 metres or radians, so sums in a run stay exact and tick counts can
+;;; always be added. (At 20 ticks a second 1e9 ticks take a year and a half.) Attributes, such as
+;;; weights, are limited to 1e15, where every whole number is a double-float, and sums and squares
+;;; cannot overflow. Infinities and NaNs are never accepted. ARGUMENT-TYPES.LISP tells users.
 
 (define-constant +largest+ (expt 10 9)
-  :documentation "How large positions, distances, speeds, angles and times are at most.")
+  :documentation "The limit of positions, distances, speeds, angles and times.")
 
 (define-constant +largest-quantity+ (expt 10 15)
-  :documentation "How large the numbers are at most that say what something is like.")
+  :documentation "The limit of attribute values.")
 
 (defun other-within-p (value limit)
   (and (finite-p value) (<= (- limit) value limit)))
@@ -221,11 +221,11 @@ NIL end this Lisp again."
       (other-within-p value limit)))
 
 (defun within-reason-p (value)
-  "True if VALUE can be a position, distance, speed, angle or time: from -1e9 to 1e9."
+  "True if VALUE is a possible position, distance, speed, angle or time: from -1e9 to 1e9."
   (within-p value +largest+))
 
 (defun quantity-p (value)
-  "True if VALUE can say what something is like: a number from -1e15 to 1e15."
+  "True if VALUE is a possible attribute value: a number from -1e15 to 1e15."
   (within-p value +largest-quantity+))
 
 (defun amount-p (value)
@@ -241,21 +241,20 @@ NIL end this Lisp again."
   (and (integerp value) (<= least value most)))
 
 (defun tick-span-p (value)
-  "True if VALUE is how long something can last: a whole number of ticks, from 0 to 1e9."
+  "True if VALUE is a possible duration: a whole number of ticks, from 0 to 1e9."
   (whole-p value))
 
 ;;;; Keywords
 
 (defun check-keywords (operator known options)
-  "Signal UNKNOWN-NAME if the list OPTIONS, given to OPERATOR, has a keyword that is not one of
-KNOWN."
+  "Signal UNKNOWN-NAME if the list OPTIONS, passed to OPERATOR, has a keyword not among KNOWN."
   (loop for (key) on options by #'cddr
         unless (or (member key known) (eq key :allow-other-keys))
           do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))
 
 (defun warn-of-keywords (operator known options)
-  "Warn, while a call of OPERATOR is compiled, of a keyword among the forms OPTIONS that is not one
-of KNOWN, and of a number in the place of one."
+  "Warn, while a call of OPERATOR is compiled, of a keyword among the forms OPTIONS that is not
+among KNOWN, and of a number in place of a keyword."
   (loop for (key) on options by #'cddr
         when (and (keywordp key) (not (member key known)) (not (eq key :allow-other-keys)))
           do (simple-style-warning "~(~A~) has no keyword ~(~S~); it knows ~{~(~S~)~^, ~}."
@@ -265,8 +264,8 @@ of KNOWN, and of a number in the place of one."
                                 ~{~(~S~)~^, ~}." operator key known)))
 
 (defun with-options (lambda-list)
-  "Return LAMBDA-LIST with any keywords allowed, the variable of all that are given, which are
-known, and how many arguments come before them."
+  "Return LAMBDA-LIST with any keywords allowed, the variable of all options, the known ones, and
+the number of arguments before them."
   (destructuring-bind (required optional rest keys allowed aux keys-p)
       (multiple-value-list (parse-ordinary-lambda-list lambda-list))
     (declare (ignore optional allowed aux keys-p))
@@ -278,9 +277,9 @@ known, and how many arguments come before them."
               (length required)))))
 
 (defmacro define-with-keywords (name lambda-list documentation &body body)
-  "Define the function NAME as DEFUN does, with LAMBDA-LIST, which has keywords and nothing optional
-besides. Called with a keyword that is not among these it signals UNKNOWN-NAME, which lists them;
-the compiler warns of such a call."
+  "Define the function NAME like DEFUN, with a LAMBDA-LIST that has keywords and no optional
+parameters. A call with an unknown keyword signals UNKNOWN-NAME, which lists the known ones; the
+compiler warns of such a call."
   (multiple-value-bind (all options known count) (with-options lambda-list)
     (multiple-value-bind (forms declarations) (parse-body body)
       `(progn

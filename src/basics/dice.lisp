@@ -1,13 +1,13 @@
-;;;; dice.lisp -- all chance in the simulator; and digests, one number for a state.
+;;;; dice.lisp -- dice, the source of all randomness; digests, one number for a state.
 
 (in-package :ars-magna.basics)
 
 (export '(dice make-dice copy-dice text-word text-checksum digest make-digest digest-add
           digest-word digest-mention))
 
-;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the
-;;; same numbers on every machine and every release of the compiler. A simulation owns one
-;;; stream per purpose, so that an extra look does not change how a box moves.
+;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the same
+;;; numbers on every machine and with every compiler. A simulation has one stream for each purpose,
+;;; so an extra look does not change how a box moves.
 
 (deftype word () '(unsigned-byte 64))
 
@@ -23,12 +23,12 @@
 
 (declaim (inline %make-dice dice-state (setf dice-state) copy-dice))
 (define-record (dice (:constructor %make-dice (state)))
-  "A stream of chance. Two dice in the same state roll the same numbers for ever."
+  "A stream of random numbers. Two dice in the same state roll the same numbers for ever."
   (state 0 word "the state of the dice, an integer of 64 bits" :writable :export))
 (declaim-final dice)
 
 (defun copy-dice (dice)
-  "Return new dice that will roll what DICE would."
+  "Return dice in the same state as DICE."
   (%make-dice (dice-state dice)))
 
 (declaim (inline characters-word))
@@ -61,7 +61,7 @@
           (t (char-code (char-upcase char))))))
 
 (defun name-word (name)
-  "Return a 64-bit word that depends on what NAME, a string designator, is called in upper case."
+  "Return a 64-bit word that depends only on NAME, a string designator, in upper case."
   (declare #.*hot*)
   (characters-word (string name) #'upper-code))
 
@@ -137,7 +137,7 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
 
 (define-record (digest (:constructor make-digest ()
                          "Return a digest to which nothing has been added."))
-  "A sum over data, in order, that differs if any of them differs (FNV-1a, 64 bits)."
+  "A hash of data, in order (FNV-1a, 64 bits)."
   (value #xCBF29CE484222325 word "the digest's sum so far, 64 bits" :writable :export))
 
 (declaim (inline digest-word))
@@ -147,12 +147,11 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
         (mix-word (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 
 (defgeneric digest-mention (object digest)
-  (:documentation "Add to DIGEST what tells OBJECT apart from others, or else what is in it. Return
-DIGEST."))
+  (:documentation "Add to DIGEST what identifies OBJECT, or else its contents. Return DIGEST."))
 
 (defun digest-add (digest datum)
-  "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by
-their elements, functions as such, other objects by what tells them apart. Return DIGEST."
+  "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by their
+elements, all functions alike, other objects by what identifies them. Return DIGEST."
   (declare #.*hot* (type digest digest))
   (typecase datum
     (null (digest-word digest (load-time-value (name-word nil))))
@@ -182,5 +181,5 @@ their elements, functions as such, other objects by what tells them apart. Retur
   digest)
 
 (defun text-checksum (text &optional (before 0))
-  "Return a number of 32 bits for the characters of TEXT, and for BEFORE, a number of that kind."
+  "Return a checksum of 32 bits of the characters of TEXT, and of BEFORE, another checksum."
   (ldb (byte 32 0) (mix-word (logxor before (text-word text)))))

@@ -1,4 +1,4 @@
-;;;; files.lisp -- reading a file of text, knowing what it is, and writing one anew.
+;;;; files.lisp -- reading text files, recognizing their kind, and replacing them safely.
 
 (in-package :ars-magna.basics)
 
@@ -12,14 +12,14 @@
              (format stream "~A, line ~D: it has bytes that are not UTF-8. Save the file in UTF-8."
                      (native-name (illegible-file-name condition))
                      (illegible-file-line condition))))
-  (:documentation "A file that is to be read as text has a line that is no text in UTF-8."))
+  (:documentation "A text file has a line that is not valid UTF-8."))
 
 (setf (documentation 'illegible-file-line 'function)
-      "Return the number of the first line that is no text in UTF-8.")
+      "Return the number of the first line that is not valid UTF-8.")
 
 (defun file-text (path)
-  "Return the text in the file PATH, without a byte order mark. Signals an error if it has none, and
-ILLEGIBLE-FILE if it has octets that are no text in UTF-8."
+  "Return the text of the file PATH, without a byte order mark. Signals an error if it is no regular
+file, and ILLEGIBLE-FILE if it is not valid UTF-8."
   (unless (plain-file-p path) (error "~A is a directory or a device" (native-name path)))
   (let* ((text (decoded (read-file-into-string path :external-format :latin-1)))
          (illegible (position +illegible+ text)))
@@ -27,22 +27,22 @@ ILLEGIBLE-FILE if it has octets that are no text in UTF-8."
       (error 'illegible-file :file path :line (1+ (count #\Newline text :end illegible))))
     (string-left-trim '(#.(code-char #xFEFF)) text)))
 
-;;; What a file holds, for somebody who has given it to the wrong function.
+;;; The kind of a file, for users who pass it to the wrong function.
 
-;;; The layer that writes or reads a kind of file notes how such files begin.
+;;; The layer that writes or reads a kind of file registers how such files begin.
 
 (defvar *kinds-of-files* '() "Lists (kind beginning advice).")
 
 (defun note-kind-of-file (kind beginning advice)
-  "Note that files of KIND, a keyword, begin with the text BEGINNING; ADVICE says in words what such
-a file is, and what reads it."
+  "Register that files of KIND, a keyword, begin with BEGINNING; ADVICE says in words what such a
+file is and what reads it."
   (pushnew (list kind beginning advice) *kinds-of-files* :test #'equal))
 
 (dolist (beginning '("(in-package" "(def"))
   (note-kind-of-file :lisp beginning "it is Lisp; (load FILE) reads it"))
 
 (defun beginning-of-file (path)
-  "Return the first characters of the file PATH, or an empty text if it cannot be read."
+  "Return the first characters of the file PATH, or an empty string if it cannot be read."
   (or (ignore-errors
        (and (plain-file-p path)
             (with-open-file (in path :external-format :latin-1)
@@ -57,16 +57,15 @@ a file is, and what reads it."
              *kinds-of-files* :key #'second)))
 
 (defun file-advice (path kind)
-  "Return in words what is in the file PATH, and what reads it, if that is another kind of file than
-KIND, a keyword; else NIL."
+  "Return in words what is in the file PATH and what reads it, if it is of another kind than KIND, a
+keyword; else NIL."
   (let ((entry (known-beginning path)))
     (and entry
          (not (eq kind (first entry)))
          (third entry))))
 
 (defun foreign-file-p (file kind)
-  "True if there is something called FILE that is neither empty nor of KIND, whole or damaged, or
-that cannot be told."
+  "True if FILE exists and is neither empty nor of KIND, whole or damaged, or if that is unknown."
   (let ((path (ignore-errors (probe-file file))))
     (and path
          (not (ignore-errors
@@ -75,16 +74,16 @@ that cannot be told."
                         (eq kind (first (known-beginning path))))))))))
 
 (defun check-not-foreign (file kind what)
-  "Signal MISUSE if there is something called FILE that is neither empty nor of KIND, a WHAT."
+  "Signal MISUSE if FILE exists and is neither empty nor of KIND, called WHAT in the message."
   (when (foreign-file-p file kind)
     (reject-use "~A is no ~A, and is left as it is. Give another name." (shown-name file) what)))
 
-;;;; Writing a file anew, or saying in a sentence why that cannot be
+;;;; Replacing a file, or explaining why that is impossible
 
 (defun new-file-for (file)
-  "Return the absolute path of the file that is to be written for FILE: where a link leads to, if it
-is one. Signals an error if there is something that is no file of bytes or is write-protected, or no
-directory for it, or the name is illegible."
+  "Return the absolute path of the file to write for FILE: the target, if it is a link. Signals an
+error if there is something that is no regular file or is write-protected, if the directory is
+missing, or if the name is illegible."
   (when (many-files-p file) (error *many-files-text*))
   (check-name-legible file)
   (when (dangling-link-p file)
@@ -99,14 +98,14 @@ directory for it, or the name is illegible."
     path))
 
 (defun call-replacing-file (function file &key (external-format :utf-8) (check #'identity))
-  "Call FUNCTION with a stream to a new file of UTF-8, which takes the place of FILE at one stroke
-when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename.
-FILE keeps its permissions. What FUNCTION writes does not follow the printer's variables. In the
-EXTERNAL-FORMAT :LATIN-1 each character that is written is an octet. CHECK is called with the path
-of the new file when that is written; if it signals an error, FILE is as it was."
+  "Call FUNCTION with a stream to a new UTF-8 file, which replaces FILE atomically when FUNCTION has
+returned. If anything fails, FILE is unchanged. Return its truename. FILE keeps its permissions.
+Printer variables have their standard values. With the EXTERNAL-FORMAT :LATIN-1 each character is an
+octet. CHECK is called with the path of the complete new file; if it signals an error, FILE is
+unchanged."
   (let* ((path (new-file-for file)) (directory (uiop:pathname-directory-pathname path)))
     (remove-abandoned-files directory)
-    ;; The new file's name is rolled for: whoever writes a file rolls on as if he had not.
+    ;; The new file's name is random. The caller's random state must not notice that.
     (call-with-own-lisps-dice
      (lambda ()
        (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
@@ -120,8 +119,8 @@ of the new file when that is written; if it signals an error, FILE is as it was.
     (truename path)))
 
 (defun unwritten-reason (trouble)
-  "Return why a file could not be written, by the error TROUBLE, as the part of a sentence: of what
-Lisp says only the system's own words, without streams and names that its user does not know."
+  "Return in words why a file could not be written, from the error TROUBLE: the system's own words,
+without Lisp's streams and names that users do not know."
   (let* ((text (one-line-text trouble))
          (end (search ": " text :from-end t))
          (words (and end (subseq text (+ 2 end)))))
@@ -132,9 +131,9 @@ Lisp says only the system's own words, without streams and names that its user d
 (defun write-file-anew (function file what
                         &key (check #'identity) kind
                           (remedy "give the name of a file that you may write"))
-  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals MISUSE, with the REMEDY, if
-WHAT, such as \"the run\", cannot be written there, or if FILE is there and of another kind than
-KIND, see NOTE-KIND-OF-FILE; then it is as it was."
+  "Do as CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals MISUSE, with the REMEDY, if
+WHAT, such as \"the run\", cannot be written there, or if FILE exists and is not of KIND, see
+NOTE-KIND-OF-FILE. FILE is then unchanged."
   (let ((advice (file-advice file kind)))
     (when advice
       (reject-use "~@(~A~) is not written to ~A: ~A. It is left as it is; give another name."

@@ -1,33 +1,33 @@
-;;;; formats.lisp -- lines of tables as RFC 4180 has them; texts within JSON, XML and HTML.
+;;;; formats.lisp -- CSV lines (RFC 4180); texts in JSON, XML and HTML.
 
 (in-package :ars-magna.basics)
 
 (export '(csv-number-p csv-line csv-texts broken-line write-json-string write-xml-text *entities*))
 
-;;; A row is one line: texts have no line ends in them (see PLAIN-TEXT). The library for this would
-;;; take ten times as long, and loads half of Unicode to do so.
+;;; A row is one line: texts have no line ends (see PLAIN-TEXT). A CSV library would be ten times
+;;; slower and loads half of Unicode.
 
 (define-condition broken-line (ars-magna-error)
   ((line :initarg :line :reader broken-line-text))
   (:report (lambda (condition stream)
              (format stream "No row of a table: ~A" (cut (broken-line-text condition) 200))))
-  (:documentation "A line of a table cannot be taken apart."))
+  (:documentation "A line of a table cannot be parsed."))
 
 (setf (documentation 'broken-line-text 'function)
-      "Return the line that cannot be taken apart.")
+      "Return the line that cannot be parsed.")
 
-;;; Spreadsheets take what begins with = + - or @ for a formula, and carry it out. Such a text, if
-;;; it is no number, has ' before it, which says that it is text; so has one that begins with a '
-;;; already and would be mistaken for that. Reading takes it away.
+;;; Spreadsheets execute what begins with = + - or @ as a formula. Such a text, unless it is a
+;;; number, gets a ' before it, which marks it as text. So does a text that begins with ' and would
+;;; be taken for a marked one. Reading removes the mark.
 
 (defun formula-p (text)
-  "True if TEXT begins as a formula of a spreadsheet does, perhaps after some ' and no others."
+  "True if TEXT begins like a spreadsheet formula, perhaps after one or more '."
   (declare (type simple-string text))
   (let ((first (find #\' text :test #'char/=)))
     (and first (find first "=+-@") t)))
 
 (defun csv-number-p (text)
-  "True if TEXT is a number as Lisp writes it: no name would be made of it."
+  "True if TEXT is a number as Lisp writes it, which no name looks like."
   (declare (type simple-string text))
   (let ((place 0) (length (length text)))
     (declare (type fixnum place))
@@ -47,13 +47,13 @@
                   (= place length))))))
 
 (defun escaped (text)
-  "Return TEXT as a spreadsheet is to see it."
+  "Return TEXT with a mark if a spreadsheet would execute it."
   (if (and (formula-p text) (not (csv-number-p text)))
       (concatenate 'string "'" text)
       text))
 
 (defun unescaped (text)
-  "Return the text that ESCAPED made TEXT of."
+  "Undo ESCAPED."
   (declare (type simple-string text))
   (if (and (plusp (length text)) (char= #\' (char text 0)) (formula-p text))
       (subseq text 1)
@@ -62,7 +62,7 @@
 ;;; Writing.
 
 (defun quoted (text)
-  "Return TEXT as it stands in a line, in quotes if it needs some."
+  "Return TEXT as a CSV field, quoted if necessary."
   (declare (type simple-string text))
   (if (find-if (lambda (char) (member char '(#\, #\" #\Newline #\Return))) text)
       (with-output-to-string (out)
@@ -74,7 +74,7 @@
       text))
 
 (defun csv-line (texts)
-  "Return TEXTS, strings, as a line of a table, with its end."
+  "Return TEXTS, strings, as a CSV line, with its end."
   (let* ((texts (mapcar (lambda (text) (quoted (escaped text))) texts))
          (line (make-string (loop for text in texts sum (1+ (length (the string text))))))
          (place 0))
@@ -98,7 +98,7 @@
         do (setf start (1+ comma))))
 
 (defun end-of-quoted (line start)
-  "Return where the text in quotes that begins in LINE at START ends. Signals BROKEN-LINE."
+  "Return the end of the quoted field that begins in LINE at START. Signals BROKEN-LINE."
   (loop for quote = (position #\" line :start (1+ start))
           then (position #\" line :start (+ 2 quote))
         unless quote do (error 'broken-line :line line)
@@ -106,7 +106,7 @@
           return (1+ quote)))
 
 (defun without-doubles (text)
-  "Return TEXT with one quote for each two."
+  "Return TEXT with each doubled quote made single."
   (with-output-to-string (out)
     (loop with i = 0
           while (< i (length text))
@@ -114,7 +114,7 @@
              (incf i (if (char= #\" (char text i)) 2 1)))))
 
 (defun next-text (line start)
-  "Return the text that begins in LINE at START, and where it ends. Signals BROKEN-LINE."
+  "Return the field that begins in LINE at START, and its end. Signals BROKEN-LINE."
   (cond ((and (< start (length line)) (char= #\" (char line start)))
          (let ((end (end-of-quoted line start)))
            (values (without-doubles (subseq line (1+ start) (1- end))) end)))
@@ -132,8 +132,8 @@
         while (<= start (length line))))
 
 (defun csv-texts (line)
-  "Return the texts in LINE, of a table. Signals BROKEN-LINE."
-  ;; Most lines have no quotes, and are taken apart faster so.
+  "Return the fields of LINE, of a table. Signals BROKEN-LINE."
+  ;; Most lines have no quotes, and are split faster this way.
   (let ((texts (if (find #\" (the simple-string line))
                    (texts-with-quotes line)
                    (texts-between-commas line))))
@@ -142,8 +142,8 @@
 ;;;; JSON, XML and HTML
 
 (defun write-json-string (text stream &key in-page)
-  "Write TEXT to STREAM as a string of JSON, which JavaScript reads too. If IN-PAGE, nothing in it
-can end the script of a page that it stands in."
+  "Write TEXT to STREAM as a JSON string, valid in JavaScript too. If IN-PAGE, nothing in it can end
+the script element of a page."
   (write-char #\" stream)
   (loop for char across text
         for code = (char-code char)
@@ -155,11 +155,10 @@ can end the script of a page that it stands in."
 
 (defparameter *entities*
   '((#\& . "&amp;") (#\< . "&lt;") (#\> . "&gt;") (#\" . "&quot;"))
-  "What XML and HTML write for the characters that they take for their own.")
+  "The entities of XML and HTML for their special characters.")
 
 (defun write-xml-text (text stream)
-  "Write TEXT to STREAM as it stands in XML and HTML, between tags or in an attribute's double
-quotes."
+  "Write TEXT to STREAM escaped for XML and HTML, between tags or in double-quoted attributes."
   (loop for char across text
         for entity = (cdr (assoc char *entities*))
         do (if entity (write-string entity stream) (write-char char stream))))

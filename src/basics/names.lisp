@@ -1,18 +1,18 @@
-;;;; names.lisp -- how names are compared, whatever package they were read in, and ordered.
+;;;; names.lisp -- comparing names without their packages; ordering names.
 
 (in-package :ars-magna.basics)
 
 (export '(same-name-p nearest-name resembles-p value-equal name-string name-before-p))
 
-;;; The manual compares attribute values, place types, substances, maps and manipulations by
-;;; what they are called: `red' read in the user's package is the `red' of the definition.
+;;; The manual compares attribute values, place types, substances, maps and manipulations by name:
+;;; `red' read in the user's package is the `red' of the definition.
 
 (defun name-string (name)
-  "Return what NAME (a symbol or string) is called, in upper case."
+  "Return the name of NAME, a symbol or string, in upper case."
   (string-upcase (string name)))
 
 (defun called-alike-p (a b)
-  "True if the symbols or strings A and B are called the same. Most are not of one length."
+  "True if the symbols or strings A and B have the same name. Most differ in length."
   (declare #.*hot*)
   (let ((a (if (symbolp a) (symbol-name a) (string a)))
         (b (if (symbolp b) (symbol-name b) (string b))))
@@ -20,7 +20,7 @@
 
 (declaim (inline same-name-p))
 (defun same-name-p (a b)
-  "True if the symbols or strings A and B are called the same, whatever their packages and case."
+  "True if the symbols or strings A and B have the same name, regardless of package and case."
   (or (eq a b) (called-alike-p a b)))
 
 (defun value-equal (a b)
@@ -58,8 +58,8 @@ into B."
        (char-equal (char a (- i 2)) (char b (- j 1)))))
 
 (defun nearest-name (name names)
-  "Return the one of NAMES most like NAME, or NIL if none is at all like it, as none is like a NAME
-of more than 100 characters."
+  "Return the one of NAMES most like NAME, or NIL if none is similar or NAME has more than 100
+characters."
   (let ((names (and (<= (length (string name)) 100) names))
         (best nil)
         (least (max 2 (floor (length (string name)) 2))))
@@ -69,10 +69,10 @@ of more than 100 characters."
           (setf best candidate least distance))))))
 
 (defparameter *letters-alike* '("AEIOUY" "CKQ" "CSZ" "FVW" "GJ")
-  "Letters that are written for each other by those who spell by ear.")
+  "Letters that are confused by spelling by ear.")
 
 (defun alike-p (letter other)
-  "True if the characters LETTER and OTHER are equal, or written for each other."
+  "True if the characters LETTER and OTHER are equal or are confused by ear."
   (or (char-equal letter other)
       (some (lambda (letters)
               (and (find letter letters :test #'char-equal)
@@ -80,17 +80,17 @@ of more than 100 characters."
             *letters-alike*)))
 
 (defun another-word-p (a b)
-  "True if the short names A and B, of one length, differ in a letter that nobody writes for the
-other: SIDE is no slip for SIZE, as SISE is."
+  "True if the short names A and B, of one length, differ in a letter that is not confused by ear:
+SISE may be a misspelling of SIZE, SIDE is not."
   (and (= (length a) (length b))
        (< (length a) 6)
        (= 1 (count nil (map 'list #'char-equal a b)))
        (notevery #'alike-p a b)))
 
 (defun resembles-p (a b)
-  "True if the name A is so much like the different name B that one may be a slip for the other:
-one letter apart, or two if they are long. In short names, and at their beginning, another letter
-instead makes another word, unless the two sound alike."
+  "True if the name A may be a misspelling of the different name B: one letter apart, or two if they
+are long. In short names, and at their beginning, a different letter makes another word, unless the
+two sound alike."
   (let* ((a (string a)) (b (string b)) (shorter (min (length a) (length b))))
     (and (plusp shorter)
          (or (alike-p (char a 0) (char b 0))
@@ -98,7 +98,7 @@ instead makes another word, unless the two sound alike."
          (<= 1 (edit-distance a b) (if (<= 8 shorter) 2 1))
          (not (another-word-p a b)))))
 
-;;; The order of names as people expect it: box 2 before box 10.
+;;; Natural order of names: box 2 before box 10.
 
 (defun first-part (text start)
   "Return the number that the digits of TEXT from START on make, or else the character there, and

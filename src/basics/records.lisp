@@ -1,16 +1,16 @@
-;;;; records.lisp -- which names users see; structures that mark theirs and say what is in slots.
+;;;; records.lisp -- marks of users' names; structures that describe their slots.
 
 (in-package :ars-magna.basics)
 
 (export '(document-restarts all-restarts restart-documentation public addition settable
           settable-p addition-p public-symbols *marking-p* define-record reader-text reader-marks))
 
-;;; A mark stands directly before the definition of a name: PUBLIC if the name is the manual's,
-;;; ADDITION if it is ours. The packages that users see, the faces ARS and NISP, collect what is
-;;; marked (see src/faces.lisp). What no mark names is the business of the layers alone.
+;;; A mark precedes the definition of a name: PUBLIC if the name is the manual's, ADDITION if it is
+;;; ours. The users' packages ARS and NISP collect marked names (see src/faces.lisp). Unmarked names
+;;; are internal to the layers.
 
 (defstruct (mark (:constructor make-mark (symbol faces addition-p)) (:copier nil))
-  "What is known of a public name: the FACES that show it, keywords, and whether it is ours."
+  "The mark of a public name: the FACES, keywords, that show it, and whether it is ours."
   (symbol nil :type symbol :read-only t)
   (faces '() :type list :read-only t)
   (addition-p nil :type boolean :read-only t))
@@ -21,10 +21,10 @@
   '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL.FLUENTS" "ARS-MAGNA.RPL.TASKS"
     "ARS-MAGNA.RPL.LANGUAGE" "ARS-MAGNA.RPL.CONSTRUCTS" "ARS-MAGNA.RPL.SEEING"
     "ARS-MAGNA.RPL-ROBOT" "ARS-MAGNA.RPL-PICTURES" "ARS-MAGNA.RPL-PROJECTING")
-  "The packages whose public names NISP shows, unless a mark says otherwise; ARS shows all others.")
+  "The packages whose public names NISP shows by default; ARS shows all others.")
 
 (defun face-of (symbol)
-  "Return the face, :ARS or :NISP, that shows SYMBOL if its mark does not say."
+  "Return the default face, :ARS or :NISP, of SYMBOL."
   (let ((layer (package-name (symbol-package symbol))))
     (if (member layer *layers-of-nisp* :test #'string=) :nisp :ars)))
 
@@ -38,7 +38,7 @@
                       (append *marks* (list mark))))))
 
 (defvar *marking-p* t
-  "True while the simulator is being loaded. What is defined later is a user's, and not marked.")
+  "True while the simulator is being loaded. Later definitions are users', and not marked.")
 
 (defun mark-names (names addition-p)
   "Mark each of NAMES, a symbol or a list (symbol face...), and export it. What is marked as an
@@ -51,20 +51,20 @@ addition stays one."
           (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p)))))))
 
 (defmacro public (&rest names)
-  "Mark NAMES, which are defined next, as names of the manual that users see. A name may be a list
-(name face...): of :ARS and :NISP, those that show it."
+  "Mark NAMES, defined next, as users' names that the manual has. A name may be a list (name
+face...), with the faces, :ARS and :NISP, that show it."
   `(mark-names ',names nil))
 
 (defmacro addition (&rest names)
-  "Mark NAMES, which are defined next, as names that users see and the manual does not have. A name
-may be a list (name face...), as for PUBLIC."
+  "Mark NAMES, defined next, as users' names that the manual does not have. A name may be a list
+\(name face...), as for PUBLIC."
   `(mark-names ',names t))
 
-(defvar *settable* '() "The public symbols whose functions users may SETF, too.")
+(defvar *settable* '() "The public symbols whose functions users may SETF.")
 
 (defmacro settable (&rest names)
-  "Let users SETF the functions NAMES, which are public. Of all others they see only that they read:
-what belongs to a run is changed by functions that its journal notes."
+  "Let users SETF the functions NAMES, which are public. All others they can only read: the state of
+a run is changed by functions that the journal records."
   `(setf *settable* (union *settable* ',names)))
 
 (defun settable-p (symbol)
@@ -82,43 +82,42 @@ what belongs to a run is changed by functions that its journal notes."
   (let ((mark (find-mark symbol)))
     (and mark (mark-addition-p mark))))
 
-;;; A restart has no place for its documentation in Lisp, so there is one here.
+;;; Lisp has no documentation for restarts, so it is kept here.
 
 (defvar *restarts* '() "Lists (name text): the restarts that are documented.")
 
 (defun document-restarts (&rest names-and-texts)
-  "Let TEXTS say what whoever chooses the restarts NAMES gets, alternating."
+  "Document restarts. NAMES-AND-TEXTS alternate; a text says what choosing the restart does."
   (loop for (name text) on names-and-texts by #'cddr
         do (setf *restarts* (append (remove name *restarts* :key #'first)
                                     (list (list name (one-line text)))))))
 
 (defun all-restarts ()
-  "Return a list of the names of the restarts that are documented."
+  "Return a list of the names of the documented restarts."
   (mapcar #'first *restarts*))
 
 (defun restart-documentation (name)
-  "Return what the restart NAME, a symbol, does, in words; NIL if it is not documented."
+  "Return the documentation of the restart NAME, a symbol, or NIL."
   (second (find name *restarts* :key #'first)))
 
-;;;; Structures whose slots say what they are
+;;;; Structures that describe their slots
 
-;;; One form says of a structure what it is, what is in its slots, and who may read them. From that
-;;; follow the documentation of its functions and the marks of its readers. Objects that belong to a
-;;; run say more: see DEFINE-KIND.
+;;; One form describes a structure, its slots, and who may read them. It gives the documentation of
+;;; the functions and the marks of the readers. Objects of a run say more: see DEFINE-KIND.
 
 (defun set-documentations (functions-and-texts)
   (loop for (function . text) in functions-and-texts
         do (setf (documentation function 'function) text)))
 
 (defun reader-text (slot text)
-  "Return the documentation of a reader of SLOT, a symbol, in which is what TEXT says."
+  "Return the documentation of the reader of SLOT, a symbol, from TEXT."
   (if (ends-with-subseq "-P" (symbol-name slot))
       (format nil "True if ~A." text)
       (format nil "Return ~A." text)))
 
 (defun function-texts (name documentation predicate constructors)
-  "Return an alist with the documentation of PREDICATE and CONSTRUCTORS of the structure NAME, of
-which DOCUMENTATION says what it is. A function is a list (symbol [lambda-list] [documentation])."
+  "Return an alist with the documentation of PREDICATE and CONSTRUCTORS of the structure NAME, from
+its DOCUMENTATION. A function is a list (symbol [lambda-list] [documentation])."
   (flet ((texts (beginning functions)
            (loop for (function . rest) in functions
                  when function
@@ -130,8 +129,8 @@ which DOCUMENTATION says what it is. A function is a list (symbol [lambda-list] 
             (texts "Return a new object" constructors))))
 
 (defun reader-marks (slots reader)
-  "Return forms that let others use the readers of those SLOTS behind whose type stands :EXPORT or
-:ADDITION. READER, a function of the slot's name, returns that of the reader."
+  "Return forms that export the readers of the SLOTS marked :EXPORT or :ADDITION. READER, a function
+of the slot's name, returns the reader's name."
   (flet ((readers (mark)
            (loop for slot in slots
                  when (member mark (nthcdr 3 slot)) collect (funcall reader (first slot)))))
@@ -140,8 +139,8 @@ which DOCUMENTATION says what it is. A function is a list (symbol [lambda-list] 
               (when added `((addition ,@added)))))))
 
 (defun values-of-option (key options &optional default)
-  "Return a list of what stands behind KEY in each of OPTIONS, as DEFSTRUCT takes them, that begins
-with it; without any, that of DEFAULT."
+  "Return a list of what follows KEY in each of OPTIONS, as DEFSTRUCT takes them, that begins with
+it; if there is none, that of DEFAULT."
   (or (loop for option in options when (eq key (first option)) collect (rest option))
       (list default)))
 
