@@ -7,12 +7,12 @@
           other-definition-p in-file-p missing-name read-value clause-place current-form-digest
           endless-p))
 
-;;; A defining form is checked when it is expanded and carried out when that is evaluated. In
-;;; both, *DEFINITION* says which one it is, so that an error names file and line, and restarts
-;;; leave the definition out, read it again from its file, or take something else instead.
+;;; A defining form is checked when it is expanded, and performed when its expansion is evaluated.
+;;; During both, *DEFINITION* holds it, so that an error names file and line, and restarts can leave
+;;; the definition out, read it again from its file, or replace it.
 
 (define-record (defining-form (:conc-name defining-) (:constructor make-defining (source form)))
-  "The definition FORM, from SOURCE, that is being expanded or carried out."
+  "The definition FORM, from SOURCE, that is being expanded or performed."
   (source '() list)
   (form '() list "the form that is being expanded or carried out" :export)
   (ordinal nil t "which of the forms of that operator and name in its file it is, from 0, once
@@ -20,31 +20,31 @@ looked up" :writable)
   (clause nil t "the part of it that was rejected last" :writable))
 
 (defvar *definition* nil
-  "The definition that is being expanded or carried out, or NIL.")
+  "The definition that is being expanded or performed, or NIL.")
 
 (defun current-source ()
-  "Return the source of the definition that is being carried out, or else of the form that is being
-loaded; NIL if it was typed."
+  "Return the source of the current definition, or else of the form being loaded; NIL if it was
+typed."
   (if *definition*
       (defining-source *definition*)
       (source-here)))
 
 (defun current-form-digest ()
-  "Return a number for the form of the definition that is being carried out, or NIL."
+  "Return the digest of the current definition's form, or NIL."
   (and *definition* (form-digest (defining-form *definition*))))
 
 (defun current-head ()
   (and *definition* (head (defining-form *definition*))))
 
 (defun current-docstring ()
-  "Return what the author of the definition that is being carried out says there of what it defines:
-the value of :documentation, or the first string behind the name; NIL if there is neither."
+  "Return the docstring of the current definition: the value of :documentation, or the first string
+after the name; NIL if there is neither."
   (let* ((parts (and *definition* (cddr (defining-form *definition*))))
          (text (or (second (member :documentation parts)) (find-if #'stringp parts))))
     (and (stringp text) text)))
 
 (defun title (operator name)
-  "Return what the definition of NAME by OPERATOR is called in messages, such as \"defmap yard\"."
+  "Return the title of the definition of NAME by OPERATOR for messages, such as \"defmap yard\"."
   (let ((name (abridged name)))
     (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
 
@@ -53,7 +53,7 @@ the value of :documentation, or the first string behind the name; NIL if there i
     (title (first form) (second form))))
 
 (defun clause-place (clause)
-  "Return where CLAUSE of the definition at hand stands, such as \"yard.lisp, line 7\", or NIL."
+  "Return the place of CLAUSE of the current definition, such as \"yard.lisp, line 7\", or NIL."
   (let ((source (if *definition* (current-source) (source-here))))
     (when source
       (multiple-value-bind (line ordinal)
@@ -71,8 +71,8 @@ watson\"."
                                :place place))
 
 (defun check-function-name (definition name)
-  "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, belongs to a package whose names users cannot
-define as functions, or is no name of a function."
+  "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, is no name of a function, or is in a package
+whose names users cannot define as functions."
   (unless (or (symbolp name) (and (consp name) (eq 'setf (first name))))
     (reject-clause definition name "a symbol as the name"))
   (let ((package (and (symbolp name) (symbol-package name))))
@@ -86,9 +86,10 @@ define as functions, or is no name of a function."
 
 (addition skip-definition skip-clause read-again)
 (document-restarts
- 'skip-definition "Leave the definition with the mistake out. What had its name keeps it."
- 'skip-clause "Leave the clause of a map that has the mistake out, and go on with the next."
- 'read-again "Read the definition, or the clause, again from its file, after you have mended it
+ 'skip-definition "Leave out the definition with the mistake. An earlier definition of that name
+stays."
+ 'skip-clause "Leave out the clause of a map that has the mistake, and continue with the next."
+ 'read-again "Read the definition, or the clause, again from its file, after you have corrected it
 there."
  'use-value "Use the value that you type instead: another clause, definition, name or value.")
 
@@ -99,23 +100,23 @@ there."
   (list (read *query-io*)))
 
 (defun in-file-p (condition)
-  "True if what CONDITION is about was read from a file, and could be read again."
+  "True if what CONDITION is about was read from a file and can be read again."
   (declare (ignore condition))
   (and (current-source) t))
 
 (defun definition-again (definition)
-  "Return the form of DEFINITION as it stands in its file now."
+  "Return the form of DEFINITION as it is in its file now."
   (read-definition-again (source-file (defining-source definition))
                          (defining-form definition) (defining-ordinal definition)))
 
 (defun other-definition-p (value &optional (definition *definition*))
-  "True if VALUE is a whole form that can take the place of DEFINITION."
+  "True if VALUE is a whole form that can replace DEFINITION."
   (and (consp value)
        (symbolp (first value))
        (same-name-p (first value) (first (defining-form definition)))))
 
 (defun definition-with (definition value)
-  "Return the form of DEFINITION with VALUE for the clause that was rejected; VALUE itself if that
+  "Return the form of DEFINITION with VALUE in place of the rejected clause, or VALUE itself if it
 is such a form."
   (let* ((form (defining-form definition))
          (clause (defining-clause definition))
@@ -126,9 +127,9 @@ is such a form."
                          value (definition-text definition))))))
 
 (defun call-with-definition-restarts (function replace)
-  "Call FUNCTION. A user who chooses so leaves the definition at hand out, or has REPLACE called
-with another form for it: read again from its file, or with another clause. If that is no better,
-the user is asked again."
+  "Call FUNCTION, with restarts that leave out the current definition, or call REPLACE with another
+form for it: read again from its file, or with another clause. If that form is rejected too, the
+restarts are offered again."
   (let ((definition *definition*))
     (flet ((instead (choose)
              (call-with-definition-restarts
@@ -152,7 +153,7 @@ the user is asked again."
 ;;; Mistakes that Lisp finds.
 
 (defun missing-name (condition)
-  "Return the name of the variable or function that CONDITION says is not defined, or NIL."
+  "Return the name of the variable or function that CONDITION reports as undefined, or NIL."
   (and (typep condition '(or unbound-variable undefined-function))
        (cell-error-name condition)))
 
@@ -160,7 +161,7 @@ the user is asked again."
   (subseq form 0 (min 2 (length form))))
 
 (defun reject-value (condition)
-  "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form that an author wrote."
+  "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form of an author."
   (reject-clause (definition-text *definition*)
                  (or (missing-name condition)
                      (append (head (defining-form *definition*)) (list +more+)))
@@ -168,7 +169,7 @@ the user is asked again."
                          (string-right-trim "." (text-of-condition condition)))))
 
 (defun call-blaming (function blame)
-  "Call FUNCTION, and BLAME with each error that is not ours: a mistake in what an author wrote."
+  "Call FUNCTION, and BLAME with each error that is not ours: a mistake in an author's form."
   (handler-bind ((error (lambda (condition)
                           (unless (typep condition 'ars-magna-error)
                             (funcall blame condition)))))
@@ -189,12 +190,12 @@ the user is asked again."
                  (push (car part) stack))))))
 
 (defun endless-p (form)
-  "True if FORM has more conses than anybody writes, as circular lists do."
+  "True if FORM has more conses than a written form can have, as circular lists do."
   (let ((left 10000000))
     (and (part-with (lambda (part) (and (consp part) (minusp (decf left)))) form) t)))
 
 (defun rejected-form (condition)
-  "Return a form that signals again, where it is evaluated, what CONDITION says."
+  "Return a form that signals CONDITION again when it is evaluated."
   (when *compile-file-truename*
     (call-at-place (malformed-definition-clause condition)
                    (lambda () (warn-of-definition "~A" condition))))
@@ -204,23 +205,22 @@ the user is asked again."
                   ,(malformed-definition-place condition)))
 
 (defun forms-or-rejection (function nested)
-  "Return what FUNCTION returns. If it signals MALFORMED-DEFINITION and the form is NESTED in
-others or in a file that is compiled, where the compiler would make another error of that, return a
-form that signals it later."
+  "Return the value of FUNCTION. If it signals MALFORMED-DEFINITION and the form is NESTED in others
+or in a file that is compiled, where the compiler would turn it into another error, return a form
+that signals it later."
   (if (or nested *compile-file-truename*)
       (handler-case (funcall function)
         (malformed-definition (condition) (list (rejected-form condition))))
       (funcall function)))
 
 (defun call-with-definition (form function)
-  "Call FUNCTION, which expands the definition FORM, and return what it returns."
+  "Call FUNCTION, which expands the definition FORM, and return its values."
   (let ((*definition* (make-defining (source-here) form)))
     (call-with-definition-restarts function #'identity)))
 
 (defun expand-definition (form environment function)
-  "Return the expansion of FORM, (operator name ...), in ENVIRONMENT: what FUNCTION returns, a list
-of forms that carry it out and as second value a list of forms to come before. The whole returns
-the name."
+  "Return the expansion of FORM, (operator name ...), in ENVIRONMENT: the forms that FUNCTION
+returns to perform it, preceded by the forms of its second value. The expansion returns the name."
   (call-with-definition
    form
    (lambda ()

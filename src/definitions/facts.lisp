@@ -1,21 +1,20 @@
-;;;; facts.lisp -- what people want to know of an object or a name: for DESCRIBE and inspectors.
+;;;; facts.lisp -- what DESCRIBE and inspectors show of an object or a name.
 
 (in-package :ars-magna.definitions)
 
 (export '(facts known-facts define-facts listed fact-text))
 
-;;; FACTS says it once, as labels and texts; DESCRIBE and the inspectors of editors show them. Of a
-;;; symbol, DESCRIBE also shows what users' definitions call so, since maps, kickers and the like go
-;;; by name.
+;;; FACTS returns labels and texts. DESCRIBE and editors' inspectors show them. For a symbol,
+;;; DESCRIBE also shows users' definitions of that name: maps, kickers and the like.
 
 (defgeneric facts (object)
-  (:documentation "Return what people want to know of OBJECT: a list of lists (label text), in
-order, without those whose text is NIL.")
+  (:documentation "Return what to show people of OBJECT: a list of lists (label text), in order,
+without those whose text is NIL.")
   (:method (object) (declare (ignore object)) '()))
 
 (defun known-facts (&rest labels-and-texts)
-  "Return a list (label text) for each two of LABELS-AND-TEXTS, unless the text is NIL. What is no
-string is written as people write it."
+  "Return a list (label text) for each pair in LABELS-AND-TEXTS whose text is not NIL. Other objects
+than strings become text as people write them."
   (loop for (label fact) on labels-and-texts by #'cddr
         when fact collect (list label (if (stringp fact) fact (fact-text fact)))))
 
@@ -42,8 +41,8 @@ string is written as people write it."
   (write-facts-of (append (facts object) (facts-of-definition (entry-of object))) stream))
 
 (defmacro define-facts ((class variable) &rest labels-and-forms)
-  "Let DESCRIBE and inspectors show, of the object VARIABLE of CLASS, what FORMS return under
-LABELS, alternating, as KNOWN-FACTS takes them."
+  "Let DESCRIBE and inspectors show the values of FORMS for VARIABLE, an object of CLASS.
+LABELS-AND-FORMS alternate, as in KNOWN-FACTS."
   `(progn
      (defmethod facts ((,variable ,class)) (known-facts ,@labels-and-forms))
      ,@(unless (kind-called class)
@@ -76,7 +75,7 @@ LABELS, alternating, as KNOWN-FACTS takes them."
           thereis (find object (registry-entries registry) :key #'entry-object :test #'eq)))
 
 (defun entry-line (entry)
-  "Return the line on which the definition of ENTRY stands in its file now, or NIL."
+  "Return the line of the definition of ENTRY in its file now, or NIL."
   (and (entry-head entry)
        (clause-line (source-file (entry-source entry)) (entry-head entry) nil)))
 
@@ -89,8 +88,8 @@ LABELS, alternating, as KNOWN-FACTS takes them."
                                               (entry-line entry))))))
 
 (defun worth-telling-p (entry registry symbol)
-  "True if one who asks for SYMBOL wants to know of ENTRY, which that stands for in REGISTRY. What
-is ours, such as a command, Lisp tells of by itself, unless it is called otherwise there, as TURN."
+  "True if DESCRIBE of SYMBOL should show ENTRY, the definition of SYMBOL in REGISTRY. Lisp itself
+describes ours, such as commands, unless they have another name there, as TURN has."
   (or (not (registry-fixed-p registry))
       (and (not (eq symbol (entry-name entry)))
            (facts (entry-object entry)))))
@@ -116,12 +115,12 @@ is ours, such as a command, Lisp tells of by itself, unless it is called otherwi
           (and entry (entry-documentation entry)))
         (call-next-method))))
 
-;;; Where definitions stand, for editors.
+;;; Source locations for editors.
 
 (defun definition-sources (name)
-  "Return a list (file position operator) for each definition called NAME, a symbol, whose place
-Lisp does not know by itself, as it does of variables and functions: where in its file, a string, it
-stands now, and what it begins with."
+  "Return a list (file position operator) for each definition of NAME, a symbol, whose location Lisp
+does not know itself, as it knows those of variables and functions: its file, a string, its position
+there now, and its operator."
   (loop for registry in (open-registries)
         for entry = (lookup-entry name registry)
         for file = (and entry (not (entry-variable entry)) (source-file (entry-source entry)))

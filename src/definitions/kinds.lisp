@@ -1,16 +1,15 @@
-;;;; kinds.lisp -- kinds of objects: structures whose slots say what they are, once, for all.
+;;;; kinds.lisp -- kinds: structures that describe each slot once, for all operations.
 
 (in-package :ars-magna.definitions)
 
 (export '(make-kind-slot slots-to-show *object-kinds* kind-p kind-of kind-called all-kinds
           find-kind-name object-slots reset slot-content define-kind))
 
-;;; A kind is a structure whose slots say what they are, by role: DEFINE-KIND lists the roles. From
-;;; that follow the readers' documentation, RESET, DIGEST-STATE, forks and the inspection of an
-;;; object. Other objects in a slot are referred to, unless the slot is marked as a :PART: then they
-;;; belong to the object, and are reset, digested and shown with it. What is in a slot marked as
-;;; :SHARED is replaced and never altered: forks have the same. Slots marked as :NEAR stand first in
-;;; memory, beside each other: what is read of many objects, one after the other, belongs there.
+;;; A kind is a structure with a role for each slot; DEFINE-KIND lists the roles. They determine the
+;;; readers' documentation, RESET, DIGEST-STATE, forks and inspection. An object in a slot marked as
+;;; :PART belongs to the object, and is reset, digested and shown with it; other objects are only
+;;; referred to. The contents of a :SHARED slot are replaced and never modified, so forks share
+;;; them. :NEAR slots come first in memory: mark those that are read for many objects in a row.
 
 (define-record (kind-slot (:constructor make-kind-slot
                               (name role type text part-p shared-p initial reader writer)))
@@ -28,7 +27,7 @@
           "the function of a value and an object that puts the value into the slot" :export))
 
 (defun decisive-p (slot)
-  "True if SLOT has state in it, or parts."
+  "True if SLOT contains state or parts."
   (or (eq :state (kind-slot-role slot))
       (and (eq :fixed (kind-slot-role slot)) (kind-slot-part-p slot))))
 
@@ -56,7 +55,7 @@
 
 (declaim (inline kind-of))
 (defun kind-of (object)
-  "Return the kind that OBJECT is of, or NIL."
+  "Return the kind of OBJECT, or NIL."
   (and (typep object 'structure-object)
        (kind-called (type-of object))))
 
@@ -66,8 +65,8 @@
           thereis (eq base (kind-name each))))
 
 (defun all-kinds (&optional base)
-  "Return a list of all kinds, in order of definition; with BASE, the name of one, of those that
-are or include it."
+  "Return a list of all kinds in order of definition; with BASE, a name, only that kind and those
+that include it."
   (remove-if-not (lambda (kind) (or (null base) (based-on-p kind base)))
                  (all-object-kinds)))
 
@@ -77,11 +76,11 @@ are or include it."
           return (kind-name kind)))
 
 (defun find-kind-name (name base)
-  "Return the name of the first kind, of those that are or include the one called BASE, that is
-called as NAME, a symbol or string; NIL if none is."
+  "Return the name of the first kind, of BASE and those that include it, whose name equals NAME, a
+symbol or string; NIL if there is none."
   (let ((kinds (registry-objects *object-kinds*)))
     (if (symbolp name)
-        ;; Plans' commands ask this of each argument. What was found holds until a kind is defined.
+        ;; Plans' commands ask this for each argument. The cache is valid until a kind is defined.
         (let ((known (get name 'known-kind-name)))
           (unless (and known (eq base (first known)) (eq kinds (second known)))
             (setf known (list base kinds (look-up-kind-name name base kinds))
@@ -89,23 +88,23 @@ called as NAME, a symbol or string; NIL if none is."
           (third known))
         (look-up-kind-name name base kinds))))
 
-;;; What is in an object.
+;;; The contents of an object.
 
 (declaim (inline slot-content))
 (defun slot-content (slot object)
-  "Return what is in SLOT of OBJECT."
+  "Return the contents of SLOT of OBJECT."
   (funcall (kind-slot-reader slot) object))
 
 (defun object-slots (object &rest roles)
-  "Return a list (name value text) for each slot of OBJECT, of a kind, whose role is among ROLES;
-without ROLES, for each."
+  "Return a list (name value text) for each slot of OBJECT, of a kind, with a role among ROLES;
+without ROLES, for each slot."
   (loop for slot in (kind-slots (kind-of object))
         when (or (null roles) (member (kind-slot-role slot) roles))
           collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
 
 (defun slots-to-show (object)
   "Return lists (title (name value text)...) of the slots of OBJECT, a structure: by role if it is
-of a kind, else all under one title, without texts."
+of a kind, else under one title without texts."
   (if (kind-of object)
       (loop for (role title) in '((:fixed "as it was made") (:state "state") (:memory "memory")
                                   (:scratch "scratch") (:link "links"))
@@ -118,15 +117,15 @@ of a kind, else all under one title, without texts."
 
 (declaim (inline map-parts))
 (defun map-parts (function value)
-  "Call FUNCTION with the object VALUE, or with each in the list or vector VALUE."
+  "Call FUNCTION with the object VALUE, or with each element of the list or vector VALUE."
   (typecase value
     (list (mapc function value))
     (vector (map nil function value))
     (t (funcall function value))))
 
 (defgeneric reset (object)
-  (:documentation "Make OBJECT, of a kind, and its parts as they were when they were made. What its
-:LINKs say stays. Return OBJECT. A kind may add an :AFTER method.")
+  (:documentation "Reset OBJECT, of a kind, and its parts to their initial state, except for its
+:LINK slots. Return OBJECT. A kind may add an :AFTER method.")
   (:method (object) object)
   (:method ((object structure-object))
     (let ((kind (kind-of object)))
@@ -160,7 +159,7 @@ of a kind, else all under one title, without texts."
     kind))
 
 (defun slots-by-place (groups)
-  "Return the slots in GROUPS, lists (role slot...), in the order in which they stand in memory."
+  "Return the slots in GROUPS, lists (role slot...), in their order in memory."
   (stable-sort (loop for (nil . slots) in groups append slots)
                (lambda (one other)
                  (and (member :near (nthcdr 4 one)) (not (member :near (nthcdr 4 other)))))))
@@ -211,8 +210,8 @@ of a kind, else all under one title, without texts."
                        (lambda (value object) (setf (,reader (the ,name object)) value))))))
 
 (defun kind-options (form)
-  "Return the name, the included kind or NIL, and the constructor that FORM, what DEFINE-KIND begins
-with, says."
+  "Return the name, the included kind or NIL, and the constructor that FORM, the first argument of
+DEFINE-KIND, specifies."
   (destructuring-bind (name &rest options) (ensure-list form)
     (unless (and (proper-list-p options) (evenp (length options))
                  (loop for key in options by #'cddr always (member key '(:include :constructor))))
@@ -223,17 +222,17 @@ with, says."
                   (and (symbolp name) (symbolicate 'make- name))))))
 
 (defmacro define-kind (name-and-options documentation &body groups &environment environment)
-  "Define a structure and say what each of its slots is. NAME-AND-OPTIONS is its name, or (name
-[:include kind] [:constructor constructor]), as in DEFSTRUCT. GROUPS are lists (role slot...), a
-slot is (name default type \"what it is\"), and behind that :PART if what is in it belongs to the
-object, :SHARED if it is never altered, :NEAR if it is to stand beside others; :EXPORT and :ADDITION
-are as in DEFINE-RECORD. The roles are
+  "Define a structure with a role for each slot. NAME-AND-OPTIONS is its name, or (name [:include
+kind] [:constructor constructor]), as in DEFSTRUCT. GROUPS are lists (role slot...). A slot is (name
+default type \"what it is\"), then :PART if its contents belong to the object, :SHARED if they are
+never modified, :NEAR if it is to be near others in memory; :EXPORT and :ADDITION are as in
+DEFINE-RECORD. The roles are
   :fixed    the model: how the object was made;
-  :state    what decides the future, or what programs are told of it;
+  :state    what decides the future, or what programs see of it;
   :memory   what is shown to people and decides nothing;
-  :scratch  what means nothing between ticks;
-  :link     what ties the object to those who use it, such as continuations.
-Lisp cannot give a kind other slots while it runs: start it anew for that. Return the name. Signals
+  :scratch  means nothing between ticks;
+  :link     ties to users of the object, such as continuations.
+A running Lisp cannot change the slots of a kind: restart it for that. Return the name. Signals
 MALFORMED-DEFINITION."
   (multiple-value-bind (name include constructor) (kind-options name-and-options)
     (check-kind-form name include documentation groups)

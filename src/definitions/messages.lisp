@@ -6,33 +6,33 @@
           copy-message-queue message *robot-told-of* *run-that-reports* *told-of* take-messages
           queue-message message-text phrase write-message *message-limit* make-message))
 
-;;; Messages are queued as lists of items and become text only when somebody reads them. The
-;;; queue is bounded: past *MESSAGE-LIMIT* the oldest go, and how many went is remembered.
+;;; Messages are queued as lists of items and become text when they are read. The queue is bounded:
+;;; beyond *MESSAGE-LIMIT* the oldest are dropped and counted.
 
 (defparameter *message-limit* 1000
-  "How many messages a queue holds before it forgets the oldest (manual 3.7; our bound).")
+  "How many messages a queue holds before it drops the oldest (manual 3.7; our bound).")
 
 (public flush-all-errors*)
 (defvar flush-all-errors* nil
   "When true, queued messages are discarded instead of displayed. Default NIL (manual 3.7).")
 
 (deftype error-policy ()
-  "What becomes of errors in users' code."
+  "What happens to errors in users' code."
   '(member :report :signal :collect))
 
 (defvar *told-of* nil
-  "A note of who asked for what messages tell of here, as NOTE-OF-ASKER returns it, or NIL.")
+  "A note of who requested what messages report here, from NOTE-OF-ASKER, or NIL.")
 
 (defvar *robot-told-of* nil
-  "The name of the robot whose doing messages tell of here, or NIL.")
+  "The name of the robot whose action messages report here, or NIL.")
 
 (defvar *run-that-reports* (constantly nil)
   "A function that returns the run that a message queued in this thread belongs to, or NIL.")
 
 (define-record (message (:constructor make-message
                             (kind items &key cause (summary "") told-p notable-p about)
-                          "Return a message of the kind and the list of items given."))
-  "What the simulator or a user has to say."
+                          "Return a message with the kind and list of items given."))
+  "A message of the simulator or a user."
   (kind :message (member :error :warning :message) ":ERROR, :WARNING or :MESSAGE" :export)
   (items '() list "the items that the message is made of" :export)
   (asker *told-of* t
@@ -46,8 +46,8 @@ troubles.lisp" :export)
   (summary "" string "what says the cause in a line")
   (about nil (or null symbol) "the name of the command whose failure the message tells, or NIL")
   (told-p nil boolean "users' code has been told otherwise of what the message tells of" :export)
-  ;; Or a function that returns that in the end; or :AT-ONCE of one that is shown as it comes if
-  ;; nobody listens, as the run may never end.
+  ;; Or a function that returns it later; or :AT-ONCE for a message that is shown at once if nobody
+  ;; listens, because the run may never end.
   (notable-p nil (or boolean (eql :at-once) function)
              "the message is a warning that is shown like an error if nobody reads it"))
 
@@ -55,7 +55,7 @@ troubles.lisp" :export)
                                   (&key (error-policy :report) echoed)
                                 "Return a new, empty queue of messages."))
   "Messages nobody has read yet. LOCK guards all lists, counts and tables; whether UNSIGNALLED is
-NIL may be asked without it."
+NIL may be read without it."
   (lock (make-lock "messages") t)
   (newest-first '() list :writable)
   (count 0 fixnum :writable)
@@ -75,16 +75,16 @@ signalled, or NIL, see troubles.lisp" :writable :export)
   (echoed nil (or null hash-table) "the table that counts errors, which are shown as they come where
 nobody listens, or NIL"))
 
-;; An interrupt, such as Control-C, may report something too.
+;; An interrupt, such as Ctrl-C, may report something too.
 (defmacro with-queue ((queue) &body body)
-  "Run BODY while no other thread changes QUEUE. Interrupts wait."
+  "Run BODY while no other thread changes QUEUE, with interrupts deferred."
   `(deferring-interrupts (with-lock ((message-queue-lock ,queue)) ,@body)))
 
 (defvar *message-queue* (make-message-queue :echoed (make-hash-table :test 'equal))
   "The queue that messages go to. A headless simulation binds its own.")
 
 (defun copy-message-queue (queue)
-  "Return a new queue that holds the messages of QUEUE, as seen, and has no listener."
+  "Return a new queue with the messages of QUEUE, as read, and no listener."
   (let ((copy (make-message-queue)))
     (with-queue (queue)
       (setf (message-queue-newest-first copy) (message-queue-newest-first queue)
@@ -94,7 +94,7 @@ nobody listens, or NIL"))
     copy))
 
 (defun keep-trouble (message queue)
-  "Remember MESSAGE, which tells QUEUE of an error in users' code, and the latest before it."
+  "Record MESSAGE, about an error in users' code, as the latest in QUEUE."
   (push message (message-queue-troubles queue))
   (let ((last (nthcdr (1- *message-limit*) (message-queue-troubles queue))))
     (when last (setf (rest last) '())))
@@ -103,19 +103,18 @@ nobody listens, or NIL"))
     (setf (message-queue-unsignalled queue) message)))
 
 (defun to-be-seen-p (message)
-  "True if MESSAGE tells of an error, or of what is wrong with users' code, and nobody was told of
-it otherwise."
+  "True if MESSAGE is about an error or a mistake in users' code that was not reported otherwise."
   (and (not (message-told-p message))
        (or (message-cause message) (eq :error (message-kind message)))))
 
 (defun echoed-p (message queue)
-  "True if MESSAGE is shown as it comes where nobody listens to QUEUE."
+  "True if MESSAGE is shown at once when nobody listens to QUEUE."
   (or (eq :at-once (message-notable-p message))
       (and (message-queue-echoed queue)
            (or (to-be-seen-p message) (eq t (message-notable-p message))))))
 
 (defun queue-message (message queue)
-  "Add MESSAGE to QUEUE, and let whoever listens to that know."
+  "Add MESSAGE to QUEUE and notify its listener."
   (with-queue (queue)
     (when (and (message-cause message) (eq :error (message-kind message)))
       (keep-trouble message queue))
@@ -151,8 +150,7 @@ nothing."
   (queue-items :warning stuff :notable-p t))
 
 (defun warn-at-once (&rest stuff)
-  "Queue a warning made of the items STUFF that is shown as it comes if nobody listens. Return
-nothing."
+  "Queue a warning made of the items STUFF that is shown at once if nobody listens. Return nothing."
   (queue-items :warning stuff :notable-p :at-once))
 
 (public message-set)
@@ -161,8 +159,8 @@ nothing."
   (queue-items :message stuff))
 
 (defun take-messages (&optional (queue *message-queue*))
-  "Empty QUEUE. Return its messages, oldest first, at most *MESSAGE-LIMIT* of them. If older
-ones were forgotten, a warning that says how many comes first."
+  "Empty QUEUE. Return its messages, oldest first, at most *MESSAGE-LIMIT*. If older ones were
+dropped, a warning with their number comes first."
   (with-queue (queue)
     (setf (message-queue-read-p queue) t)
     (let* ((messages (message-queue-newest-first queue))
@@ -175,11 +173,11 @@ ones were forgotten, a warning that says how many comes first."
           (cons (make-message :warning (list forgotten " earlier messages were forgotten")) kept)
           kept))))
 
-;;; What a message says with numbers takes longer to write than to know, and few are read.
+;;; Formatting a message costs more than queueing it, and few are read.
 
 (define-record (phrase (:constructor phrase (control &rest arguments)
-                          "Return an item of a message that says what FORMAT makes of CONTROL and
-ARGUMENTS, which never change, once it is read."))
+                          "Return an item of a message that formats CONTROL with ARGUMENTS, which
+never change, when it is read."))
   "An item of a message."
   (control "" string)
   (arguments '() list))
@@ -210,7 +208,7 @@ line (reading 36)."
   (values))
 
 (defun item-text (item)
-  "Return ITEM as OUT writes it; words that say so if it cannot be printed."
+  "Return ITEM as OUT writes it, or a text that says that it cannot be printed."
   (handler-case (with-output-to-string (stream) (write-item item stream))
     (error (trouble) (format nil "what cannot be printed (~A: ~A)"
                              (string-downcase (type-of item)) (one-line-text trouble)))))
@@ -220,8 +218,8 @@ line (reading 36)."
   (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
 
 (defun text-with-command (message)
-  "Return what MESSAGE says, with the name of the command that it is about before it: for somebody
-who has not just asked for that."
+  "Return the text of MESSAGE after the name of the command that it is about, for readers who did
+not just request that."
   (let ((text (message-text message)) (name (message-about message)))
     (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
         (format nil "~(~A~): ~A" name text)

@@ -1,4 +1,4 @@
-;;;; operators.lisp -- what can be asked of a run, by name, and what it can be asked with.
+;;;; operators.lisp -- the requests that a run accepts, by name, and the types of their arguments.
 
 (in-package :ars-magna.definitions)
 
@@ -8,8 +8,8 @@
 
 (defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
                           (:copier nil))
-  "A kind of argument: a test for it, and what it is in words. TROUBLE, if any, is a function that
-returns in words what is wrong with a value that is none, or NIL."
+  "An argument type: a test, and a description in words. TROUBLE, if any, is a function that returns
+in words what is wrong with a value, or NIL."
   (name nil :type symbol :read-only t)
   (predicate nil :type function :read-only t)
   (words "" :type string :read-only t)
@@ -18,13 +18,13 @@ returns in words what is wrong with a value that is none, or NIL."
 (define-registry argument-type "argument type" :object-p argument-type-p :fixed t :internal t)
 
 (defun define-argument-type (name predicate text &optional trouble)
-  "Let NAME be an argument type: what satisfies PREDICATE, which TEXT says in words. TROUBLE is a
-function that returns in words what is wrong with a value, or NIL for no more than TEXT."
+  "Define the argument type NAME: values that satisfy PREDICATE, described by TEXT. TROUBLE is a
+function that returns in words what is wrong with a value, or NIL if TEXT says it all."
   (register *argument-types* name (make-argument-type name predicate text trouble))
   name)
 
 (defun argument-type-like (name)
-  "Return the name of the argument type that NAME, a symbol, may be a slip for, or NIL."
+  "Return the name of the argument type that NAME, a symbol, may be a misspelling of, or NIL."
   (find-if (lambda (known) (resembles-p name known))
            (mapcar #'argument-type-name (all-argument-types))))
 
@@ -33,19 +33,19 @@ function that returns in words what is wrong with a value, or NIL for no more th
   (funcall (argument-type-predicate (find-argument-type type)) value))
 
 (defun trouble-with (value type)
-  "Return in words what is wrong with VALUE as an argument of TYPE, an argument type or the name of
-one; NIL if there is no more to say than what such arguments are."
+  "Return in words what is wrong with VALUE as an argument of TYPE, an argument type or its name;
+NIL if the description of the type says it all."
   (let ((trouble (argument-type-trouble (find-argument-type type))))
     (and trouble (funcall trouble value))))
 
 (defun argument-type-text (type &optional (value nil value-p))
-  "Return in words what an argument of TYPE, an argument type or the name of one, is, and what is
-wrong with VALUE."
+  "Return in words what arguments of TYPE, an argument type or its name, are, and what is wrong with
+VALUE."
   (format nil "~A~@[: ~A~]" (argument-type-words (find-argument-type type))
           (and value-p (trouble-with value type))))
 
 (defun check-of-type (operator name value type)
-  "Signal WRONG-ARGUMENT, by OPERATOR and of its argument NAME, unless VALUE is of TYPE."
+  "Signal WRONG-ARGUMENT for the argument NAME of OPERATOR unless VALUE is of TYPE."
   (unless (argument-of-type-p value type)
     (reject-argument operator name value (argument-type-text type value))))
 
@@ -71,28 +71,28 @@ wrong with VALUE."
 ;;; Radians.
 
 (defun perhaps-degrees-p (angle)
-  "True if ANGLE, in radians, is more than a whole turn, and was perhaps meant in degrees: it is no
-whole number of these, as what was said in degrees, or by pi, is."
+  "True if ANGLE, in radians, is more than a whole turn and was perhaps meant in degrees: it is not
+a whole number of degrees in radians, as from a unit or by pi."
   (and (< (* 2 pi) (abs angle))
        (let ((degrees (* angle (/ 180 pi))))
          (< 1d-6 (abs (- degrees (fround degrees)))))))
 
 (defun degrees-advice (angle)
-  "Return in words what ANGLE, in radians and perhaps meant in degrees, is, and what to write."
+  "Return in words how many turns ANGLE, perhaps meant in degrees, is, and what to write instead."
   (let ((number (if (integerp angle) angle (format nil "~,2F" angle))))
     (format nil "~A radians are ~,1F whole turns. If ~A degrees are meant, write ~
                  (* ~A (/ pi 180)), or at the prompt ~A deg."
             number (/ (abs angle) 2 pi) number number number)))
 
-;;;; Operators: all that a journal may do
+;;;; Operators: everything that a journal can do
 
-;;; An operator says what its arguments are, and how it is done again when a journal is replayed.
-;;; Nothing else is ever called because a journal says so.
+;;; An operator has argument types, and a function that repeats the request when a journal is
+;;; replayed. A journal can call nothing else.
 
 (define-record (askable (:conc-name operator-)
                         (:constructor make-operator (name types rest function))
                         (:predicate operator-p))
-  "Something that can be asked of a run."
+  "A request that a run accepts."
   (name nil symbol "the name of the operator, a symbol" :export)
   (types '() list "the types of the arguments")
   (rest nil symbol "the type of any further arguments, or NIL")
@@ -101,13 +101,13 @@ whole number of these, as what was said in degrees, or by pi, is."
 (define-registry operator "operator" :object-p operator-p :fixed t :internal t)
 
 (defun define-operator (name types function &key rest)
-  "Let NAME be an operator that takes arguments of TYPES, names of argument types, and of the type
-REST after them, if that is given. FUNCTION, of these, asks it again in the current simulation."
+  "Define the operator NAME, with arguments of TYPES, names of argument types, and then of the type
+REST, if given. FUNCTION repeats the request in the current simulation, with these arguments."
   (register *operators* name (make-operator name types rest function))
   name)
 
 (defun check-operands (operator arguments)
-  "Signal WRONG-ARGUMENT unless OPERATOR takes ARGUMENTS, a list."
+  "Signal WRONG-ARGUMENT unless OPERATOR accepts ARGUMENTS, a list."
   (let ((types (operator-types operator)) (name (operator-name operator)))
     (unless (and (<= (length types) (length arguments))
                  (or (operator-rest operator) (= (length types) (length arguments))))

@@ -1,18 +1,18 @@
-;;;; own-definitions.lisp -- WITH-OWN-DEFINITIONS: afterwards all is defined as it was before.
+;;;; own-definitions.lisp -- WITH-OWN-DEFINITIONS: definitions that are undone at the end.
 
 (in-package :ars-magna.definitions)
 
 (export '(*kept-variables* become call-with-own-definitions))
 
 (defun become (object model)
-  "Make the structure OBJECT like MODEL, another of its type, slot by slot. Return OBJECT."
+  "Copy all slots of MODEL to OBJECT, a structure of the same type. Return OBJECT."
   (dolist (name (class-slot-names (class-of object)) object)
     (unless (eql (slot-value object name) (slot-value model name))
       (setf (slot-value object name) (slot-value model name)))))
 
 (defun keep-entry (entry)
-  "Return ENTRY with what it is restored by: a copy of its object, and a list of the value
-of its variable if there is one."
+  "Return ENTRY with what is needed to restore it: a copy of its object, and a list of the value of
+its variable if there is one."
   (let ((variable (entry-variable entry)))
     (list entry
           (copy-structure (entry-object entry))
@@ -32,7 +32,7 @@ of its variable if there is one."
 (defvar *own-definitions-thread* nil "The thread that is inside WITH-OWN-DEFINITIONS, or NIL.")
 
 (defun claim-definitions ()
-  "Let this thread be the one inside WITH-OWN-DEFINITIONS. Return what to set back afterwards."
+  "Make this thread the one inside WITH-OWN-DEFINITIONS. Return the value to restore afterwards."
   (let ((other (compare-and-swap (symbol-value '*own-definitions-thread*) nil
                                  (current-thread))))
     (unless (member other (list nil (current-thread)))
@@ -40,7 +40,7 @@ of its variable if there is one."
     other))
 
 (defvar *kept-variables* '()
-  "Symbols of the variables that say what is current, for WITH-OWN-DEFINITIONS. Layers add them.")
+  "Variables that hold what is current, for WITH-OWN-DEFINITIONS. Layers add them.")
 
 (defun call-with-own-definitions (function)
   "Call FUNCTION; see WITH-OWN-DEFINITIONS."
@@ -58,8 +58,8 @@ of its variable if there is one."
 
 (addition with-own-definitions)
 (defmacro with-own-definitions (() &body body)
-  "Run BODY. Maps, robots, kickers and whatever else it defines, redefines or undefines is
-afterwards, however BODY ends, as it was before: for tests, and suites of users. Return the values
-of BODY. A run of a map that BODY redefines ends all the same; SIMULATOR starts another. Definitions
-are shared by all threads, so only one thread at a time may do this; else it signals MISUSE."
+  "Run BODY, then undo everything that it has defined, redefined or undefined (maps, robots, kickers
+and so on), however it ends. For tests, and users' suites. Return the values of BODY. A run of a map
+that BODY redefines ends; start another with SIMULATOR. Definitions are shared by all threads, so
+only one thread at a time may do this. Signals MISUSE otherwise."
   `(call-with-own-definitions (lambda () ,@body)))

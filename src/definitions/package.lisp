@@ -1,6 +1,6 @@
-;;;; package.lisp -- the layer of definitions: what is defined by name, once, for all who ask.
+;;;; package.lisp -- the layer of definitions: everything that is defined by name.
 
 (ars-magna.host:define-package :ars-magna.definitions
-  (:documentation "Registries of what users and the simulator define, kinds of objects, parameters,
-operators and types of arguments; messages, and calling what users wrote.")
+  (:documentation "Registries of definitions, kinds of objects, parameters, operators and argument
+types; messages; calling users' code.")
   (:use :cl :ars-magna.host :ars-magna.basics))

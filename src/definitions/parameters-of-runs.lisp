@@ -1,4 +1,4 @@
-;;;; parameters-of-runs.lisp -- a run binds the parameters, and knows which have changed.
+;;;; parameters-of-runs.lisp -- a run binds the parameters and notices changes.
 
 (in-package :ars-magna.definitions)
 
@@ -7,7 +7,7 @@
 
 (defmacro with-parameters-bound ((values) &body body)
   "Run BODY with the parameters bound to those in the list that the variable VALUES holds, in order.
-For those defined before this is compiled, as all of ours are, that is much quicker than PROGV."
+Much faster than PROGV for parameters defined before this is compiled, as all of ours are."
   (let ((symbols (mapcar #'parameter-symbol (registry-objects *parameters*))))
     `(let* ,(loop for symbol in symbols collect `(,symbol (pop ,values)))
        (progv (mapcar #'parameter-symbol (nthcdr ,(length symbols) (registry-objects *parameters*)))
@@ -22,8 +22,8 @@ For those defined before this is compiled, as all of ours are, that is much quic
                      "a list of lists (name value), such as '((max-speed* 1/2))")))
 
 (defun call-with-parameters (settings function)
-  "Call FUNCTION with every parameter bound: as SETTINGS, a list of lists (name value), says, and as
-it is now where they say nothing. Changes made inside end with the call. Signals WRONG-ARGUMENT and
+  "Call FUNCTION with every parameter bound: to its value in SETTINGS, a list of lists (name value),
+or else to its current value. Changes made inside end with the call. Signals WRONG-ARGUMENT and
 UNKNOWN-NAME."
   (check-settings settings)
   (let* ((settings (loop for (name value) in settings
@@ -37,8 +37,8 @@ UNKNOWN-NAME."
       (with-parameters-bound (values) (funcall function)))))
 
 (defun call-with-parameter-values (values function)
-  "Call FUNCTION with the parameters bound to VALUES, a vector as PARAMETER-VALUES returns, and
-leave in it what they are afterwards. Return the values of FUNCTION."
+  "Call FUNCTION with the parameters bound to VALUES, a vector as of PARAMETER-VALUES, and store
+their final values in it. Return the values of FUNCTION."
   (let ((known (coerce values 'list)))
     (with-parameters-bound (known)
       (multiple-value-prog1 (funcall function)
@@ -50,8 +50,8 @@ leave in it what they are afterwards. Return the values of FUNCTION."
        (registry-objects *parameters*)))
 
 (defun digest-parameters (known digest)
-  "Add KNOWN, a vector made by PARAMETER-VALUES, to DIGEST. Of parameters that came later only
-values that are not the default are added, by name: so the digests of runs of before hold."
+  "Add KNOWN, a vector of PARAMETER-VALUES, to DIGEST. Parameters added later count only if they do
+not have their default, and by name, so that older digests stay valid."
   (loop for parameter in (registry-objects *parameters*)
         for value across known
         if (parameter-digested-p parameter)
@@ -62,8 +62,8 @@ values that are not the default are added, by name: so the digests of runs of be
                 (when others (digest-add digest others))))
 
 (defun changed-parameters (known)
-  "Return a list (symbol . value) of the parameters whose value here is not that in KNOWN, a vector
-made by PARAMETER-VALUES."
+  "Return a list (symbol . value) of the parameters that differ from KNOWN, a vector of
+PARAMETER-VALUES."
   (declare (type simple-vector known))
   (loop for parameter in (registry-objects *parameters*)
         for old across known
@@ -76,10 +76,10 @@ made by PARAMETER-VALUES."
     (wrong-argument (trouble) (error-set (princ-to-string trouble)) nil)))
 
 (defun follow-parameters (known global-p note)
-  "Find the parameters that have changed since KNOWN, a vector made by PARAMETER-VALUES, was
-last brought up to date, and do that. If GLOBAL-P, the caller is a thread with bindings of its
-own: values set globally by others come in and values set here go out. A value that cannot be
-used is put back, with an error message. NOTE is called with each symbol and its new value."
+  "Find the parameters that have changed since KNOWN, a vector of PARAMETER-VALUES, was last
+updated, and update it. If GLOBAL-P, the caller is a thread with bindings of its own: values set
+globally by others are adopted, and values set here become global. An unusable value is reset, with
+an error message. NOTE is called with each symbol and its new value."
   (declare #.*hot* (type simple-vector known) (type function note))
   (loop for parameter in (registry-objects *parameters*)
         for index of-type fixnum from 0

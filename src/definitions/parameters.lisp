@@ -6,13 +6,13 @@
           check-parameters *noise-before-cleaning* ticks-for noise-of-step per-tick-drift
           per-tick-probability))
 
-;;; Each parameter is a special variable that users may SETF. From its one definition come its
-;;; documentation, the check of its value, what CLEAN-SIMULATION does to it and the prompt's
-;;; list. A headless run binds all of them anew; a live run follows the global values.
+;;; Each parameter is a special variable that users may SETF. Its one definition gives its
+;;; documentation, the check of its value, its noiseless value and its line in the prompt's list. A
+;;; headless run binds all of them; a live run follows the global values.
 
 (addition parameter-p)
 (define-record parameter
-  "What is known of one simulation parameter besides its value."
+  "The description of a simulation parameter."
   (symbol nil symbol "the special variable that is the parameter" :export)
   (default nil t "the value that the manual gives" :addition)
   (unit "" string "the unit of the values, a string" :addition)
@@ -28,7 +28,7 @@
 
 (addition parameter-name)
 (defun parameter-name (parameter)
-  "Return what PARAMETER is called, a lower-case string such as \"max-speed*\"."
+  "Return the name of PARAMETER, a lower-case string such as \"max-speed*\"."
   (string-downcase (parameter-symbol parameter)))
 
 (defmethod print-object ((parameter parameter) stream)
@@ -43,7 +43,7 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun limit-text (limit)
-    "Return LIMIT, a number, as people read it: 1e9 for a thousand million."
+    "Return LIMIT, a number, as people write it: 1e9 for a thousand million."
     (let ((power (and (integerp limit) (>= limit 1000000) (1- (length (princ-to-string limit))))))
       (if (and power (= limit (expt 10 power)))
           (format nil "1e~D" power)
@@ -63,9 +63,9 @@
 (defmacro define-parameter (symbol default
                             (&key (unit "") (type t) (kind :limit) (group "") clean addition)
                             sentence)
-  "Define SYMBOL as a special variable and simulation parameter. CLEAN is its value in a
-noiseless world, for parameters of kind :noise; ADDITION is true if the manual does not have it, and
-:DIGESTED if digests have it even where its value is the default."
+  "Define SYMBOL as a special variable and simulation parameter. CLEAN is its value in a noiseless
+world, for parameters of kind :noise. ADDITION is true if the manual does not have it. :DIGESTED is
+true if digests include it even with its default value."
   `(progn
      (,(if addition 'addition 'public) ,symbol)
      (defvar ,symbol ,default
@@ -85,7 +85,7 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
 
 (defun check-parameter-value (parameter value)
   "Signal WRONG-ARGUMENT unless PARAMETER can have VALUE."
-  ;; Of a number that is none not even the type can be asked.
+  ;; A NaN cannot even be tested for its type.
   (unless (and (or (not (realp value)) (finite-p value))
                (funcall (parameter-test parameter) value))
     (reject-argument "set parameter" (parameter-name parameter) value
@@ -94,7 +94,7 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
 (addition parameter-value)
 (settable parameter-value)
 (defun parameter-value (parameter)
-  "Return the value that PARAMETER (or the parameter so named) has now. Can be set; signals
+  "Return the current value of PARAMETER, or of the parameter of that name. Can be set. Signals
 WRONG-ARGUMENT if the new value is of the wrong type or out of range."
   (symbol-value (parameter-symbol (find-parameter parameter))))
 
@@ -122,11 +122,10 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
 
 (public clean-simulation)
 (defun clean-simulation ()
-  "Remove all noise and error: set every noise parameter to its noiseless value and
-NO-SENSOR-ERROR* to T. DISCRETE-NOISE-FACTOR*, CONTINUOUS-NOISE-FACTOR* and
-STANDARD-MATCH-THRESHOLD* stay as they are: while NO-SENSOR-ERROR* is true they make no error.
-Delays and limits stay. A second call changes nothing. Returns nothing (manual, chapter 4). See
-reading 117."
+  "Remove all noise and error: set every noise parameter to its noiseless value and NO-SENSOR-ERROR*
+to T. DISCRETE-NOISE-FACTOR*, CONTINUOUS-NOISE-FACTOR* and STANDARD-MATCH-THRESHOLD* do not change,
+because they have no effect while NO-SENSOR-ERROR* is true. Nor do delays and limits. A second call
+changes nothing. Return nothing (manual, chapter 4; reading 117)."
   (unless *noise-before-cleaning*
     (setf *noise-before-cleaning*
           (loop for parameter in (registry-objects *parameters*)
@@ -137,8 +136,8 @@ reading 117."
 
 (public dirty-simulation)
 (defun dirty-simulation ()
-  "Restore the noise parameters as they were before CLEAN-SIMULATION; without it, do nothing.
-Returns nothing (manual, chapter 4)."
+  "Restore the noise parameters from before CLEAN-SIMULATION; without that, do nothing. Return
+nothing (manual, chapter 4)."
   (loop for (symbol value) in (shiftf *noise-before-cleaning* nil)
         do (setf (symbol-value symbol) value))
   (values))
@@ -156,7 +155,7 @@ Returns nothing (manual, chapter 4)."
      (define-physics (&rest groups)
        `(progn ,@(loop for group in groups collect `(define-group ,@group)))))
   (define-physics
-    ;; No delay, distance or angle is beyond what basics/conditions.lisp allows in general.
+    ;; basics/conditions.lisp limits delays, distances and angles in general.
     ("Robot movement"
      ;; As reading 217 says.
      (max-speed* 1 "cells per tick" :limit (real 0 #.+largest+)
@@ -259,31 +258,31 @@ time takes fewer ticks. The manual only wishes, in chapter 1.2, to skip ahead."
        :addition :digested))))
 
 (defun per-tick-probability (probability)
-  "Return the chance that something of PROBABILITY per unit of time happens in a tick, which stands
-for TICK-QUANTUM* of them."
+  "Return the chance that an event of PROBABILITY per unit of time happens in a tick, which lasts
+TICK-QUANTUM* units."
   (let ((probability (double probability)))
     (if (= tick-quantum* 1)
         probability
         (- 1d0 (power (- 1d0 probability) (double tick-quantum*))))))
 
 (defun ticks-for (time)
-  "Return how many ticks what takes TIME, as the manual counts it in ticks, takes when a tick stands
-for TICK-QUANTUM* of it."
+  "Return how many ticks an action of TIME units, the manual's ticks, takes when a tick lasts
+TICK-QUANTUM* units."
   (if (= tick-quantum* 1)
       time
       (values (ceiling time tick-quantum*))))
 
 (declaim (inline noise-of-step))
 (defun noise-of-step (noise step unit)
-  "Return how far, as a fraction of it, a STEP may be off, if NOISE is how far one of length UNIT
-is, which takes a unit of time: in a tick that stands for many, their errors cancel out in part."
+  "Return the error of a STEP, as a fraction of it, if NOISE is the error of a step of length UNIT,
+which takes a unit of time. In a tick of many units their errors partly cancel out."
   (declare (type (double-float 0d0) step unit))
   (if (<= step unit)
       (double noise)
       (/ (double noise) (sqrt (/ step unit)))))
 
 (defun per-tick-drift (drift)
-  "Return how far something may drift in a tick, if it does so by DRIFT at most in a unit of time."
+  "Return the largest drift in a tick for one of at most DRIFT in a unit of time."
   (if (= tick-quantum* 1)
       (double drift)
       (* (double drift) (sqrt (double tick-quantum*)))))

@@ -1,15 +1,15 @@
-;;;; places-in-text.lisp -- the line of a form that the compiler has met, also if others are alike.
+;;;; places-in-text.lisp -- the line of a form that the compiler reports, among similar forms.
 
 (in-package :ars-magna.definitions)
 
 (export '(reading-place compiling-place))
 
-;;; The compiler knows which element of which form a form is: see PLACE-IN-TEXT. The text is
-;;; followed down to that as far as it can be: a quoted form, for one, is no list in the text. In
-;;; what has been reached, the form is looked for.
+;;; The compiler knows the path of elements that leads to a form: see PLACE-IN-TEXT. The path is
+;;; followed in the text as far as possible: a quoted form, for example, is no list there. The form
+;;; is then searched for in what has been reached.
 
 (defun skip-blanks (text i)
-  "Return where in TEXT, at I or after it, something begins that is neither blank nor a comment."
+  "Return the position in TEXT, from I on, of the first character outside of blanks and comments."
   (loop while (< i (length text))
         do (cond ((blank-p (char text i)) (incf i))
                  ((skip-comment text i) (setf i (skip-comment text i)))
@@ -17,12 +17,12 @@
   i)
 
 (defvar *last-element* '("" 0 0 nil)
-  "A list of text, start and number of which ELEMENT-BOUNDS was asked last, and where that began:
-elements of long lists are asked for one after the other. Replaced, never altered.")
+  "The text, start and element number of the last call of ELEMENT-BOUNDS, and its position: elements
+of long lists are requested in order. Replaced, never modified.")
 
 (defun element-bounds (text start number)
-  "Return where in TEXT the element NUMBER, from 0, of the list that begins at START begins and
-ends; NIL if there is no list, or it cannot be read."
+  "Return the start and end in TEXT of the element NUMBER, from 0, of the list that begins at START;
+NIL if there is no list or it cannot be read."
   (with-words (text)
     (destructuring-bind (last-text last-start last-number last-begin) *last-element*
       (let ((known-p (and last-begin (eq text last-text) (= start last-start)
@@ -40,7 +40,8 @@ ends; NIL if there is no list, or it cannot be read."
               (values begin end))))))))
 
 (defun bounds-of-place (text place)
-  "Return where what stands at PLACE, see PLACE-IN-TEXT, or what is around it, begins and ends."
+  "Return the start and end in TEXT of PLACE, of PLACE-IN-TEXT, or of the smallest form found around
+it."
   (destructuring-bind (position . numbers) place
     (let ((start (skip-blanks text position)) (end (length text)))
       (dolist (number numbers (values start end))
@@ -49,8 +50,8 @@ ends; NIL if there is no list, or it cannot be read."
           (setf start inner-start end inner-end))))))
 
 (defun line-in-text (file form place)
-  "Return the line in FILE on which FORM stands, which is at PLACE, see PLACE-IN-TEXT; NIL if PLACE
-is NIL or FILE cannot be read. If FORM is NIL, PLACE alone counts."
+  "Return the line in FILE of FORM, at PLACE, of PLACE-IN-TEXT; NIL if PLACE is NIL or FILE cannot
+be read. If FORM is NIL, only PLACE counts."
   (and place
        (ignore-errors
          (let ((text (text-of-file file)))
@@ -61,14 +62,14 @@ is NIL or FILE cannot be read. If FORM is NIL, PLACE alone counts."
                                    start)))))))
 
 (defun line-of-form-being-read (stream)
-  "Return on which line of its file the form begins that LOAD reads from STREAM."
+  "Return the line in its file of the form that LOAD reads from STREAM."
   (let ((text (file-text (pathname stream))))
     (line-number text (skip-blanks text (min (form-start stream) (length text))))))
 
 (defun reading-place (condition)
-  "Return which file LOAD was reading when CONDITION came up, as the system calls it, and on which
-line the reader gave up, or that on which the form begins if it does not end; NIL if CONDITION says
-something else. Only while that file is still open."
+  "Return the native name of the file that LOAD was reading when CONDITION was signalled, and the
+line where the reader stopped, or where the form begins if it does not end. Return NIL for other
+conditions. Works only while the file is open."
   (let ((stream (and (typep condition 'reader-error) (stream-error-stream condition))))
     (when (and stream (open-stream-p stream) (form-start stream))
       (let ((cause (cause-of-reading-trouble condition)))
@@ -78,8 +79,8 @@ something else. Only while that file is still open."
                       (t (line-reached stream))))))))
 
 (defun compiling-place ()
-  "Return which file COMPILE-FILE compiles, as the system calls it, and on which line the form
-begins that it is at, or NIL if that is not known. Return NIL if no file is being compiled."
+  "Return the native name of the file that COMPILE-FILE compiles, and the line of its current form,
+or NIL if that is not known. Return NIL if no file is being compiled."
   (multiple-value-bind (path place) (compiler-place)
     (when path
       (let ((file (native-name path)))

@@ -1,4 +1,4 @@
-;;;; registry.lisp -- what users define, by kind and name: finding, listing, redefining, undefining.
+;;;; registry.lisp -- finding, listing, redefining and undefining definitions, by kind and name.
 
 (in-package :ars-magna.definitions)
 
@@ -6,18 +6,18 @@
           from-this-file-p users-p names-to-offer defined-names all-definitions
           definition-to-replace variable-in-use-p entries-meant take-back reinstate))
 
-;;; One registry for each kind of definition. Names compare as names, whatever package they were
-;;; read in; the newest definition of a name counts. A registry that tells names apart by symbol,
-;;; as functions are, finds the very symbol first and then whatever is called the same.
+;;; There is one registry for each kind of definition. Names compare without their package; the
+;;; newest definition of a name counts. A registry by symbol, as for functions, first looks for the
+;;; very symbol, then for the same name.
 ;;;
-;;; The lists are replaced, never altered, so that any thread may read them at any time. All
-;;; writing is done under one lock.
+;;; The lists are replaced, never modified, so any thread may read them at any time. All writes are
+;;; under one lock.
 
 (define-record (entry (:constructor make-entry (name object source variable
                                                 &optional (digest (current-form-digest))
                                                   (head (current-head))
                                                   (documentation (current-docstring)))))
-  "That NAME means OBJECT, by a definition in SOURCE."
+  "The definition of NAME as OBJECT, in SOURCE."
   (name nil symbol "the symbol that is defined" :export)
   (object nil t "what the name of the entry means" :export)
   (source nil list "the source of the entry's definition; see sources.lisp" :export)
@@ -66,8 +66,8 @@ strings and symbols" :writable))
               thereis (same-name-p name alias))))
 
 (defun qualified-symbol (name)
-  "Return the symbol that NAME, a string such as \"PACKAGE:NAME\", stands for, or NIL. What is not
-called just so is looked for in upper case."
+  "Return the symbol for NAME, a string such as \"PACKAGE:NAME\", or NIL. If there is none in this
+case, the name is looked for in upper case."
   (let ((colon (and (stringp name) (position #\: name))))
     (when (and colon (plusp colon))
       (let* ((prefix (subseq name 0 colon))
@@ -91,7 +91,7 @@ called just so is looked for in upper case."
   (remove-if #'registry-fixed-p *registries*))
 
 (defun entries-meant (name)
-  "Return the entries of users' definitions, of whatever kind, that NAME, a symbol, stands for."
+  "Return the entries of users' definitions, of all kinds, for NAME, a symbol."
   (loop for registry in (open-registries)
         for entry = (lookup-entry name registry)
         when (and entry (users-p entry)) collect entry))
@@ -101,20 +101,21 @@ called just so is looked for in upper case."
   (mapcar #'entry-name (registry-entries registry)))
 
 (defun names-to-offer (registry)
-  "Return the names defined in REGISTRY, those of users first, the newest of these before others."
+  "Return the names defined in REGISTRY to suggest: those of users first, the newest of these before
+others."
   (let ((entries (registry-entries registry)))
     (mapcar #'entry-name (append (reverse (remove-if-not #'users-p entries))
                                  (remove-if #'users-p entries)))))
 
 (defun find-definition (name registry errorp)
-  "Return the object in REGISTRY that is called NAME. If there is none, return NIL, or signal
-UNKNOWN-NAME if ERRORP is true."
+  "Return the object in REGISTRY called NAME. If there is none, return NIL, or signal UNKNOWN-NAME
+if ERRORP is true."
   (let ((entry (lookup-entry name registry)))
     (cond (entry (entry-object entry))
           (errorp (reject-name (registry-text registry) name (names-to-offer registry))))))
 
 (defun from-this-file-p (name registry)
-  "True if NAME in REGISTRY is from the file that is being loaded, which may yet define it anew."
+  "True if NAME in REGISTRY is from the file being loaded, which may still redefine it."
   (let ((entry (lookup-entry name registry))
         (file (source-file (current-source))))
     (and entry file (equal file (source-file (entry-source entry))))))
@@ -122,20 +123,20 @@ UNKNOWN-NAME if ERRORP is true."
 ;;; Defining.
 
 (defgeneric take-back (object)
-  (:documentation "Undo what the definition of OBJECT has done besides entering it.")
+  (:documentation "Undo the effects of the definition of OBJECT, other than its entry.")
   (:method (object) object))
 
 (defgeneric reinstate (object)
-  (:documentation "Do again what TAKE-BACK may have undone: OBJECT is defined as it was before.")
+  (:documentation "Redo what TAKE-BACK may have undone: the definition of OBJECT is restored.")
   (:method (object) object))
 
 (defun entry-to-replace (name registry)
-  "Return the entry in REGISTRY whose place a definition of NAME would take, or NIL."
+  "Return the entry in REGISTRY that a definition of NAME would replace, or NIL."
   (find name (registry-entries registry)
         :key #'entry-name :test (if (registry-by-symbol-p registry) #'eq #'same-name-p)))
 
 (defun definition-to-replace (name registry)
-  "Return the object in REGISTRY whose place a definition of NAME would take, or NIL."
+  "Return the object in REGISTRY that a definition of NAME would replace, or NIL."
   (let ((entry (entry-to-replace name registry)))
     (and entry (entry-object entry))))
 
@@ -146,12 +147,12 @@ UNKNOWN-NAME if ERRORP is true."
 (defparameter *own-source* '("the simulator itself") "The source of what a user finds defined.")
 
 (defun users-p (entry)
-  "True if ENTRY is a definition of a user's, not of the simulator's own."
+  "True if ENTRY is a user's definition, not the simulator's."
   (not (equal *own-source* (entry-source entry))))
 
 (defun entries-with (new old before registry)
-  "Return the entries of REGISTRY with NEW: directly before the object BEFORE, in the place of OLD,
-or last. Of several that are called the same the newest comes last, for those who ask by name."
+  "Return the entries of REGISTRY with NEW: before the object BEFORE, in place of OLD, or last. Of
+several with the same name the newest comes last, for lookups by name."
   (let* ((entries (registry-entries registry)) (others (remove old entries)))
     (cond (before (let ((tail (member before others :key #'entry-object)))
                     (append (ldiff others tail) (list new) tail)))
@@ -161,12 +162,12 @@ or last. Of several that are called the same the newest comes last, for those wh
           (t (append others (list new))))))
 
 (defun variable-in-use-p (name)
-  "True if the variable NAME has a value at top level that something else would lose."
+  "True if the variable NAME has a global value of something else."
   (ignore-errors (global-value name)))
 
 (defun free-variable (name kind)
-  "Return NAME if it can be a variable, and is not in use, for a definition of KIND, called so; else
-NIL, with a warning unless NAME is a symbol of Common Lisp's, say, or ours."
+  "Return NAME if it can be a variable and is unused, for a definition of KIND with this name.
+Otherwise return NIL, with a warning unless NAME is a symbol of Common Lisp or ours."
   (flet ((refuse (control)
            (warn-of-definition "~@?: the ~A is to be called by its name, '~(~A~)."
                                control name kind name)))
@@ -184,8 +185,8 @@ NIL, with a warning unless NAME is a symbol of Common Lisp's, say, or ours."
                           (registry-text registry) (entry-name new) other file))))
 
 (defun variable-for (name old registry)
-  "Return the variable of a definition of NAME, which replaces the entry OLD, or NIL: the one that
-OLD had, or NAME if it is free."
+  "Return the variable of a definition of NAME that replaces the entry OLD, or NIL: the variable of
+OLD, or NAME if it is unused."
   (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
         (t (free-variable name (registry-text registry)))))
 
@@ -193,8 +194,8 @@ OLD had, or NAME if it is free."
   "A function that is called in this thread with each object that is defined, or NIL.")
 
 (defun replace-entry (old new registry before value)
-  "Put the entry NEW into REGISTRY, in the place of OLD or before the object BEFORE, and let its
-variable, if any, hold VALUE. True unless another thread has replaced OLD meanwhile."
+  "Put the entry NEW into REGISTRY, in place of OLD or before the object BEFORE, and set its
+variable, if any, to VALUE. True unless another thread has replaced OLD meanwhile."
   (with-lock (*registries-lock*)
     (when (eq old (entry-to-replace (entry-name new) registry))
       (set-entries registry (entries-with new old before registry))
@@ -202,10 +203,10 @@ variable, if any, hold VALUE. True unless another thread has replaced OLD meanwh
       t)))
 
 (defun register (registry name object &key variable (value object) before)
-  "Let NAME mean OBJECT in REGISTRY, from now on; it takes the place of what it meant before. With
-VARIABLE, the special variable NAME, if it can be one and is not in use, has VALUE from now on.
-BEFORE is an object of the registry to come directly before, instead of last. Return OBJECT, and the
-object whose place it has taken, or NIL: of several threads that define NAME, each gets another."
+  "Define NAME as OBJECT in REGISTRY, replacing an earlier definition. With VARIABLE, set the
+special variable NAME to VALUE if it can be one and is unused. BEFORE is an object of the registry
+to come before, instead of last. Return OBJECT and the object that it replaces, or NIL. If several
+threads define NAME, each replaces another object."
   (loop
     (let* ((old (entry-to-replace name registry))
            (variable (and variable (variable-for name old registry)))
@@ -219,7 +220,7 @@ object whose place it has taken, or NIL: of several threads that define NAME, ea
 ;;; Undefining.
 
 (defun registry-called (kind registries)
-  "Return the one of REGISTRIES that is of KIND, a symbol such as KICKER, or NIL."
+  "Return the one of REGISTRIES of KIND, a symbol such as KICKER, or NIL."
   (find-if (lambda (registry)
              (or (same-name-p kind (registry-kind registry))
                  (member kind (registry-synonyms registry) :test #'same-name-p)))
@@ -230,8 +231,8 @@ object whose place it has taken, or NIL: of several threads that define NAME, ea
       (reject-name "kind of definition" kind (mapcar #'usual-name (open-registries)))))
 
 (defun all-definitions (kind)
-  "Return lists (name object source) for all definitions of KIND, as UNDEFINE takes it, in order.
-SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of what was typed."
+  "Return lists (name object source) for all definitions of KIND, as in UNDEFINE, in order. SOURCE
+is its file, :OWN if it is the simulator's, or NIL if it was typed."
   (loop for entry in (registry-entries (find-registry kind))
         collect (list (entry-name entry) (entry-object entry)
                       (if (users-p entry) (source-file (entry-source entry)) :own))))
@@ -240,7 +241,7 @@ SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of w
   (string-downcase (or (first (registry-synonyms registry)) (registry-kind registry))))
 
 (defun forget-value (variable)
-  "Let VARIABLE have no value at top level: what a headless run has bound it to here, it keeps."
+  "Make VARIABLE unbound globally. A binding by a headless run stays."
   (join-thread (start-thread (lambda () (makunbound variable)) "forgetting")))
 
 (defun forget-entry (entry)
@@ -255,10 +256,10 @@ SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of w
 
 (addition undefine)
 (defun undefine (kind name)
-  "Take back the definition of NAME, of KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE,
+  "Remove the definition of NAME, of KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE,
 KICKER, MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. Its variable becomes
-unbound; worlds that are under way keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE
-for what is no user's to define, and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
+unbound; existing worlds keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE for
+definitions that are not users', and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
   (check-argument undefine name (typep name '(or symbol string)) "a symbol, the name of what goes")
   (let ((registry (find-registry kind)))
@@ -277,9 +278,9 @@ for what is no user's to define, and WRONG-ARGUMENT unless KIND and NAME are sym
                                        (finder (symbolicate 'find- kind))
                                        (lister (symbolicate 'all- kind 's)))
   "Define the registry of KIND, a symbol, in the variable *KINDs*, and the functions FIND-KIND and
-ALL-KINDs, or as FINDER and LISTER say, for users unless INTERNAL is true. TEXT is what a definition
-is called in messages. OBJECT-P names the predicate of what may be given instead of a name. The rest
-are slots of REGISTRY."
+ALL-KINDs, or FINDER and LISTER, for users unless INTERNAL is true. TEXT describes a definition in
+messages. OBJECT-P is the predicate of objects that can be passed instead of a name. The rest are
+slots of REGISTRY."
   (let ((variable (symbolicate '* kind 's*)))
     `(progn
        (defparameter ,variable

@@ -1,4 +1,4 @@
-;;;; troubles.lisp -- how errors in users' code come to notice, and who is asked after a break.
+;;;; troubles.lisp -- reporting errors in users' code; who answers a debugger.
 
 (in-package :ars-magna.definitions)
 
@@ -6,26 +6,26 @@
           take-unseen signal-trouble answering-debugger debugger-asking end-inquiries
           *inquiry-hooks* *debugger-refused-p*))
 
-;;; A message has a cause if it tells of an error in users' code, or of the failure of a plan that
+;;; A message has a cause if it reports an error in users' code, or the failure of a plan that
 ;;; nobody waits for. The error policy of the queue decides what happens then:
 ;;;
 ;;;   :REPORT   the message is queued, and shown when the run ends if nobody has read it
 ;;;   :SIGNAL   the first error is signalled as USER-CODE-ERROR where ticks are passed
 ;;;   :COLLECT  the message is queued; SIMULATION-ERRORS returns the errors
 ;;;
-;;; A queue with a table ECHOED shows errors at once, unless it has a listener. Each queue does that
-;;; with warnings of what may never end.
+;;; A queue with a table ECHOED shows errors at once, unless it has a listener. All queues show
+;;; warnings of code that may never end at once.
 
 (addition user-code-error user-code-error-cause)
 (define-condition user-code-error (ars-magna-error)
   ((text :initarg :text :reader user-code-error-text)
    (cause :initarg :cause :reader user-code-error-cause))
   (:report (lambda (condition stream) (write-string (user-code-error-text condition) stream)))
-  (:documentation "An error came up in users' code that a run has called: a continuation, a kicker,
-a test, a plan that was begun. Its text says whose code it was. RUN-TICKS, RUN-UNTIL, RUN-PLAN and
-WITH-SIMULATION signal it in a run that is to :SIGNAL errors, see WITH-SIMULATION."))
+  (:documentation "An error in users' code that a run has called: a continuation, a kicker, a test,
+a plan that was begun. The text names the code. RUN-TICKS, RUN-UNTIL, RUN-PLAN and WITH-SIMULATION
+signal it in a run with the error policy :SIGNAL, see WITH-SIMULATION."))
 (setf (documentation 'user-code-error-cause 'function)
-      "Return the condition, or the failure of a plan, that a USER-CODE-ERROR is of.")
+      "Return the condition, or the failure of a plan, that caused a USER-CODE-ERROR.")
 
 ;; What a REPL shows of SIMULATION-ERRORS.
 (defmethod print-object ((error user-code-error) stream)
@@ -35,16 +35,16 @@ WITH-SIMULATION signal it in a run that is to :SIGNAL errors, see WITH-SIMULATIO
       (call-next-method)))
 
 (defun trouble-set (cause text &rest stuff)
-  "Queue an error message made of the items STUFF which tells of CAUSE, a condition in users' code
-or a failure of a plan; TEXT says it in a line. Return nothing."
+  "Queue an error message with the items STUFF about CAUSE, a condition in users' code or a failure
+of a plan; TEXT says it in a line. Return nothing."
   (queue-items :error stuff :cause cause :summary text))
 
 (defun error-of-message (message)
   (make-condition 'user-code-error :text (message-summary message) :cause (message-cause message)))
 
 (defun errors-in (queue run-p)
-  "Return the errors of users' code that were told to QUEUE of runs for which RUN-P is true, as
-USER-CODE-ERRORs, the oldest first."
+  "Return the errors of users' code in QUEUE, of runs for which RUN-P is true, as USER-CODE-ERRORs,
+the oldest first."
   (let ((messages (with-queue (queue)
                     (reverse (message-queue-troubles queue)))))
     (loop for message in messages
@@ -52,20 +52,20 @@ USER-CODE-ERRORs, the oldest first."
             collect (error-of-message message))))
 
 (defun forget-errors (queue run-p)
-  "Forget the errors of users' code that were told to QUEUE of runs for which RUN-P is true: else a
-run that is over would be kept as long as the queue."
+  "Forget the errors of users' code in QUEUE, of runs for which RUN-P is true. Otherwise the queue
+would keep a finished run alive."
   (with-queue (queue)
     (setf (message-queue-troubles queue)
           (remove-if run-p (message-queue-troubles queue) :key #'message-run))))
 
 (defun drop-unsignalled (queue)
-  "Let no error of users' code that QUEUE has been told of be signalled."
+  "Let no error of users' code now in QUEUE be signalled."
   (with-queue (queue)
     (setf (message-queue-unsignalled queue) nil)))
 
 (defun take-unsignalled (queue)
-  "Return the first error of users' code that is to be signalled and was not, as USER-CODE-ERROR, or
-NIL. It, and others that came after it, count as signalled; it is no message any more."
+  "Return the first error of users' code that is to be signalled, as USER-CODE-ERROR, or NIL. It and
+later ones count as signalled; it is no longer a message."
   (when (message-queue-unsignalled queue)
     (with-queue (queue)
       (let ((message (shiftf (message-queue-unsignalled queue) nil)))
@@ -77,20 +77,20 @@ NIL. It, and others that came after it, count as signalled; it is no message any
           (error-of-message message))))))
 
 (defun signal-trouble (queue)
-  "Signal the error in users' code of which QUEUE has been told and that is to be signalled, if
-there is one. True if there was, and whoever handled it wants to go on."
+  "Signal the pending error in users' code of QUEUE, if there is one. True if there was, and its
+handler continues."
   (let ((trouble (take-unsignalled queue)))
     (when trouble
       (with-simple-restart (continue "Let the other ticks pass.")
         (error trouble))
       t)))
 
-;;; What nobody has read.
+;;; Unread messages.
 
-(defparameter *most-unread* 20 "How many different messages are shown that nobody has read.")
+(defparameter *most-unread* 20 "How many different unread messages are shown.")
 
 (defun take-unseen (queue)
-  "Return the messages in QUEUE that nobody has seen, the oldest first. All in it counts as seen."
+  "Return the messages in QUEUE that nobody has read, the oldest first. Mark all as read."
   (with-queue (queue)
     (let ((newest-first (message-queue-newest-first queue)))
       (reverse (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))))
@@ -109,14 +109,14 @@ there is one. True if there was, and whoever handled it wants to go on."
               (- (length texts) *most-unread*)))))
 
 (defun shown-at-end-p (message policy)
-  "True if MESSAGE, which nobody has seen, is shown when its run ends under the error POLICY."
+  "True if MESSAGE, unread, is shown at the end of its run under the error POLICY."
   (let ((notable (message-notable-p message)))
     (or (if (functionp notable) (funcall notable) (eq t notable))
         (and (not (eq :collect policy)) (to-be-seen-p message)))))
 
 (defun show-unseen (queue &optional (wanted (constantly t)))
-  "Write to the error output the messages in QUEUE that are to be seen and for which WANTED is true,
-unless they were read or told before."
+  "Write to the error output the unread messages in QUEUE that should be seen and for which WANTED
+is true."
   (unless flush-all-errors*
     (let ((messages (remove-if-not (lambda (message)
                                      (and (shown-at-end-p message
@@ -128,18 +128,18 @@ unless they were read or told before."
         (write-counted messages *error-output*)
         (finish-output *error-output*)))))
 
-;;; What is shown when it happens.
+;;; Messages that are shown at once.
 
 (defvar *echo-output* nil
-  "The stream on which whoever works at this Lisp sees what runs write; NIL for the error output.")
+  "The stream on which the user of this Lisp sees messages of runs; NIL for the error output.")
 
 (defconstant +most-echoed+ 1000 "How many texts are counted.")
 
 (defvar *echo-counter* (make-message-queue :echoed (make-hash-table :test 'equal))
-  "The queue that counts what is shown of queues without a table.")
+  "The queue that counts messages shown for queues without a table.")
 
 (defun count-echo (text queue)
-  "Return how often TEXT has been shown, or would have been, since it was last forgotten."
+  "Return how often TEXT was shown, or would have been, since the count was cleared."
   (let* ((counter (if (message-queue-echoed queue) queue *echo-counter*))
          (counts (message-queue-echoed counter)))
     (with-queue (counter)
@@ -152,7 +152,7 @@ unless they were read or told before."
         finally (return (= power count))))
 
 (defun echo-message (message queue)
-  "Show MESSAGE to who works at this Lisp. Of what comes again and again, less and less is shown."
+  "Show MESSAGE to the user of this Lisp. Repeated messages are shown less and less often."
   (unless flush-all-errors*
     (let* ((text (string-right-trim '(#\Newline)
                                     (write-message message nil (text-with-command message))))
@@ -164,24 +164,25 @@ unless they were read or told before."
          (format stream "~&~A~:[~; (~:*~D times by now)~]~%" text (and (< 1 count) count))
          (finish-output stream))))))
 
-;;;; Debuggers: who is asked how code goes on that has broken
+;;;; Debuggers: who is asked for a restart
 
-;;; Code that we call may enter a debugger of somebody else: Lisp's own, or that of an editor. What
-;;; is typed there may go wrong too. That is a matter of the debugger: it must not come to those
-;;; handlers of ours inside of which the code has been called. And the editor may go before it is
-;;; answered. Then whoever else can asks; else ABORT is chosen, or CONTINUE after what is no error.
+;;; Code that we call may enter a foreign debugger: Lisp's own or an editor's. Errors in what is
+;;; typed there belong to that debugger, and must not reach our handlers around the code. If the
+;;; editor disconnects before it has answered, another front end asks. If there is none, ABORT is
+;;; chosen, or CONTINUE for a condition that is no error.
 
 (defstruct (inquiry (:constructor make-inquiry (thread hook)) (:copier nil))
-  "That the debugger of HOOK, or Lisp's own if that is NIL, asks how THREAD goes on."
+  "A pending question: the debugger of HOOK, or Lisp's own if that is NIL, asks for a restart of
+THREAD."
   (thread nil :read-only t)
   (hook nil :read-only t))
 
-(defvar *inquiries* '() "All inquiries under way, the newest first. Replaced, never altered.")
+(defvar *inquiries* '() "All pending questions, the newest first. Replaced, never modified.")
 (defvar *inquiries-lock* (make-lock "inquiries"))
 
 (define-event *inquiry-hooks*
-  "Functions, or their names, of a condition and of who asks, in words. They are called in the
-thread that has broken, before it is asked there how that goes on.")
+  "Functions, or their names, of a condition and of the asking debugger in words. They are called in
+the thread of the error before the debugger asks there.")
 
 (defvar *debugger-refused-p* nil
   "True where the debugger's hook asks nobody, but signals an error.")
@@ -190,12 +191,12 @@ thread that has broken, before it is asked there how that goes on.")
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
 (defun debugger-asking (thread)
-  "Return, in words, whose debugger asks how THREAD is to go on; NIL if none of others' does."
+  "Return in words whose debugger asks for a restart of THREAD; NIL if no foreign one does."
   (let ((inquiry (find thread *inquiries* :key #'inquiry-thread)))
     (and inquiry (words-for-asker (inquiry-hook inquiry)))))
 
 (defun end-inquiries (gone-p)
-  "Let those threads in which GONE-P, called there, is true know that who was asked has gone."
+  "Notify the threads in which GONE-P, called there, is true that their debugger has gone."
   (dolist (inquiry *inquiries*)
     (interrupt-thread (inquiry-thread inquiry)
                       (lambda ()
@@ -208,19 +209,19 @@ thread that has broken, before it is asked there how that goes on.")
     (with-lock (*inquiries-lock*) (setf *inquiries* (remove inquiry *inquiries*)))))
 
 (defun call-as-debugger (function)
-  "Call FUNCTION, a debugger, in which what goes wrong in what is typed there comes up."
+  "Call FUNCTION, a debugger. Errors in what is typed there belong to it."
   (handler-bind (((or error storage-condition) #'debug-inside))
     (funcall function)))
 
 (defun debug-inside (condition)
-  "Let the debugger that is under way here look into CONDITION, in what was typed there."
+  "Let the current debugger handle CONDITION, from what was typed there."
   (unless (typep condition 'time-limit)
     (call-as-debugger (lambda () (invoke-debugger condition)))))
 
-;; SWANK sets both of SBCL's hooks, and the function in the first leaves it to the other.
+;; SWANK sets both of SBCL's hooks, and the function in the first defers to the other.
 (defun enter-outer (condition hook)
-  "Let the debugger of HOOK, or if that asks nobody the one of *DEBUGGER-HOOK*, or Lisp's own where
-there is no hook, ask how to go on after CONDITION. Return if nobody is asked."
+  "Let the debugger of HOOK, or if that asks nobody the one of *DEBUGGER-HOOK*, or without hooks
+Lisp's own, ask for a restart of CONDITION. Return if nobody is asked."
   (call-as-debugger (lambda ()
                       (when hook (funcall hook condition hook))
                       (cond (*debugger-hook*
@@ -229,7 +230,7 @@ there is no hook, ask how to go on after CONDITION. Return if nobody is asked."
                             ((null hook) (invoke-debugger condition))))))
 
 (defun go-on-unasked (condition)
-  "Go on after CONDITION as most likely it should, as nobody is left who could say how, and warn."
+  "Choose the most likely restart of CONDITION, because nobody is left to ask, and warn."
   (let ((name (if (typep condition 'serious-condition) 'abort 'continue)))
     (warning-set "The debugger that asked how something that had broken goes on has gone; "
                  (string-downcase name)
@@ -238,8 +239,8 @@ there is no hook, ask how to go on after CONDITION. Return if nobody is asked."
     (abort condition)))
 
 (defun inquire (condition hook)
-  "Let the debugger of HOOK, which is somebody else's, ask how to go on after CONDITION; and when it
-has gone without an answer, somebody else. Return if they do."
+  "Let the debugger of HOOK, a foreign one, ask for a restart of CONDITION; if it goes away without
+an answer, another one. Return if that one continues."
   (let ((inquiry (make-inquiry (current-thread) hook)))
     (catch inquiry
       (call-noting-inquiry inquiry
@@ -252,7 +253,7 @@ has gone without an answer, somebody else. Return if they do."
 
 (defun call-answering-debugger (function answer)
   "Call FUNCTION and return its values. If it enters a debugger, call ANSWER with the condition, and
-whether somebody is there to talk to the debugger. If nobody is, it is not to return."
+whether an interactive debugger is available. If none is, ANSWER must not return."
   (declare (type function function answer))
   (let ((hook (debugger-hook))
         (foreign (foreign-hook)))

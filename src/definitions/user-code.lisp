@@ -1,4 +1,4 @@
-;;;; user-code.lisp -- calling users' functions, and on whose behalf: the run goes on.
+;;;; user-code.lisp -- calling users' functions safely; recording who asks for a command.
 
 (in-package :ars-magna.definitions)
 
@@ -8,17 +8,17 @@
           *spoilt-by-leaving-p* brief-text text-of-origin recurring-code recurring-remedy
           report-user-error))
 
-;;; Who drives a robot from several sides wants to know whose command is under way. So whoever
-;;; calls on others' behalf binds *ASKER*: CALL-USER-CODE to what it calls, plans to the task at
-;;; work, the prompt to itself; and what is asked for keeps a note of it.
+;;; Several parties may drive a robot, so users want to know whose command is in progress. Code that
+;;; acts for others binds *ASKER*: CALL-USER-CODE to what it calls, plans to the current task, the
+;;; prompt to itself. Requests keep a note of it.
 
 (defvar *asker* nil
-  "Who asks for what is asked for here: an origin as CALL-USER-CODE takes it, or what has a method
-of ASKER-NOTE; NIL for a program of its own, or somebody at a REPL.")
+  "Who makes requests here: an origin as for CALL-USER-CODE, or an object with a method of
+ASKER-NOTE; NIL for a program or a REPL.")
 
 (defgeneric asker-note (asker)
-  (:documentation "Return what is to be kept of ASKER: a string, or a list of items as OUT prints
-them. It does not change, whatever becomes of ASKER.")
+  (:documentation "Return what to record of ASKER: a string, or a list of items as OUT prints them.
+It must not change when ASKER does.")
   (:method (asker) (princ-to-string asker))
   (:method ((asker string)) asker)
   (:method ((asker cons)) (mapcar (lambda (item) (if (atom item) (asker-note item) item)) asker))
@@ -26,46 +26,45 @@ them. It does not change, whatever becomes of ASKER.")
   (:method ((asker null)) (list "Lisp (" (thread-name (current-thread)) ")")))
 
 (defgeneric asker-forked-p (asker)
-  (:documentation "True if ASKER goes on in forks of the run too, such as a plan, and so is told of
-the ends of its commands there.")
+  (:documentation "True if ASKER continues in forks of the run, as a plan does, and so receives the
+ends of its commands there.")
   (:method (asker) (declare (ignore asker)) nil))
 
 (defvar *goes-on-in-forks-p* nil
-  "True where something acts that goes on in forks of the run too, whoever the asker is.")
+  "True while something acts that continues in forks of the run, whoever the asker is.")
 
 (defun goes-on-in-forks-p ()
-  "True if what is asked for here and now is asked for in forks of the run as well, by themselves."
+  "True if forks of the run repeat by themselves what is requested here."
   (or *goes-on-in-forks-p* (asker-forked-p *asker*)))
 
 (defun note-of-asker ()
-  "Return a note of who asks here and now."
+  "Return a note of the current asker."
   (asker-note *asker*))
 
 (defun note-text (note)
-  "Return NOTE, as NOTE-OF-ASKER returns it, as a string."
+  "Return NOTE, of NOTE-OF-ASKER, as a string."
   (with-output-to-string (stream) (write-items (ensure-list note) stream)))
 
 ;;;; Calls
 
-;;; Continuations, kickers, tests and whatever else users give to the simulator is called here. A
-;;; call may end in four ways besides returning. It may signal an error, or be aborted: then it has
-;;; ended, and a message says so. It may be left, as by THROW or because its thread is to end; then
-;;; its callers are left too, and see to it that the tick is finished first (IN-ANY-CASE). And it
-;;; may not end at all: who watches is told where the thread is (USER-CALLS) and can have the call
-;;; aborted from outside (ABORT-USER-CODE).
+;;; Continuations, kickers, tests and other functions of users are called here. A call can end in
+;;; four ways besides returning. It may signal an error or be aborted: then it is over, and a
+;;; message says so. It may exit non-locally, as by THROW or because its thread must end: its
+;;; callers exit too, and finish the tick first (IN-ANY-CASE). Or it may never end: a watcher sees
+;;; where the thread is (USER-CALLS) and can abort the call from outside (ABORT-USER-CODE).
 
 (addition *break-on-user-error*)
 (defvar *break-on-user-error* nil
-  "When true, an error in user code (a continuation, kicker, manipulation, test or graphics
-body) enters the debugger where it happens, if somebody is there to answer it: at a terminal, or in
-an editor. Its restarts are: report it and leave that code, try it again, and stop the simulator if
-that runs live; they name whose code it is. When NIL, the default, or without a terminal, the error
-is queued as an error message that names its origin, and the run goes on.")
+  "When true, an error in user code (a continuation, kicker, manipulation, test or graphics body)
+enters the debugger where it happens, if an interactive one is available: at a terminal or in an
+editor. Its restarts, which name the code, are: report the error and leave that code, try it again,
+and, live, stop the simulator. When NIL, the default, or without a terminal, the error is queued as
+an error message that names its origin, and the run goes on.")
 
-;;; What users' code a thread is in.
+;;; The users' code that a thread is in.
 
 (define-record (user-calls (:constructor make-user-calls (&optional stop)))
-  "What users' code a thread calls. STOP is a function that ends what the thread does."
+  "The users' code that a thread calls. STOP is a function that ends the thread's work."
   (origin nil t "whose code the thread is in, an item or a list of items, or NIL" :writable :export)
   (count 0 fixnum "how many calls of users' code the thread has begun" :writable :export)
   (waiting-p nil t "the last of them waits for an answer in a debugger" :writable :export)
@@ -74,11 +73,10 @@ file, or NIL if it loads none. Can be set" :writable :export)
   (stop nil (or null function) "a function that ends what the thread does, or NIL"))
 
 (defvar *user-calls* nil
-  "The USER-CALLS of this thread, or NIL if nobody watches them.")
+  "The USER-CALLS of this thread, or NIL if it is not watched.")
 
 (defun call-as-users-code (function origin)
-  "Call FUNCTION, of which ORIGIN says whose code it is, so that whoever watches sees that. It can
-be interrupted."
+  "Call FUNCTION, users' code that ORIGIN names, visibly to a watcher. It can be interrupted."
   (declare (type function function))
   (let ((calls *user-calls*))
     (if calls
@@ -95,11 +93,11 @@ be interrupted."
   (form-calling 'call-as-users-code body origin))
 
 (defun note-waiting ()
-  "Let whoever watches know that users' code waits for an answer in a debugger."
+  "Record for the watcher that users' code waits for an answer in a debugger."
   (when *user-calls* (setf (user-calls-waiting-p *user-calls*) t)))
 
 (defun abort-user-code (count)
-  "Abort the users' code that this thread is in, if that is still the call numbered COUNT."
+  "Abort this thread's users' code, if that is still the call numbered COUNT."
   (let ((calls *user-calls*))
     (when (and calls (user-calls-origin calls) (= count (user-calls-count calls)))
       (abort))))
@@ -118,8 +116,8 @@ be interrupted."
   "Functions that are called with the text of each error in users' code that is reported.")
 
 (defun report-user-error (condition origin)
-  "Queue an error message, and call the hooks, as CONDITION came up in ORIGIN, an item or list of
-items. A program that goes on asking when its run is over is no trouble."
+  "Queue an error message, and call the hooks, for CONDITION in ORIGIN, an item or list of items. A
+program that makes requests of a finished run is not reported."
   (let ((text (format nil "Error in ~A: ~A" (text-of-origin origin) (brief-text condition)))
         (stuff (list* "Error in " (append (ensure-list origin)
                                           (list ": " (brief-text condition))))))
@@ -129,49 +127,47 @@ items. A program that goes on asking when its run is over is no trouble."
         (apply #'trouble-set condition text stuff))))
 
 (defun report-break (condition origin)
-  "Queue a message that CONDITION, which is no error, came up in ORIGIN."
+  "Queue a message that CONDITION, which is no error, was signalled in ORIGIN."
   (apply #'message-set "Break in "
          (append (ensure-list origin) (list ": " (brief-text condition)))))
 
-;;; Code that runs by itself, as a kicker does, may fail again and again.
+;;; Code that runs by itself, such as a kicker, may fail again and again.
 
 (defgeneric recurring-code (item)
-  (:documentation "Return the user's function that runs again and again without being asked for, if
-that is where trouble came up, by ITEM of the message about it; else NIL.")
+  (:documentation "Return the user's function that runs repeatedly by itself, if that is the source
+of trouble, from ITEM of its message; else NIL.")
   (:method (item)
     (declare (ignore item))
     nil))
 
 (defgeneric recurring-remedy (item)
-  (:documentation "Return in words, as a sentence, how trouble in the RECURRING-CODE of ITEM can be
-ended."))
+  (:documentation "Return a sentence that says how to end trouble in the RECURRING-CODE of ITEM."))
 
 ;;; Calling.
 
 (document-restarts
  'abort "Report the error as a message and leave your code, or end the plan or the trial that it is
 part of. The run goes on."
- 'retry "Do again what went wrong: after you have mended your code, it goes on as if nothing had
-happened."
- 'continue "Go on as if nothing had been wrong."
+ 'retry "Do again what failed, after you have corrected your code, as if nothing had happened."
+ 'continue "Continue as if nothing had been wrong."
  'stop-simulator "Report the error, leave your code and stop the live simulator.")
 
 (define-constant +leave+ "Report it and leave " :test #'string=
-  :documentation "How what the restart ABORT of a call of users' code says begins.")
+  :documentation "The beginning of the report of the restart ABORT of a call of users' code.")
 
 (defun stoppable-p (condition)
-  "True if what this thread does can be stopped, whatever CONDITION has come up."
+  "True if the work of this thread can be stopped, whatever CONDITION was signalled."
   (declare (ignore condition))
   (and *user-calls* (user-calls-stop *user-calls*) t))
 
 (defvar *spoilt-by-leaving-p* (constantly nil)
-  "A function that is true where what is under way, such as a plan, would end if it were left: so
-who has called it cannot try it again.")
+  "A function that is true where leaving the code would end the work in progress, such as a plan.
+The caller cannot retry it then.")
 
 (defun call-offering (function origin go-on again &aux (around *spoilt-by-leaving-p*))
-  "Call FUNCTION, whose code ORIGIN says, with restarts: ABORT, which calls GO-ON; RETRY, which
-calls AGAIN, unless that would spoil what is under way in it; and if this thread can be stopped
-STOP-SIMULATOR."
+  "Call FUNCTION, users' code that ORIGIN names, with restarts: ABORT, which calls GO-ON; RETRY,
+which calls AGAIN, unless leaving the code would end the work in progress; and STOP-SIMULATOR, if
+the work of this thread can be stopped."
   (declare (type function function go-on again))
   (flet ((retriable-p (condition)
            (declare (ignore condition))
@@ -202,7 +198,7 @@ STOP-SIMULATOR."
        (starts-with-subseq +leave+ (princ-to-string restart))))
 
 (defun continue-inside (condition)
-  "Continue after CONDITION, if what offers that has been called by users' code, not around it."
+  "Continue after CONDITION, if its CONTINUE restart was established within users' code."
   (let ((restart (find-if (lambda (restart)
                             (or (our-abort-p restart) (eq 'continue (restart-name restart))))
                           (compute-restarts condition))))
@@ -210,15 +206,15 @@ STOP-SIMULATOR."
       (invoke-restart restart))))
 
 (defun call-user-code (function origin &rest arguments)
-  "Call FUNCTION with ARGUMENTS and return its values. Should it signal an error or be aborted,
-queue an error message saying that it came from ORIGIN (an item or list of items) and return NIL."
+  "Call FUNCTION with ARGUMENTS and return its values. If it signals an error or is aborted, queue
+an error message that it came from ORIGIN (an item or list of items) and return NIL."
   (declare (dynamic-extent arguments))
   (prog (trouble (queue *message-queue*))
    again
      (setf trouble nil)
      (block call
        (flet ((go-on ()
-                ;; What was called may have gone on into another run, with a queue of its own.
+                ;; The callee may have continued in another run, with a queue of its own.
                 (let ((*message-queue* queue))
                   (cond ((null trouble)
                          (apply #'error-set (append (ensure-list origin) '(" was aborted"))))
@@ -248,7 +244,7 @@ queue an error message saying that it came from ORIGIN (an item or list of items
                      (with-users-dice
                        (let ((*asker* origin))
                          (apply function arguments)))))))))))
-     ;; There is room to say so only now.
+     ;; Only now is there room to report it.
      (when (typep trouble 'storage-condition)
        (regain-room trouble)
        (report-user-error trouble origin))))
