@@ -103,9 +103,10 @@ frame is in that. (:child-ended form...): what is done when CHILD has ended as H
        ,@(mapcar #'third functions)
        ',name)))
 
-;;; A construct has four sides. Users meet a macro: its lambda list, documentation, and the error if
-;;; it is written outside of plans. The compiler makes a node of it. A task runs the node step by
-;;; step, in states that have names. And signals pass it. See rpl/README.md for how to add one.
+;;; A construct has four parts: for users a macro, with its lambda list, documentation and the error
+;;; outside of plans; for the compiler, how to make a node; for tasks, the steps of the node in
+;;; named states; and what the node does when a signal passes. For an example see
+;;; rpl/language/README.md.
 
 ;;; All constructs.
 
