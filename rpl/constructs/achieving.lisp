@@ -76,11 +76,11 @@ what it says. Return what a step returns."
         (values frame otherwise))))
 
 (define-construct achieve (goal)
-  "Do in a plan what makes the robot believe GOAL, a list such as `(on ,a ,b), which is evaluated.
-If it is believed already, by the DEF-GOAL of BELIEF that matches, nothing is done, and the value is
-that of the belief. Otherwise what the DEF-GOAL of ACHIEVE says is done; its value is returned. If
-there is none, fails with UNKNOWN-GOAL; if GOAL is not believed afterwards, with GOAL-NOT-ACHIEVED.
-Where no BELIEF matches, the end of the plan is success. (CRAM's and XFRM's.)"
+  "Make the robot believe GOAL, in a plan. GOAL is evaluated, such as `(on ,a ,b).
+If the matching DEF-GOAL of BELIEF says that GOAL is believed already, return that value and do
+nothing. Otherwise run the matching DEF-GOAL of ACHIEVE and return its value. Fails with
+UNKNOWN-GOAL if there is none, and with GOAL-NOT-ACHIEVED if GOAL is not believed afterwards. If no
+BELIEF matches, the end of the plan counts as success. (CRAM's and XFRM's.)"
   (:arguments goal)
   (:parts (goal function (value-lambda goal scope)))
   (:steps
@@ -102,11 +102,11 @@ Where no BELIEF matches, the end of the plan is success. (CRAM's and XFRM's.)"
         (fail-goal 'goal-not-achieved task frame)))))
 
 (define-construct perceive (goal)
-  "Find out in a plan whether GOAL, a list such as `(on ,a ,b), which is evaluated, holds, by the
-DEF-GOAL of PERCEIVE that matches, which should leave the world as it was. Return whether it is then
-believed, by the DEF-GOAL of BELIEF that matches; where there is none, what was perceived. Fails
-with UNKNOWN-GOAL if there is none of PERCEIVE, and as its plan fails. (CRAM's and XFRM's; what it
-returns is ours.)"
+  "Find out whether GOAL holds, in a plan, by the matching DEF-GOAL of PERCEIVE. That should not
+change the world. GOAL is evaluated, such as `(on ,a ,b). Return whether GOAL is believed
+afterwards, by the matching DEF-GOAL of BELIEF; if there is none, what was perceived. Fails with
+UNKNOWN-GOAL if no PERCEIVE matches, and as its plan fails. (CRAM's and XFRM's; the return value is
+ours.)"
   (:like achieve)
   (:steps
    (begin
@@ -119,9 +119,9 @@ returns is ours.)"
    (checked (values (frame-up frame) value))))
 
 (define-construct belief (goal)
-  "Return in a plan whether the robot believes GOAL, a list such as `(on ,a ,b), which is evaluated:
-what the DEF-GOAL of BELIEF that matches returns, which should do nothing to the world. Fails with
-UNKNOWN-GOAL if there is none. (BELIEF of XFRM; the syntax is ours.)"
+  "Return whether the robot believes GOAL, in a plan: the value of the matching DEF-GOAL of BELIEF,
+which should not change the world. GOAL is evaluated, such as `(on ,a ,b). Fails with UNKNOWN-GOAL
+if none matches. (BELIEF of XFRM; the syntax is ours.)"
   (:like achieve)
   (:steps
    (begin
@@ -143,8 +143,8 @@ UNKNOWN-GOAL if there is none. (BELIEF of XFRM; the syntax is ours.)"
 
 (addition goals-under-way)
 (defun goals-under-way (&optional (task (current-task)))
-  "Return the goals that TASK, by default the one that asks, is at work for, each a list such
-as (achieve (on a b)), innermost first: what it does is done for the first, and that for the next.
-Those of the tasks that it is part of come last. (Ours.)"
+  "Return the goals that TASK (default: the calling task) works for, innermost first: a list of
+lists such as (achieve (on a b)). Each serves the next. Goals of the tasks around TASK come last.
+(Ours.)"
   (mapcar #'pursuit-form
           (remove-if-not #'pursuit-p (mapcar #'frame-data (and task (frames-around task))))))

@@ -43,13 +43,13 @@ a fluent: the stays under way."
 (define-condition location-lost (plan-failure)
   ((place :initarg :place :initform nil :reader lost-place)
    (attempts :initarg :attempts :initform 0 :reader lost-attempts))
-  (:documentation "AT-LOCATION lost its place more often than it was to go there again."))
+  (:documentation "AT-LOCATION lost its place more often than :ATTEMPTS allows."))
 
 (addition lost-place lost-attempts)
 (setf (documentation 'lost-place 'function)
       "Return the place that was lost."
       (documentation 'lost-attempts 'function)
-      "Return how often it was gone to anew.")
+      "Return how often the plan went there again.")
 
 (defmethod write-failure ((failure location-lost) stream)
   (format stream "Not to be kept at ~A: it was gone to anew ~D time~:P"
@@ -89,14 +89,15 @@ a fluent: the stays under way."
             (go ,again))))))
 
 (define-construct at-location ((place &key there go attempts) &body body)
-  "Run BODY in a plan at PLACE and return its value, one. THERE and GO are forms: THERE says
-whether the robot is at the place, and is watched as by WAIT-UNTIL; GO, plan text, brings it
-there, and is not done if it is there already. When the place is lost, BODY evaporates, GO is done
-again and BODY starts anew, ATTEMPTS times at most, 10 if that is not given; then it fails with
-LOCATION-LOST, a failure that names PLACE. If GO does not lead there, that counts too; its
-failures are the plan's. Of several at once in the plans of a robot, one whose place fits does not
-drive; any other waits, in order of arrival, until nobody is at a place. (CRAM's; THERE and GO are
-ours, where CRAM asks its process modules.)"
+  "Run BODY at PLACE, in a plan. Return its value, only one.
+  THERE is a form that is true while the robot is at PLACE; it is watched as by WAIT-UNTIL.
+  GO is plan text that brings the robot there. It is skipped if the robot is there already.
+  ATTEMPTS is how often to go there again, by default 10.
+When the place is lost, BODY evaporates, GO runs again and BODY starts again. A GO that does not
+lead there counts as an attempt. After ATTEMPTS fails with LOCATION-LOST, which names PLACE; fails
+as GO fails. Several plans of one robot: those whose place fits run without driving; others wait, in
+order of arrival, until no plan is at a place. (CRAM's; THERE and GO are ours, where CRAM asks its
+process modules.)"
   (:code (progn
            (unless (and (given-p :there form) (given-p :go form))
              (reject-clause (author) form "(at-location (place :there test :go form) form...)"))

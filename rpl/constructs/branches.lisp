@@ -24,8 +24,8 @@
   +parked+)
 
 (define-construct par (&body branches)
-  "Run BRANCHES in a plan side by side. Succeed when all have, with the value of the last one, one
-as of every task; fail as soon as one fails, and evaporate the others (manual D.7)."
+  "Run BRANCHES in parallel, in a plan. Succeed when all have succeeded, with the value of the last
+one, only one value. Fail as soon as one fails, and evaporate the others (manual D.7)."
   (:manual)
   (:parts (branches simple-vector (branches-code branches (single-scope scope))))
   (:steps
@@ -42,8 +42,8 @@ as of every task; fail as soon as one fails, and evaporate the others (manual D.
      (complete-when-alone task memory))))
 
 (define-construct pursue (&body branches)
-  "Run BRANCHES in a plan side by side. Succeed as soon as one does, with its value; fail as soon as
-one fails. Evaporate the others (manual D.4; reading 185)."
+  "Run BRANCHES in parallel, in a plan, until one ends. Succeed with its value, or fail as it
+failed, and evaporate the others (manual D.4; reading 185)."
   (:manual)
   (:like par)
   (:child-ended
@@ -56,8 +56,8 @@ one fails. Evaporate the others (manual D.4; reading 185)."
   (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
 (define-construct try-all (&body branches)
-  "Run BRANCHES in a plan side by side. Succeed as soon as one does, with its value, and evaporate
-the others; if all fail, fail with a composite failure."
+  "Run BRANCHES in parallel, in a plan. Succeed as soon as one succeeds, with its value, and
+evaporate the others. If all fail, fail with a composite failure."
   (:like par)
   (:steps
    (begin
@@ -120,8 +120,8 @@ fail with a composite failure."
      (values t frame nil))))
 
 (define-construct try-one (&body attempts)
-  "Do as TRY-IN-ORDER, in an order that the plan runner chooses: at random if it was given dice,
-otherwise as written."
+  "Do as TRY-IN-ORDER, but in random order, by the dice of the plan runner; as written if it has
+none."
   (:like try-in-order)
   (:parts (attempts simple-vector (branches-code attempts scope))
           (order function '(function order-by-chance))))
@@ -157,8 +157,8 @@ return its value. If it never does, fail with a composite failure."
                                           tags 2))))
 
 (define-construct par-loop ((variable sequence) &body body)
-  "Run BODY in a plan for all elements of SEQUENCE side by side, each with its own VARIABLE, and its
-own tags; succeed and fail as PAR does."
+  "Run BODY in parallel for all elements of SEQUENCE, in a plan. Each has its own VARIABLE and tags.
+Succeed and fail as PAR does."
   (:arguments sequence)
   (:parts (items function (value-lambda sequence scope))
           (tags list `',(tags-in body))
@@ -218,10 +218,10 @@ and FAILURES so far, last first."
                                   task frame)))))
 
 (define-construct par-at-least (count &body branches)
-  "Run BRANCHES in a plan side by side. Succeed as soon as COUNT of them have, with the list of
-their values, the first first; fail as soon as too many have not, with a composite failure.
-Evaporate the others. COUNT is an integer from 0, which needs none, to the number of branches (ours;
-CRAM's statecharts of 2026 have a PAR with minimum_success)."
+  "Run BRANCHES in parallel, in a plan. Succeed as soon as COUNT of them have succeeded, with the
+list of their values in the order in which they came, and evaporate the others. Fail with a
+composite failure as soon as too many have failed. COUNT is an integer from 0 to the number of
+branches (ours; CRAM's statecharts of 2026 have a PAR with minimum_success)."
   (:arguments count)
   (:parts (needed function (value-lambda count scope))
           (branches simple-vector (branches-code branches (single-scope scope))))

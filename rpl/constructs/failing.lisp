@@ -88,10 +88,10 @@
                       (first command) code fluent fluent fluent))))
 
 (define-construct with-failure-handling (clauses &body body)
-  "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
-whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
-(or ...). The handler may wait. (return value) ends the whole with VALUE and (retry) runs BODY anew;
-at the handler's end the failure goes on. Return all values of BODY."
+  "Run BODY in a plan, and handle a failure by the first of CLAUSES, (type (variable) form...),
+with a matching type: T, a class given to FAIL, a condition type of failures or of Lisp, or (or
+type...). The handler may wait. (return value) in it ends the whole with VALUE, and (retry) runs
+BODY again. At the end of the handler the failure propagates. Return all values of BODY."
   (:parts (body node (scope-retry scope))
           (types list `',(mapcar #'first clauses))
           (handlers simple-vector `(vector ,@(loop for clause in clauses
@@ -161,7 +161,7 @@ at the handler's end the failure goes on. Return all values of BODY."
 
 (define-construct with-retry-counters (counters &body body)
   "Run BODY in a plan with COUNTERS, each (name number), for DO-RETRY, GET-COUNTER and
-RESET-COUNTER. A counter is a variable, too. (CRAM's, where it is none.)"
+RESET-COUNTER. A counter is a variable, too. (CRAM's; the variable is ours.)"
   (:in-lisp (progn
               (check-counters counters)
               `(let ,(loop for (name number) in counters
@@ -171,8 +171,7 @@ RESET-COUNTER. A counter is a variable, too. (CRAM's, where it is none.)"
                    ,@body)))))
 
 (define-construct do-retry (counter &body body)
-  "In a handler: run BODY, most likely (retry), if COUNTER is positive, and count it
-down. (CRAM's.)"
+  "In a handler: if COUNTER is positive, decrement it and run BODY, usually (retry). (CRAM's.)"
   (:in-lisp `(when (plusp ,counter)
                (decf ,counter)
                ,@body)))
@@ -231,9 +230,9 @@ down. (CRAM's.)"
       cleanup))
 
 (define-construct evap-protect (protected cleanup &key limit)
-  "Run PROTECTED, a form, in a plan, and CLEANUP however that ends: well, by failure, by evaporation
-or by being left. CLEANUP may wait; if LIMIT, a number of ticks, is given and over first, it is
-given up, with a warning. A failure of CLEANUP counts only if PROTECTED ended well. Return all
+  "Run PROTECTED, a form, in a plan, and then CLEANUP in every case: success, failure, evaporation
+or a RETURN that leaves PROTECTED. CLEANUP may wait. If it takes more than LIMIT ticks, it is
+abandoned, with a warning. A failure of CLEANUP counts only if PROTECTED succeeded. Return all
 values of PROTECTED."
   (:parts (protected node (plan-code protected scope))
           (cleanup node (plan-code (cleanup-form cleanup limit) (single-scope scope))))

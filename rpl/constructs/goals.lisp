@@ -166,8 +166,8 @@ pattern that differs only in its variables replaces the definition. Signals MALF
                          (list (goal-form definition operator pattern body environment))))))
 
 (define-construct succeed-with (&rest values)
-  "In the body of DEF-GOAL: end it well, with VALUES. (CRAM's SUCCEED, a name
-that commands have here.)"
+  "In the body of DEF-GOAL: end it successfully, with VALUES. (CRAM's SUCCEED, a name that commands
+have here.)"
   (:code (if (assoc 'succeed-with (scope-blocks scope))
              (plan-code (note-own-text `(return-from succeed-with (values ,@values))) scope)
              (reject-clause (author) form "succeed-with only in the body of a def-goal"))))

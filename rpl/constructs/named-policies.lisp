@@ -85,15 +85,15 @@ does not take these."
 
 (addition policy-get)
 (defmacro policy-get (&whole form name &environment environment)
-  "In a clause of a policy: return what was last kept under NAME, which is evaluated, since it came
-into force; NIL if nothing was. See POLICY-SETF (CRAM's)."
+  "In a clause of a policy: return the value last stored under NAME, which is evaluated, while the
+policy is in force; NIL if there is none. See POLICY-SETF (CRAM's)."
   (check-in-clause form environment)
   `(remembered ,+use-variable+ ,name))
 
 (addition policy-setf)
 (defmacro policy-setf (&whole form name value &environment environment)
-  "In a clause of a policy: keep VALUE under NAME, both evaluated, for the other clauses and as long
-as the policy is in force. Return VALUE (CRAM's)."
+  "In a clause of a policy: store VALUE under NAME, both evaluated, for the other clauses and as
+long as the policy is in force. Return VALUE (CRAM's)."
   (check-in-clause form environment)
   `(remember ,+use-variable+ ,name ,value))
 
@@ -144,15 +144,17 @@ an :INIT, which sees whether the arguments are right."
 (define-user-macro define-policy (&whole form name (&rest parameters) &body clauses
                                   &environment environment)
   "Define NAME, also a special variable, as a policy with PARAMETERS, an ordinary lambda list. The
-clauses, perhaps after a documentation string, are plan text: they may wait.
-  (:init form...)      comes first; if it returns false the policy fails with POLICY-INIT-FAILED;
-  (:check form...)     is what must not come true, watched as by WAIT-UNTIL, before each step of
-                       the body: a fluent or network is waited for, else it is tested at each tick;
-  (:recover form...)   is done if it does, when the body has evaporated; then the policy fails with
-                       POLICY-CHECK-CONDITION-MET;
-  (:clean-up form...)  comes last, however it ends, even within :INIT; not if that returned false.
-In them POLICY-GET and POLICY-SETF remember. See WITH-NAMED-POLICY. Signals MALFORMED-DEFINITION.
-Return NAME. (CRAM's, which polls.)"
+clauses, after an optional documentation string, are plan text: they may wait.
+  (:init form...)      runs first; if it returns false the policy fails with POLICY-INIT-FAILED.
+  (:check form...)     is the condition that must not become true. It is watched as by WAIT-UNTIL,
+                       before each step of the body: a fluent or network is waited for, anything
+                       else is tested at each tick.
+  (:recover form...)   runs when the check has become true and the body has evaporated; then the
+                       policy fails with POLICY-CHECK-CONDITION-MET.
+  (:clean-up form...)  runs last, in every case, even if :INIT fails; but not if :INIT returned
+                       false.
+The clauses share values by POLICY-GET and POLICY-SETF. See WITH-NAMED-POLICY. Return NAME. Signals
+MALFORMED-DEFINITION. (CRAM's, which polls.)"
   (let ((definition (title "define-policy" name))
         (text (and (stringp (first clauses)) (pop clauses))))
     (expand-definition
@@ -229,7 +231,7 @@ text as its policy.)"
 
 (define-construct with-policies (policies &body body)
   "Run BODY in a plan while POLICIES, each (policy (argument...)) as in WITH-NAMED-POLICY, are in
-force: the first comes into force first and takes precedence over those after it. (CRAM's.)"
+force. The first starts first and takes precedence over the others. (CRAM's.)"
   (:code (plan-code (note-expansion (policies-text policies body form) form) scope)))
 
 (define-construct with-named-policies (policies &body body)

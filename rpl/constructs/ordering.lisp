@@ -39,8 +39,8 @@
     (report-circle task)))
 
 (define-construct join-task (task)
-  "Wait in a plan until TASK is over, not at all if it is, and return its value; fail as it failed.
-Of a task that evaporated or was left, return NIL (CRAM's; the last is ours)."
+  "Wait in a plan until TASK is over. Return its value, or fail as it failed; return NIL if it
+evaporated or was left (CRAM's; the last is ours)."
   (:arguments task)
   (:parts (target function (value-lambda task scope)))
   (:steps
@@ -191,12 +191,13 @@ of that."
   (when memory (mapc #'lift-order (shiftf (cdr memory) '()))))
 
 (define-construct partial-order (steps &body constraints)
-  "Run STEPS in a plan side by side, as PAR, under CONSTRAINTS: by (:order a b) the task b does not
-start before a is over, however that ends. Both are tags, (:tag name form), of STEPS or in them or
-around, or forms whose values are tasks; a may also be a fluent: b starts when it is true or has
-been pulsed since. Orders hold until the whole ends. What has started already cannot be b. Circles
-of orders of the tags in STEPS are errors when the plan is defined; what comes to wait in other
-circles is told as a deadlock. Return the value of the last step (CRAM's; the value is ours)."
+  "Run STEPS in parallel, in a plan, as PAR does, under CONSTRAINTS. By (:order a b) the task b does
+not start before a is over, in whatever way it ends.
+  Both are tags, (:tag name form), of STEPS or in them or around, or forms whose values are tasks.
+  a may also be a fluent: b starts when it is true or has been pulsed since.
+Orders hold until the whole ends. A task that has started already cannot be b. Cycles of the tags in
+STEPS are errors when the plan is defined; other cycles are reported as a deadlock. Return the value
+of the last step (CRAM's; the value is ours)."
   (:parts (branches simple-vector (branches-code steps (single-scope scope)))
           (pairs function (orders-lambda steps constraints form scope)))
   (:code (with-tags-code form (tags-in steps) scope #'build))
@@ -222,6 +223,6 @@ circles is told as a deadlock. Return the value of the last step (CRAM's; the va
      (complete-when-alone task (car memory)))))
 
 (define-construct plan (steps &body constraints)
-  "Do as PARTIAL-ORDER; CONSTRAINTS may also be one list of them, and give reasons after the names
+  "Do as PARTIAL-ORDER. CONSTRAINTS may also be one list of them, with reasons after the names
 (BMT's)."
   (:like partial-order))

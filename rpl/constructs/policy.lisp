@@ -87,9 +87,9 @@ that never ends, and POLICY a list of steps, or it fails after a wait, as polici
                       endless-p policy endless-p))))
 
 (define-construct with-policy (policy &body body)
-  "Run BODY in a plan under POLICY, a form that runs beside it, starts before it and takes
-precedence over it. The end of BODY ends POLICY; if one of them fails, all fails. Return BODY's
-value, one as of every task (manual D.4; reading 186)."
+  "Run BODY in a plan while POLICY, a form, runs beside it. POLICY starts first and takes
+precedence. It evaporates when BODY ends. If either fails, the whole fails. Return BODY's value,
+only one (manual D.4; reading 186)."
   (:manual)
   (:parts (policy node (progn (doubt-policy policy form scope)
                              (doubt-order policy body form)

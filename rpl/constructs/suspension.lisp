@@ -14,9 +14,9 @@ WRONG-ARGUMENT and MISUSE."
   target)
 
 (define-construct with-task-blocked (task &body body)
-  "Run BODY in a plan while TASK, and what it consists of, does not run. What TASK waits for still
-counts; it goes on when BODY has ended, however that ended. An evaporating task is not kept. Its
-status is :blocked meanwhile (CRAM's, of 2009)."
+  "Run BODY in a plan while TASK and its parts are stopped. Fluents that TASK waits for still count
+for it. TASK goes on when BODY has ended in any way. An evaporating task is not stopped. The status
+of TASK is :blocked meanwhile (CRAM's, of 2009)."
   (:parts (target function (value-lambda task scope))
           (status keyword :blocked)
           (body node (body-code body scope)))
@@ -58,10 +58,10 @@ wrong in it becomes a message."
       (setf (task-frame task) innermost))))
 
 (define-construct on-suspension (reaction &body body)
-  "Run BODY in a plan. Each time that the task is kept from running while it does, by SUSPEND,
-WITH-TASK-BLOCKED or a valve that is taken from it, do REACTION first, at once: a form that cannot
-wait, such as a command that stops the robot. Return the value of BODY. Trouble in REACTION is an
-error message and changes nothing else (CRAM's; that REACTION cannot wait is ours)."
+  "Run BODY in a plan. Each time the task is stopped meanwhile, by SUSPEND, WITH-TASK-BLOCKED or the
+loss of a valve, run REACTION first, at once: a form that cannot wait, such as a command that stops
+the robot. An error in REACTION is a message and has no other effect. Return the value of BODY
+(CRAM's; that REACTION cannot wait is ours)."
   (:parts (reaction node (refuse-code reaction scope form))
           (body node (body-code body scope)))
   (:steps
@@ -79,8 +79,8 @@ error message and changes nothing else (CRAM's; that REACTION cannot wait is our
     (mapc #'evaporate (task-children task))))
 
 (define-construct retry-after-suspension (&body body)
-  "Run BODY in a plan as a task of its own. When it is kept from running, it evaporates, with its
-cleanups, and when it is so no longer it is run anew, from the start. Return its value (CRAM's)."
+  "Run BODY in a plan as a task of its own. When it is stopped, it evaporates, with its cleanups;
+when it may run again, it starts from the beginning. Return its value (CRAM's)."
   (:parts (body node (body-code body scope)))
   (:steps
    (begin
@@ -97,9 +97,9 @@ cleanups, and when it is so no longer it is run anew, from the start. Return its
          (t (complete task result)))))
 
 (define-construct without-scheduling (&body body)
-  "Run BODY in a plan as one step: nobody can suspend the task, end it, or run before it in between;
-what others want of it is heard at the end. BODY cannot wait, call plans or leave: that is an error
-when the plan is defined. Return its value. In ordinary Lisp, PROGN (CRAM's; that BODY cannot wait
+  "Run BODY in a plan as one step. Meanwhile nothing can suspend or end the task, and no other task
+runs; requests take effect at the end. BODY cannot wait, call plans or leave: that is an error when
+the plan is defined. Return its value. In ordinary Lisp this is PROGN (CRAM's; that BODY cannot wait
 is ours, as nothing else could run meanwhile)."
   (:waits :may)
   (:in-lisp `(progn ,@body))

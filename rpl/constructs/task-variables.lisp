@@ -34,9 +34,9 @@ it when a task sets it is ours)."
                      "bindings (name value) of variables defined by define-task-variable"))))
 
 (define-construct with-task-variables (bindings &body body)
-  "Run BODY in a plan with BINDINGS, each (name value), of task variables: they hold for the task
-that runs BODY and for what that starts, until BODY ends, however it ends. The values are had before
-any is bound. Return the value of BODY (ours, after CRAM's variables of tasks)."
+  "Run BODY in a plan with BINDINGS, each (name value), of task variables. They hold for the task
+that runs BODY and for the tasks it starts, until BODY ends in any way. All values are computed
+before any is bound. Return the value of BODY (ours, after CRAM's variables of tasks)."
   (:arguments &rest (mapcar #'second (checked-bindings bindings form scope)))
   (:parts (variables list `',(mapcar #'first bindings))
           (values-of function (value-lambda `(list ,@(mapcar #'second bindings)) scope))

@@ -26,10 +26,10 @@
   (and (runner-charged-p (task-runner task)) (plusp ticks)))
 
 (define-construct think (span &key unit alone)
-  "Think in a plan for SPAN, counted in ticks, or in seconds if UNIT is :seconds: where thinking is
-charged for, wait for as long; elsewhere go on at once. Parts of ticks are rounded up. What else
-the robot's plans do goes on meanwhile; if ALONE is true, all of them stand still, policies too, and
-hear later of what happens. Return NIL. Signals WRONG-ARGUMENT (ours; manual 1.2)."
+  "Think in a plan for SPAN ticks, or seconds if UNIT is :seconds. Where thinking is charged, wait
+that long; elsewhere return at once. Fractions of ticks are rounded up. Other tasks of the robot's
+plans go on meanwhile. If ALONE is true, all of them stop, policies too, and react afterwards.
+Return NIL. Signals WRONG-ARGUMENT (ours; manual 1.2)."
   (:command)
   (:arguments span alone)
   (:parts (span function (price-lambda 'think span unit form scope))
@@ -81,11 +81,11 @@ and what its body has come to: a RESULT, or a SIGNAL."
         (values (frame-up frame) (thought-result thought)))))
 
 (define-construct with-charge ((span &key unit alone) &body body)
-  "Run BODY in a plan, as a task of its own, as a thought that costs SPAN, in ticks, or in seconds
-if UNIT is :seconds, and return its value, one. Where thinking is charged for the steps of BODY do
-not count, and its value or failure comes SPAN after its beginning, or when there is one. ALONE is
-as for THINK, for the wait that follows BODY. Elsewhere BODY is all. If it evaporates, that is at
-once. Signals WRONG-ARGUMENT (ours; manual 1.2)."
+  "Run BODY in a plan, as a task of its own, at the price of SPAN ticks, or seconds if UNIT is
+:seconds. Return its value, only one. Where thinking is charged, the steps of BODY do not count,
+and its value or failure comes SPAN after its start, or when BODY ends if that is later. ALONE is
+as for THINK, for the wait after BODY. Elsewhere just run BODY. If the task evaporates, it does so
+at once. Signals WRONG-ARGUMENT (ours; manual 1.2)."
   (:arguments span alone)
   (:parts (span function (price-lambda 'with-charge span unit form scope))
           (alone function (value-lambda alone scope))

@@ -44,8 +44,8 @@
   (value-lambda `(ticks-of ,span (or ,unit :ticks) ',operator) scope))
 
 (define-construct wait-time (span &key unit)
-  "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is :seconds (manual D.4; reading
-90). SPAN is a number up to 1e15; with 0 or less, the plan does not wait."
+  "Wait in a plan for SPAN ticks, or seconds if UNIT is :seconds (manual D.4; reading 90). SPAN is a
+number up to 1e15. If it is 0 or less, do not wait."
   (:manual)
   (:arguments span)
   (:parts (span function (span-lambda 'wait-time span unit form scope)))
@@ -98,9 +98,9 @@
     timeout))
 
 (define-construct wait-for (fluent &key timeout)
-  "Wait in a plan until FLUENT, or a network such as (and a (not b)), is true; not at all if it is
-already. A pulse is enough. Return its value. After TIMEOUT ticks, if given, go on nevertheless and
-return NIL (manual C). TIMEOUT is a number up to 1e15."
+  "Wait in a plan until FLUENT, or a network such as (and a (not b)), is true or pulsed. If it is
+true already, do not wait. Return its value; or NIL after TIMEOUT ticks, if given (manual C).
+TIMEOUT is a number up to 1e15."
   (:manual)
   (:arguments fluent timeout)
   (:parts (fluent function (awaited-lambda fluent form scope))
@@ -178,11 +178,12 @@ SCOPE. Signals MALFORMED-DEFINITION."
         (t (reject-clause (author) condition "(fluent :missed :once) or (fluent :missed :all)"))))
 
 (define-construct whenever (fluent &body body)
-  "Run BODY in a plan whenever FLUENT, or a network, becomes true or is pulsed, and at once if it is
-true. A pulse of what a network is computed from is one of the network, if that is true then.
-Several such events while BODY runs count as one, as (FLUENT :missed :once) says too; with
-(FLUENT :missed :all) as the first argument, or a view with :ALWAYS as FLUENT, as many runs follow.
-Ends only by RETURN, failure or evaporation (manual D.4)."
+  "Run BODY in a plan each time FLUENT, or a network, becomes true or is pulsed, and at once if it
+is true. A pulse of a network's source pulses the network, if that is true then. Ends only by
+RETURN, failure or evaporation (manual D.4).
+Several events while BODY runs count as one; (FLUENT :missed :once) says the same. With
+(FLUENT :missed :all) as the first argument, or a view with :ALWAYS as FLUENT, BODY runs once for
+each event."
   (:manual)
   (:arguments (first (split-condition fluent scope)))
   (:parts (condition function (awaited-lambda (first (split-condition fluent scope)) form scope))
@@ -229,9 +230,9 @@ Ends only by RETURN, failure or evaporation (manual D.4)."
     (when advice (doubt-own-form form "wait-until: ~A" advice))))
 
 (define-construct wait-until (condition)
-  "Wait in a plan until the form CONDITION is true; return its value. If it gives a fluent or a
-network, as (< level 46) does of a fluent, that is waited for; anything else is tested anew at each
-tick. CONDITION may itself wait. (Ours: what policies and AT-LOCATION watch is watched so.)"
+  "Wait in a plan until the form CONDITION is true; return its value. If its value is a fluent or a
+network, as of (< level 46) for a fluent, wait for that; otherwise test CONDITION again at each
+tick. CONDITION may itself wait. (Ours: policies and AT-LOCATION watch their conditions this way.)"
   (:code (progn (doubt-polled condition form)
                 (plan-code (note-expansion (wait-until-text condition) form) scope))))
 
@@ -261,10 +262,10 @@ tick. CONDITION may itself wait. (Ours: what policies and AT-LOCATION watch is w
   (when memory (cancel-timer (cdr memory) (runner-timers (task-runner task)))))
 
 (define-construct with-deadline ((span &key unit) &body body)
-  "Run BODY in a plan as a task of its own and return its value, one; if it has not ended SPAN ticks
-after its start, or seconds if UNIT is :seconds, it evaporates, and then the whole fails with a
-DEADLINE-MISSED. Its cleanups may take longer. Time goes on while it is suspended. SPAN is a number
-up to 1e15; with 0 or less there is time for what takes none (ours; CRAM's is a timeout-policy)."
+  "Run BODY in a plan as a task of its own. Return its value, only one. If it has not ended SPAN
+ticks after its start, or seconds if UNIT is :seconds, it evaporates, and the whole fails with a
+DEADLINE-MISSED. Its cleanups may take longer. Time counts while it is suspended. SPAN is a number
+up to 1e15; with 0 or less BODY must not take any time (ours; CRAM's is a timeout-policy)."
   (:arguments span)
   (:parts (span function (span-lambda 'with-deadline span unit form scope))
           (body node (body-code body scope)))

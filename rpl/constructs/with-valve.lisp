@@ -40,14 +40,15 @@
   (value-lambda `(cons ,priority (list ,@valves)) scope))
 
 (define-construct with-valve ((valve &key priority) &body body)
-  "Run BODY in a plan while the task owns VALVE, waiting for it first if another task has it. A part
-of the owner can own VALVE as well, one part at a time. Who waits queues by PRIORITY, a number, 0 if
-not given; policies before others of the same. Who has a higher PRIORITY than the owner takes VALVE
-from it: the owner is suspended, with all that it consists of, until it is given back; so never two
-of them run who own one resource. What the owner does about it ON-SUSPENSION and
-RETRY-AFTER-SUSPENSION say. The cleanups of an owner that evaporates are not disturbed. The valve is
-given back however BODY ends. Return all values of BODY. If tasks wait for each other's valves, an
-error message says so (manual D; priorities ours)."
+  "Run BODY in a plan while the task owns VALVE, waiting for it first if another task owns it. VALVE
+is released however BODY ends. Return all values of BODY.
+  Waiting tasks queue by PRIORITY, a number, by default 0; of equals, policies come first.
+  A higher PRIORITY than the owner's takes VALVE: the owner is suspended, with its parts, until it
+gets VALVE back. So two tasks that own one resource never run together. ON-SUSPENSION and
+RETRY-AFTER-SUSPENSION define how the owner reacts. Cleanups of an evaporating owner are not
+disturbed.
+  A part of the owner can own VALVE as well, one part at a time.
+If tasks wait for each other's valves, an error message says so (manual D; priorities ours)."
   (:arguments valve priority)
   (:parts (request function (claim-form priority (list valve) scope))
           (body node (body-code body scope)))
@@ -75,9 +76,9 @@ error message says so (manual D; priorities ours)."
     (values (ldiff valves rest) (second rest))))
 
 (define-construct with-valves ((&rest valves) &body body)
-  "Run BODY in a plan while the task owns all of VALVES, which may end in :priority and a number.
-They are taken all at once when none is another's, and none before: so the order in which tasks want
-them does not matter. Else do as WITH-VALVE (ours)."
+  "Run BODY in a plan while the task owns all of VALVES; :priority and a number may follow them. It
+takes them together, when none belongs to another task. So the order in which tasks name them does
+not matter. Otherwise do as WITH-VALVE (ours)."
   (:like with-valve)
   (:arguments &rest valves)
   (:parts (request function (multiple-value-bind (valves priority) (split-valves valves)

@@ -56,12 +56,14 @@
 
 (addition fl-pulsed)
 (defun fl-pulsed (fluent &key (handle-missed-pulses :once))
-  "Return a fluent that is true if FLUENT was set to another value or pulsed since one has read what
-is returned last; to read it, or to be woken by it, uses that up. HANDLE-MISSED-PULSES is for what
-happened while nobody waited: :ONCE, true at one reading, whatever happened, also before the call;
-:ALWAYS, true at as many readings as things happened; :NEVER, as :ONCE, but for what happened before
-the call. A network is pulsed when what it is computed from is, whatever its value. Signals
-WRONG-ARGUMENT. (CRAM's; what a network's pulse is, is ours.)"
+  "Return a view: a fluent that is true if FLUENT was set to another value or pulsed since the view
+was last read. Reading it, or being woken by it, resets it. HANDLE-MISSED-PULSES says what counts
+of the events while nobody waited:
+  :ONCE: the next reading is true, however many events there were, even before this call;
+  :ALWAYS: as many readings are true as there were events;
+  :NEVER: as :ONCE, but events before this call are ignored.
+A network is pulsed when one of its sources is, whatever its value. Signals WRONG-ARGUMENT. (CRAM's;
+the pulse of a network is ours.)"
   (check-argument fl-pulsed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-pulsed handle-missed-pulses
                   (member handle-missed-pulses '(:once :never :always)) ":once, :never or :always")
@@ -81,9 +83,9 @@ WRONG-ARGUMENT. (CRAM's; what a network's pulse is, is ours.)"
 
 (addition fl-value-changed)
 (defun fl-value-changed (fluent &key (test #'eql) (key #'identity))
-  "Return a fluent that is true if KEY of the value of FLUENT is another, by TEST, than when one has
-read what is returned last, or than at the call; to read it, or to be woken by it, uses that up.
-Pulses alone are no change. Signals WRONG-ARGUMENT. (CRAM's.)"
+  "Return a view: a fluent that is true if KEY of the value of FLUENT differs, by TEST, from what
+it was when the view was last read or, at first, made. Reading it, or being woken by it, resets it.
+A pulse is no change. Signals WRONG-ARGUMENT. (CRAM's.)"
   (check-argument fl-value-changed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-value-changed test (function-given-p test) "a function of two values")
   (check-argument fl-value-changed key (function-given-p key) "a function of a value")

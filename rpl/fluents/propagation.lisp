@@ -207,10 +207,10 @@ says what has happened."
 
 (public set-value)
 (defun set-value (fluent value)
-  "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
-is in, hear of it if that changed something (EQL) and the outcome is true. FLUENT must not be a
-network, nor VALUE be FLUENT or a network of it. From outside of plans, in any thread, it is heard
-as soon as the plans at work have come to a pause (manual D.2)."
+  "Set FLUENT to VALUE and return VALUE. If the value changed (by EQL), tasks wake that wait for
+FLUENT or a network of it and find it true. FLUENT must not be a network, nor VALUE be FLUENT or a
+network of it. Any thread may call this; from outside of plans it takes effect when the running
+plans pause (manual D.2)."
   (check-settable 'set-value fluent)
   (check-no-circle 'set-value fluent value)
   (note-outside #'set-value fluent value)
@@ -252,9 +252,9 @@ as soon as the plans at work have come to a pause (manual D.2)."
 
 (public pulse)
 (defun pulse (fluent &optional (value t))
-  "Let FLUENT have VALUE for an instant, and then the value of before again. All who wait for it, or
-for a network that is true at that instant, will wake. Return VALUE. From outside of plans, in any
-thread, it is heard as soon as the plans at work have come to a pause (manual C)."
+  "Set FLUENT to VALUE for an instant, and then back. All tasks wake that wait for FLUENT, or for a
+network that is true at that instant. Return VALUE. Any thread may call this; from outside of plans
+it takes effect when the running plans pause (manual C)."
   (check-settable 'pulse fluent)
   (check-no-circle 'pulse fluent value)
   (note-outside #'pulse fluent value)

@@ -67,9 +67,8 @@ values."
 
 (addition *plan-depth-limit*)
 (defparameter *plan-depth-limit* 2000
-  "How deep calls of plans may be in each other, also across tasks, before the call fails with the
-class :TOO-DEEP, whose data name it: a number from 1. A plan that calls itself without end fails
-so (ours).")
+  "How deep calls of plans may be nested, also across tasks, before a call fails with class
+:TOO-DEEP: a number from 1. Stops endless recursion (ours).")
 
 (defun depth-around (task frame)
   "Return how deep the innermost call is that FRAME of TASK is part of, 0 if there is none."

@@ -70,8 +70,8 @@ the variables around it, but not blocks, tags and local plans. Run it by CALL-PL
 
 (addition make-plan)
 (defun make-plan (form &key compile)
-  "Return a plan procedure without parameters that does FORM, plan text made by a program. Its Lisp
-code is interpreted, which costs little now and more when it runs, or compiled if COMPILE is true."
+  "Return a plan procedure without parameters that runs FORM, plan text made by a program. Its Lisp
+code is interpreted, which makes this fast and the plan slow; or compiled if COMPILE is true."
   (evaluate-form `(interp-lambda () ,form) :compile compile))
 
 ;;; Macros.

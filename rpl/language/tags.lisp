@@ -98,16 +98,16 @@ tags."
       (funcall coder scope)))
 
 (define-construct with-tags (&body body)
-  "Run BODY in a plan with the name of each (:tag name form) in it bound to the task that runs
-that form, and returns one value of it: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A
-procedure's body is a WITH-TAGS too."
+  "Run BODY in a plan, with the name of each (:tag name form) in it bound to the task that runs that
+form. (:tag name form) returns one value. See TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. The body
+of a procedure is a WITH-TAGS too."
   (:code (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope)))))
 
 (addition task-status)
 (defun task-status (task)
-  "Return a fluent that is :created, :running, :blocked, :suspended, :succeeded, :failed or
-:evaporated, as TASK is. It is :blocked by WITH-TASK-BLOCKED, :suspended by SUSPEND, by
-WITH-TASK-SUSPENDED and by the loss of a valve (CRAM's words of 2009 and of 2020)."
+  "Return a fluent with the status of TASK: :created, :running, :blocked (by WITH-TASK-BLOCKED),
+:suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a valve), :succeeded, :failed or
+:evaporated (CRAM's words of 2009 and of 2020)."
   (check-argument task-status task (task-p task) "a task, as begin-plan returns")
   (or (task-status-fluent task)
       (setf (task-status-fluent task)
@@ -191,10 +191,10 @@ WITH-TASK-SUSPENDED and by the loss of a valve (CRAM's words of 2009 and of 2020
 
 (addition task-code)
 (defun task-code (path)
-  "Return the plan text that the tasks at PATH, a list of a plan or its name and a tag in it, run
-from their next start on, and true if it replaces what is written there. If the tag stands in others
-of the plan, they may come before it; of places within each other the outermost is meant. Signals
-UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if there is not just one such place. (Ours.)"
+  "Return the plan text that tasks at PATH run from their next start on, and true if it replaces the
+original. PATH is a list of a plan or its name and a tag in it. Tags around that tag may come before
+it; of nested places the outermost is meant. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE unless
+there is exactly one such place. (Ours.)"
   (let ((node (find-tagged 'task-code path)))
     (if (tagged-replaced node)
         (values (first (tagged-replaced node)) t)
@@ -202,11 +202,11 @@ UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if there is not just one such place. (O
 
 (addition replace-task-code)
 (defun replace-task-code (path form &key compile)
-  "Let the tasks at PATH, see TASK-CODE, run FORM, plan text, from their next start on; those under
-way go on as they are. FORM sees the variables that are visible at the tag, but not the blocks, tags
-and local plans there. Its Lisp code is interpreted, as by MAKE-PLAN; compiled if COMPILE is true.
-A definition of the plan anew forgets FORM. Return FORM. Signals as TASK-CODE does, and
-MALFORMED-DEFINITION. (CRAM's, which takes a function.)"
+  "Let tasks at PATH, see TASK-CODE, run FORM, plan text, from their next start on. Running tasks
+are not affected. FORM can use the variables visible at the tag, but not the blocks, tags and local
+plans there. Its Lisp code is interpreted, as by MAKE-PLAN; compiled if COMPILE is true. Redefining
+the plan discards FORM. Return FORM. Signals as TASK-CODE does, and MALFORMED-DEFINITION. (CRAM's,
+which takes a function.)"
   (let* ((node (find-tagged 'replace-task-code path))
          (body (call-blaming-form
                 (lambda ()
@@ -221,8 +221,8 @@ MALFORMED-DEFINITION. (CRAM's, which takes a function.)"
 
 (addition restore-task-code)
 (defun restore-task-code (path)
-  "Let the tasks at PATH, see TASK-CODE, run what is written there from their next start on. Return
-it. (Ours.)"
+  "Restore the original code of tasks at PATH, see TASK-CODE, from their next start on. Return it.
+(Ours.)"
   (let ((node (find-tagged 'restore-task-code path)))
     (when (tagged-replaced node)
       (setf (tagged-body node) (second (tagged-replaced node))

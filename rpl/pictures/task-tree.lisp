@@ -142,10 +142,10 @@ where it ends, in pixels."
 (addition save-plan-tree)
 (define-with-keywords save-plan-tree
     (file &key runner (most 300))
-  "Save a picture of the tasks of the plans under way in FILE, replacing it: SVG or, where the
-program rsvg-convert is installed, PNG, as its name ends. Each task stands below the one that it is
-part of, with a mark for how it is, what it is at, and what it waits for. RUNNER is the plan runner,
-by default the one in use. At most MOST tasks are drawn, the others counted. Return the file's
+  "Save a picture of the running tasks in FILE, replacing it: SVG or, where the program
+rsvg-convert is installed, PNG, by the ending of its name. Each task stands below the task around
+it, with a mark for its state, its expression, and what it waits for. RUNNER is the plan runner, by
+default the one in use. At most MOST tasks are drawn, the others counted. Return the file's
 truename. Signals WRONG-ARGUMENT, and MISUSE where no plans have run."
   (check-argument save-plan-tree most (whole-p most 1 1000000) "an integer from 1 to 1000000")
   (let ((kind (picture-kind 'save-plan-tree file))

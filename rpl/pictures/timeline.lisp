@@ -232,15 +232,17 @@ Return where it ends, in pixels."
 (addition save-plan-timeline)
 (define-with-keywords save-plan-timeline
     (file &key runner (most 1000) (in-color t) title (scale 1))
-  "Save a picture of the plans that have run in FILE, replacing it: SVG or, where the program
-rsvg-convert is installed, PNG, as its name ends. Each task is a bar over ticks, below the one that
-it is part of, with what it waited for, the commands that it issued while these were under way, and
-how it ended; turns of a loop share a row. RUNNER is the plan runner, by default the one in use,
-which must have kept a trace: see *TRACE-PLANS*. At most MOST rows are drawn. IN-COLOR is false for
-a picture in black and white. TITLE, a string, stands above instead of the ticks. SCALE, from 1 to
-10, is how many times as large as usual the whole is, text and all. On a page of a paper, 174 mm
-wide, pictures are readable that are 820 pixels wide or less; that much 70 ticks are, about. Return
-the file's truename. Signals WRONG-ARGUMENT and MISUSE."
+  "Save a timeline of the plans that have run in FILE, replacing it: SVG or, where the program
+rsvg-convert is installed, PNG, by the ending of its name. Each task is a bar over ticks, below the
+task around it, with its waits, its commands while they were in progress, and its end. Turns of a
+loop share a row. Return the file's truename. Signals WRONG-ARGUMENT and MISUSE.
+  RUNNER: the plan runner, by default the one in use. It must have kept a trace: see *TRACE-PLANS*.
+  MOST: how many rows are drawn at most.
+  IN-COLOR: false for black and white.
+  TITLE: a string above the picture, instead of the ticks.
+  SCALE: from 1 to 10, the size of everything, text included.
+On a page of a paper, 174 mm wide, a picture of up to 820 pixels is readable. That is some 70
+ticks."
   (check-argument save-plan-timeline title (typep title '(or null string)) "a string or NIL")
   (check-argument save-plan-timeline scale (and (finite-p scale) (<= 1 scale 10))
                   "a number from 1 to 10, how many times as large as usual the picture is")

@@ -13,10 +13,9 @@
 
 (addition with-rollout)
 (define-user-macro with-rollout ((rollout &key print) &body body)
-  "Run BODY where ROLLOUT, of a projection, has ended: it is run again, just as it went, from the
-moment in which it began, and BODY finds itself in that run, as in WITH-FORK, with its robots,
-things and messages. What plans write before that is lost unless PRINT is true. Return the values of
-BODY. Signals WRONG-ARGUMENT."
+  "Repeat ROLLOUT, of a projection, from its start, and run BODY at its end, inside that run, as in
+WITH-FORK, with its robots, things and messages. What plans write before that is dropped unless
+PRINT is true. Return the values of BODY. Signals WRONG-ARGUMENT."
   `(call-with-rollout (lambda () ,@body) ,rollout :print ,print))
 
 ;;;; As a bundle of ways over the map
@@ -42,11 +41,11 @@ BODY. Signals WRONG-ARGUMENT."
 (addition save-projection-picture)
 (define-with-keywords save-projection-picture
     (projection file &rest options &key part title layers in-color scale)
-  "Save in FILE, replacing it, a map with the ways that robots went in the rollouts of PROJECTION:
-in colours that say what became of each, with a marker where it ended. PART (left top right bottom),
-in cells, is what is wanted of the map, by default all. TITLE stands above instead of what was
-projected. FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
-Signals WRONG-ARGUMENT, and MISUSE without the program that PNG needs."
+  "Save in FILE, replacing it, a map with the ways that robots went in the rollouts of PROJECTION.
+Colours show how each rollout ended, and markers where. PART (left top right bottom), in cells,
+selects a part of the map, by default all. TITLE replaces the plan in the title. FILE and the other
+arguments are those of SAVE-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE
+without the program that PNG needs."
   (declare (ignore part title layers in-color scale))
   (check-argument save-projection-picture projection
                   (and (projection-p projection) (projection-rollouts projection) t)

@@ -68,26 +68,26 @@ believed in, which does not know it."
     question))
 
 (define-construct project (plan &key arguments trials horizon seed cost world print)
-  "Return a projection: what may become of PLAN, found out by TRIALS rollouts, 20 if not given. Each
-is a fork of the run, with a seed of its own, in which PLAN goes on until it has ended, or HORIZON
-ticks have passed, 600 if not given. PLAN is a plan procedure or the name of one, which is given the
-list ARGUMENTS; a list of both; or a task, of which it is found out what is left. See
-PROJECTION-PROBABILITY and others.
-  SEED, an integer, decides the seeds; by default the run's does, and the tick.
-  COST, a function without arguments, is called in each fork at the end and returns a number,
-or positive infinity, which is worse than any.
-  WORLD, a function, makes worlds that rollouts are run in instead of forks, such as the one that
-the robot believes in. It is called with a function and a seed, and is to call that function inside
-of (with-simulation (robot :seed seed) ...). Robots, fluents and parameters are those of that world
-there; what global variables hold of the true run can be read, but not changed or commanded. PLAN
-has a name then, and ARGUMENTS are no objects of a run.
-  PRINT, if true, lets plans write in rollouts as ever; otherwise that is lost.
-In a plan, it waits until all plans rest, and goes on in the same tick; PLAN begins as if called
-there. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins on top, as by
-BEGIN-PLAN. The run itself takes no notice: its dice are not rolled, and messages and traces of
-rollouts are dropped. In rollouts, PROJECT returns a projection without rollouts. Errors in rollouts
-are failures of these; of those in COST or WORLD one message tells. Fails with a CANNOT-FORK if the
-run cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
+  "Return a projection of PLAN: how it ends in TRIALS rollouts, by default 20. A rollout is a fork
+of the run with a seed of its own, in which PLAN runs until it has ended or HORIZON ticks have
+passed, by default 600. See PROJECTION-PROBABILITY and others.
+  PLAN is a plan procedure or its name, which gets the list ARGUMENTS; a list of both; or a task,
+whose remaining part is projected.
+  SEED, an integer, determines the seeds; by default the run's seed and the tick do.
+  COST, a function without arguments, is called in each fork at its end and returns a number, or
+positive infinity, which is worse than any.
+  WORLD, a function, makes other worlds for rollouts than forks, such as the one the robot believes
+in. It is called with a function and a seed, and must call that function inside of (with-simulation
+(robot :seed seed) ...). Robots, fluents and parameters are those of that world. Objects of the true
+run in global variables can be read, but not changed or commanded. PLAN must have a name, and
+ARGUMENTS no objects of a run.
+  PRINT, if true, shows what plans write in rollouts.
+In a plan, this waits until all plans rest, and goes on in the same tick; PLAN begins as if called
+there. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins as by BEGIN-PLAN.
+The run itself is not affected: its dice are not rolled, and messages and traces of rollouts are
+dropped. In rollouts, PROJECT returns a projection without rollouts. Errors in rollouts are failures
+of these; errors in COST or WORLD are reported by one message. Fails with CANNOT-FORK if the run
+cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
   (:arguments plan arguments trials horizon seed cost world print)
   (:parts (request function
                    (progn
@@ -144,8 +144,8 @@ run cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
 
 (addition project-plan)
 (defun project-plan (plan &key arguments trials horizon seed cost world print)
-  "Return what may become of PLAN: what PROJECT is, for Lisp code outside of plans. Signals
-UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
+  "Return a projection of PLAN: PROJECT for Lisp code outside of plans. Signals UNKNOWN-NAME,
+WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
   (let* ((interface (if world nil (interface-to-ask plan)))
          (question (make-question nil interface plan arguments
                                   (list :trials trials :horizon horizon :seed seed :cost cost
@@ -164,19 +164,19 @@ UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
                          :branches (mapcar #'whole-form-text forms) :options options))))
 
 (define-construct try-best ((&key trials horizon until cost seed tell print) &body branches)
-  "Run in a plan that one of BRANCHES which does best in rollouts, and return its values: each
-branch is tried in TRIALS forks of the run, 20 if not given, until the whole plan has ended, or
-HORIZON ticks have passed, 600 if not given. The best is the branch with which the plan succeeds
-most often; of these, the one that takes the fewest ticks on average where it succeeds; of these,
-the first. Trials of the same number have the same chance in all branches.
-  UNTIL :branch looks only at the branch: until that has ended.
-  COST, a function without arguments, is called in each fork at the end and returns a number, of
+  "Run the best of BRANCHES, in a plan, and return its values. Each branch is tried first in TRIALS
+forks of the run, by default 20, until the whole plan has ended or HORIZON ticks have passed, by
+default 600. The best is the branch with which the plan succeeds most often; of equals the one that
+takes the fewest ticks on average where it succeeds; of equals the first. Trials of the same number
+have the same random events in all branches.
+  UNTIL :branch ends a rollout when the branch has ended.
+  COST, a function without arguments, is called in each fork at its end. It returns a number, of
 which less is better, or positive infinity, the worst; it decides instead of ticks.
-  SEED, an integer, decides the seeds of rollouts; by default the run's does, and the tick.
+  SEED, an integer, determines the seeds of rollouts; by default the run's seed and the tick do.
   TELL, a function, is called with the list of projections and the index of the chosen branch.
-  PRINT, if true, lets plans write in rollouts as ever; otherwise that is lost.
-In a rollout a branch is chosen by chance: there are no rollouts in rollouts. The task goes on in
-the same tick; nothing else of its run depends on how it has chosen. Fails with a CANNOT-FORK if the
+  PRINT, if true, shows what plans write in rollouts.
+In a rollout a branch is chosen at random: there are no rollouts in rollouts. The task goes on in
+the same tick; nothing else of its run depends on how it has chosen. Fails with CANNOT-FORK if the
 run cannot be forked (ours)."
   (:arguments trials horizon until cost seed tell print)
   (:parts (request function

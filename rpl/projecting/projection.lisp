@@ -39,8 +39,8 @@ without waiting" :addition)
 
 (addition rollout-value)
 (defun rollout-value (rollout)
-  "Return what was returned in ROLLOUT if it succeeded, or NIL. It may be an object of a run that is
-over."
+  "Return the value of the plan in ROLLOUT if it succeeded, or NIL. It may be an object of a run
+that is over."
   (and (rollout-succeeded-p rollout) (rollout-result rollout)))
 
 (addition rollout-failure)
@@ -102,15 +102,15 @@ there are none, as of a PROJECT inside of a rollout."
 
 (addition projection-interval)
 (defun projection-interval (projection &key (confidence .95d0))
-  "Return the bounds, low and high, for the probability that what PROJECTION is about succeeds, by
-WILSON-INTERVAL. Signals WRONG-ARGUMENT unless CONFIDENCE is between 0 and 1."
+  "Return the bounds, low and high, of the success probability of PROJECTION, by WILSON-INTERVAL.
+Signals WRONG-ARGUMENT unless CONFIDENCE is between 0 and 1."
   (wilson-interval (projection-successes projection) (trials-of projection)
                    :confidence confidence))
 
 (addition projection-failures)
 (defun projection-failures (projection)
-  "Return a list (reason . count), the most frequent first, of why rollouts of PROJECTION did not
-succeed: the class of a failure or its condition type, or else the rollout's state."
+  "Return conses (reason . count), the most frequent first: why rollouts of PROJECTION did not
+succeed. A reason is the class of a failure or its condition type, or else the rollout's state."
   (let ((counts '()))
     (dolist (rollout (projection-rollouts projection))
       (unless (rollout-succeeded-p rollout)
@@ -125,8 +125,7 @@ succeed: the class of a failure or its condition type, or else the rollout's sta
 
 (addition projection-mean-ticks)
 (defun projection-mean-ticks (projection)
-  "Return how many ticks the rollouts of PROJECTION that succeeded took on average, a rational; NIL
-if none did."
+  "Return the mean ticks of the rollouts of PROJECTION that succeeded, a rational; NIL if none did."
   (average (mapcar #'rollout-ticks
                    (remove-if-not #'rollout-succeeded-p (projection-rollouts projection)))))
 

@@ -77,8 +77,8 @@ waited for that; see COMMANDS-IN-TICK."
 ;;;; Commands without end
 
 (defparameter *plan-command-limit* 500
-  "How many commands a plan may give its robot before time passes for it. To give one more fails
-with class :TOO-MANY-COMMANDS. Commands that clean up do not count.")
+  "How many commands a plan may issue to its robot before time passes for it. Issuing one more fails
+with class :TOO-MANY-COMMANDS. Commands of cleanups do not count.")
 
 (defun commands-in-tick (runner task)
   "Return a cons of TASK, a top-level task of RUNNER, and how many commands it has given in this

@@ -17,8 +17,8 @@
 
 (addition *trace-plans*)
 (defparameter *trace-plans* nil
-  "When true, the plans' runner keeps a trace from RPL-INIT-ROBOT on, or from the start of the next
-plan: of all that happens to tasks and fluents, some 50 octets for each. See PLAN-TRACE, WHY and
+  "When true, all that happens to tasks and fluents is kept in a trace, some 50 octets for each
+event, from RPL-INIT-ROBOT or the start of the next plan on. See PLAN-TRACE, WHY and
 SAVE-PLAN-TIMELINE.")
 
 (define-kind (interface :constructor (make-interface (robot simulation eras commanded)))
@@ -257,9 +257,9 @@ work ends. Signals MISUSE if there is none."
 
 (addition rpl-robot-valve)
 (defun rpl-robot-valve ()
-  "Return the valve of the robot that plans drive. Nobody needs it to drive the robot; plans that
-may run beside others, and parts of one plan, own it while they do: (with-valve ((rpl-robot-valve))
-...). The shipped errands do. Signals MISUSE without a robot."
+  "Return the valve of the robot that plans drive. It is voluntary: plans that may run beside
+others, and branches of a plan, own it while they drive, (with-valve ((rpl-robot-valve)) ...), as
+the shipped plans do. Signals MISUSE without a robot."
   (interface-valve (the-interface)))
 
 (addition rpl-runner)

@@ -77,7 +77,7 @@ called with that before anything else can happen."
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. Headless
-it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
+it runs as ticks pass; live in a thread of its own. Signals UNKNOWN-NAME."
   (let ((interface (ensure-interface)))
     (prog1 (begin-in interface plan arguments #'identity)
       (tell-if-begun-for-later plan interface))))
@@ -192,17 +192,20 @@ but somebody outside can let plans go on, say so, once."
 
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
-  "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT; else
-on the only one of the current simulation, or at the prompt on the one that it commands, also if it
-commands that since RPL-INIT-ROBOT. Return what
-it returns, or the failure with which it failed, and how it ended: :succeeded, :failed, :evaporated,
-:deadlock (headless; it waits for what can never come; live somebody may still bring that about, and
-there is a warning), :limit (*PLAN-LIMIT* ticks have passed, headless) or :stopped (the simulator
-was stopped or started anew, the robot defined anew, or the run rewound by another thread). Whether
-it succeeded the second value says: a failure is true, and the value of a good plan may be NIL.
-Failures, deadlocks and limits are reported. A plan that is not over when RUN-PLAN returns or is
-left, as by an abort, ends, but one of a run that was rewound goes on in the run that takes its
-place. Signals UNKNOWN-NAME and MISUSE, also if the run is over before it begins."
+  "Run PLAN, a plan procedure or its name, with ARGUMENTS. Return its value, or its failure, and
+how it ended. Test the second value: a failure is true, and the value of a successful plan may be
+NIL.
+  :succeeded, :failed, :evaporated: as the task.
+  :deadlock: headless; it waits for what can never happen. Live there is only a warning, since
+somebody may still make it happen.
+  :limit: headless; *PLAN-LIMIT* ticks have passed.
+  :stopped: the simulator was stopped or restarted, the robot was redefined, or another thread
+rewound the run.
+The robot is that of RPL-INIT-ROBOT; without that the only one of the current simulation, or at the
+prompt the one commanded there, even if that has changed since RPL-INIT-ROBOT. Failures, deadlocks
+and limits are reported. A plan that is not over when RUN-PLAN returns or is left, as by an abort,
+is ended; but one of a rewound run continues in the run that replaces it. Signals UNKNOWN-NAME, and
+MISUSE, also if the run is over before it begins."
   (let ((interface (ensure-interface)))
     (check-outside interface)
     (let ((task nil) (state nil))
@@ -279,12 +282,11 @@ a fork of it, or in the one that goes on since it was rewound."
 
 (addition end-plan)
 (defun end-plan (task)
-  "Let the plan TASK, or all plans if it is :ALL, evaporate. Commands of theirs that are under way
-are interrupted, but for what they asked for to clean up. Lisp code of a live plan that keeps the
-plans' thread is aborted. A TASK can be ended anywhere; one of a simulation that we are not in hears
-of it when that goes on. One that is over stays as it is. Returns nothing. Signals WRONG-ARGUMENT,
-and MISUSE if there is no robot whose plans :ALL could be, or the run of TASK was rewound to a tick
-before that began."
+  "End the plan TASK, or all plans if it is :ALL. Their commands in progress are interrupted, except
+those of cleanups. Lisp code of a live plan that keeps the plans' thread is aborted. Any thread may
+end a TASK; one of another simulation ends when that goes on. A TASK that is over stays as it is.
+Returns nothing. Signals WRONG-ARGUMENT; and MISUSE if there is no robot for :ALL, or if the run of
+TASK was rewound to before its start."
   (check-argument end-plan task (or (eq task :all) (task-p task))
                   "a task, as begin-plan returns, or :ALL")
   (if (eq task :all)

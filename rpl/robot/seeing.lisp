@@ -42,8 +42,8 @@
 
 (addition print-plans)
 (defun print-plans (&optional (stream *standard-output*) all)
-  "Print the plans under way to STREAM, each as a tree of tasks: what each does and waits for. If
-ALL is true, also the whole stack of each, its variables, and the valves: see PRINT-TASKS."
+  "Print the running plans to STREAM, each as a tree of tasks: what each does and waits for. If ALL
+is true, also print stacks, variables and valves: see PRINT-TASKS."
   (if (usable-p *interface*)
       (call-with-plans-in-use (lambda (runner) (print-tasks runner stream all)))
       (format stream "No plans.~%")))

@@ -99,12 +99,11 @@ as one of them says so itself."
 
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)
-  "Let plans drive ROBOT, a robot or its name, or a fluent whose value is one, from now on: make the
-fluents anew, for the parts that it has. Plans under way end; what they do to clean up goes on only
-as far as it takes no time. Return the robot. To be called before anything else of the interface
-(manual C); RUN-PLAN does it for the robot of a simulation that has only one, and at the prompt for
-the robot that this commands. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than
-the current one."
+  "Let plans drive ROBOT, a robot or its name, or a fluent whose value is one, from now on. Create
+its fluents anew, one for each of its parts. Return the robot (manual C). Running plans end; of
+their cleanups only what takes no time is done. Call it before anything else of the interface;
+RUN-PLAN does so for the only robot of a simulation, and at the prompt for the robot commanded
+there. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than the current one."
   (let* ((named (fluent-value robot))
          (robot (if (robot-p named) named (find-robot named)))
          (before *interface*))

@@ -10,8 +10,8 @@
 
 (addition task-stack)
 (defun task-stack (task)
-  "Return the expressions that TASK is at, as lists, innermost first: only its own, not those of the
-tasks that it is part of. Each call of a plan has one of its own. () when it is over."
+  "Return the expressions that TASK is at, as lists, innermost first: a new one for each call of a
+plan. Those of tasks around it are left out. () when TASK is over."
   (check-argument task-stack task (task-p task) "a task, as begin-plan returns")
   (note-task-seen task)
   (forms-under-way (task-frame task)))
@@ -88,8 +88,8 @@ list (name value), with the outermost expression that sees it."
 
 (addition task-variables)
 (defun task-variables (task)
-  "Return the variables of the plan that TASK sees where it is, as a list of lists (name value),
-innermost first, but for those that others of the same name hide. () when it is over."
+  "Return the variables of the plan that are visible where TASK is: a list of lists (name value),
+innermost first, without shadowed ones. () when TASK is over."
   (check-argument task-variables task (task-p task) "a task, as begin-plan returns")
   (note-task-seen task)
   (and (task-frame task) (frame-variables (task-frame task))))

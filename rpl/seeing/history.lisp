@@ -46,10 +46,10 @@
 
 (addition trace-of)
 (defun trace-of (which &key event form runner)
-  "Return a list of the trace entries of WHICH and of the tasks that it consisted of, in order.
-WHICH is a task, also one that is over, or its number, or NIL for all. EVENT, if given, is an event
-or a list of some, FORM the name of an operator: then only entries of these events, and at calls of
-that. The RUNNER is that of the task, or the one in use. Signals MISUSE if no trace was kept."
+  "Return a list of the trace entries of WHICH and its parts, in order. WHICH is a task, perhaps
+over, its number, or NIL for all. With EVENT, an event or a list of them, return only entries of
+these events; with FORM, the name of an operator, only those at calls of it. RUNNER is by default
+that of the task, or the one in use. Signals MISUSE if no trace was kept."
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (let ((member-p (if number (family number trace) (constantly t))))
       (loop for entry across trace
@@ -67,8 +67,8 @@ that. The RUNNER is that of the task, or the one in use. Signals MISUSE if no tr
 
 (addition task-failures)
 (defun task-failures (which &key runner)
-  "Return a list of the failures that happened in WHICH and its parts, also those that were
-handled, in order. See TRACE-OF."
+  "Return a list of the failures that happened in WHICH and its parts, in order, including those
+that were handled. See TRACE-OF."
   (mapcar #'trace-entry-subject (trace-of which :event :failure :runner runner)))
 
 (defun answer-to (issue trace)
@@ -78,11 +78,14 @@ handled, in order. See TRACE-OF."
 
 (addition task-commands)
 (defun task-commands (which &key runner)
-  "Return a list of the commands that WHICH and its parts have issued, in order. Each is a property
-list: :tick, :command (name and arguments), :task (the number of the one that issued it), :for (the
-expressions of the plan that were under way, innermost first, the tasks around it included),
-:answered (the tick of the last answer, NIL if there was none) and :error (its code). See
-TRACE-OF."
+  "Return a list of the commands that WHICH and its parts have issued, in order. See TRACE-OF. Each
+is a property list:
+  :tick      when it was issued
+  :command   its name and arguments
+  :task      the number of the task that issued it
+  :for       the plan's expressions in progress, innermost first, those of tasks around it included
+  :answered  the tick of the last answer; NIL if there was none
+  :error     its error code"
   (let ((trace (trace-to-read which runner)))
     (loop for entry in (trace-of which :event :command :runner runner)
           for issue = (trace-entry-subject entry)
@@ -96,8 +99,8 @@ TRACE-OF."
 
 (addition task-ancestry)
 (defun task-ancestry (task &key runner)
-  "Return a list of TASK, a task or its number, and those that it is part of, up to the plan
-itself: for each a list of its number, its name or NIL, and its expression. See TRACE-OF."
+  "Return a list for TASK, a task or its number, and the tasks around it, up to the plan itself.
+Each element is a list of number, name or NIL, and expression. See TRACE-OF."
   (multiple-value-bind (trace number) (trace-to-read task runner)
     (loop for start in (ancestry number trace)
           collect (list (trace-entry-task start) (trace-entry-subject start)

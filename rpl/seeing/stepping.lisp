@@ -46,9 +46,9 @@ step."))
 
 (addition *break-on-plan-failures*)
 (defvar *break-on-plan-failures* nil
-  "T, a class of failures as HANDLE-FAILURE takes it, or a list of such: a failure of that class
-enters the debugger where it happens, also if the plan handles it. NIL: none does. Where nobody is
-there to answer, it is a message.")
+  "Which failures enter the debugger where they happen, even if the plan handles them: T for all, a
+class of failures as HANDLE-FAILURE takes it, a list of classes, or NIL for none. Without an
+interactive debugger they are messages.")
 
 (defun break-wanted-p (failure)
   (let ((types *break-on-plan-failures*))
@@ -71,7 +71,7 @@ there to answer, it is a message.")
 
 (addition *step-plans*)
 (defvar *step-plans* nil
-  "When true, plans that are started are gone through expression by expression: see STEP-TASK.")
+  "When true, plans that are started stop before each expression: see STEP-TASK.")
 
 (defstruct (course (:constructor make-course (task)) (:copier nil))
   "How somebody goes through TASK. MODE is :run, :step (stop before any expression) or :over: run
@@ -170,9 +170,9 @@ this task."
 
 (addition step-task)
 (defun step-task (task &optional (on t))
-  "From now on, stop before each expression of TASK and of the tasks that it consists of; no longer
-if ON is NIL. Stopping enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far
-to go on. Where nobody is there to answer, it is a message, and the task goes on. Returns nothing."
+  "Stop from now on before each expression of TASK and its parts; no longer if ON is NIL. A stop
+enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far to run. Without an
+interactive debugger it is a message, and the task goes on. Returns nothing."
   (check-argument step-task task (task-p task) "a task, as begin-plan returns")
   (let* ((runner (task-runner task))
          (others (remove task (courses-of runner) :key #'course-task)))

@@ -54,10 +54,10 @@ variable; or NIL."
 
 (addition print-tasks)
 (defun print-tasks (&optional which (stream *standard-output*) all)
-  "Write to STREAM the tree of tasks of WHICH, a task or a plan runner (all its tasks; NIL: the one
-in use): number, state, expression, what each waits for and since which tick. If ALL is true, also
-the whole stack of each, innermost expression first, with the variables of the plan and their
-values; and the valves that they have or want."
+  "Write to STREAM the tree of tasks of WHICH: a task, a plan runner for all its tasks, or NIL for
+the plan runner in use. Each line has number, state, expression, what the task waits for and since
+which tick. If ALL is true, write stacks, innermost expression first, with the plan's variables and
+their values, and the valves that tasks have or want."
   (check-argument print-tasks which (typep which '(or null task plan-runner))
                   "a task, as begin-plan returns, or a plan runner")
   (let ((which (or which (runner-to-see))))

@@ -211,14 +211,14 @@ not NIL, has the tasks that are meant.")
 ;; Who may leave the first argument out, and give the others by name, needs a list to take apart.
 (addition why)
 (defun why (&rest arguments)
-  "Write in sentences, to :STREAM (*STANDARD-OUTPUT*), why something is as it is. Return nothing.
-\(why) and (why ROBOT), or the name or a part of one, tell of the command that failed or was
-interrupted last: what was asked for, when and by whom, which error code came of it, what that means
-and what to try.
-\(why TASK), or the number of one, tells from the trace what brought a task of a plan, over or not,
-where it is: what happened to it, the last first, which fluent woke it and who had set that, and how
-it and those that it is part of were started; :RUNNER says whose, of several. Signals MISUSE if no
-trace was kept: see *TRACE-PLANS*; UNKNOWN-NAME and WRONG-ARGUMENT."
+  "Write to :STREAM (default *STANDARD-OUTPUT*), in sentences, why something is as it is. Return
+nothing.
+  \(why), (why ROBOT), or its name or a part of it: which command failed or was interrupted last,
+what was asked for, when and by whom, its error code, what that means and what to try.
+  \(why TASK), or its number: how a task of a plan, perhaps over, got where it is. Events come
+newest first: which fluent woke it and which task set that, and how it and the tasks around it were
+started. :RUNNER names the plan runner if there are several. Needs a trace: see *TRACE-PLANS*.
+Signals MISUSE if no trace was kept; UNKNOWN-NAME and WRONG-ARGUMENT."
   (multiple-value-bind (subject options)
       (if (keywordp (first arguments))
           (values nil arguments)

@@ -145,11 +145,12 @@ that reacts again. Return TASK."
 
 (addition suspend)
 (defun suspend (task)
-  "Keep TASK, and what it consists of, from running until WAKE-UP, and return it. What it waits for
-still counts. A second SUSPEND changes nothing. A task that suspends itself, or what it is part of,
-stops after the step that it is at. One that has not started will wait when it is, one that
-evaporates is not kept, and a suspended part does not keep the whole from ending. From a REPL or
-another thread it is heard before the plans react again (CRAM's)."
+  "Stop TASK and its parts until WAKE-UP, and return TASK. Fluents that TASK waits for still count
+for it. A second SUSPEND changes nothing (CRAM's).
+  A task that suspends itself, or a task around it, stops after its current step. One that has not
+started will stop when it does. An evaporating task is not stopped. A suspended part does not keep
+the whole from ending.
+  From a REPL or another thread this takes effect before the plans react again."
   (check-argument suspend task (task-p task) "a task, such as the name of a :tag")
   (let ((task (task-meant task)))
     (say-in-plans #'suspend task
@@ -160,8 +161,8 @@ another thread it is heard before the plans react again (CRAM's)."
 
 (addition wake-up)
 (defun wake-up (task)
-  "Let TASK, if SUSPEND keeps it, run again, and return it; WITH-TASK-BLOCKED and the like are not
-undone. From anywhere, as SUSPEND (CRAM's)."
+  "Undo SUSPEND of TASK, and return TASK; does not undo WITH-TASK-BLOCKED and the like. From
+anywhere, as SUSPEND (CRAM's)."
   (check-argument wake-up task (task-p task) "a task, such as the name of a :tag")
   (let ((task (task-meant task)))
     (say-in-plans #'wake-up task

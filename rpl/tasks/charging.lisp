@@ -84,10 +84,10 @@ under way has ended."
 
 (addition charge-ticks)
 (defun charge-ticks (ticks &optional (runner *runner*))
-  "In Lisp code of a plan that has just found out what it costs: where thinking is charged for, let
-all plans of the robot stand still for TICKS, 0 or more, once the step under way has ended. Commands
-go on, and what happens meanwhile is heard after that. Elsewhere do nothing. Returns nothing.
-Signals WRONG-ARGUMENT."
+  "Stop all plans of the robot for TICKS, 0 or more, once the current step has ended; for Lisp code
+of a plan that learns its cost as it runs. Commands go on; the plans react afterwards to what
+happened meanwhile. Does nothing where thinking is not charged. Returns nothing. Signals
+WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
   (note-from-outside #'charge-ticks runner ticks)
   (when (and runner (runner-charged-p runner) (plusp ticks))
@@ -108,10 +108,10 @@ Signals WRONG-ARGUMENT."
 
 (addition charge-steps)
 (defun charge-steps (steps &optional (runner *runner*))
-  "In Lisp code of a plan that has just found out what it costs: where the steps of plans have a
-budget, let STEPS, a whole number, count as if the plans of the robot had taken them. What is more
-than is left of this tick's budget takes the next ones. Elsewhere, as in a WITH-CHARGE, whose price
-is all, do nothing. Returns nothing. Signals WRONG-ARGUMENT."
+  "Count STEPS, a whole number, as if the plans of the robot had taken them; for Lisp code of a plan
+that learns its cost as it runs. What exceeds this tick's budget uses that of the next ticks. Does
+nothing where the steps of plans have no budget, and in a WITH-CHARGE, which has a fixed price.
+Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
   (note-from-outside #'charge-steps runner steps)
   (when runner (count-steps steps runner (running-task runner)))

@@ -149,10 +149,9 @@ none does and TASK has ended, +PARKED+."
 
 (addition evaporate)
 (defun evaporate (task)
-  "End TASK, because it is no longer needed, with all that it consists of, newest first. What it
-has protected by EVAP-PROTECT is done first and may take time. A task that has not started, is over
-or evaporates already is left alone. From outside of its plan it is heard before that goes on.
-Signals WRONG-ARGUMENT."
+  "End TASK and its parts, the newest first. Cleanups of EVAP-PROTECT run first and may take time.
+Does nothing if TASK has not started, is over or evaporates already. From outside of its plan it
+takes effect before that goes on. Signals WRONG-ARGUMENT."
   (check-argument evaporate task (task-p task) "a task, as begin-plan returns")
   (let ((task (task-meant task)))
     (cond ((beyond-evaporating-p task))

@@ -17,16 +17,19 @@
                            (tick 0) client (busy-p (constantly nil)) (on-post #'list)
                            (attended-p (constantly nil))
                            (on-end #'report-end))
-  "Return what runs plans, at TICK. TRACE says whether to keep a trace. BUDGET is how many steps a
-reaction may take before time passes (NIL: as many as it needs). If CHARGED is true, thoughts that
-say what they cost take ticks, and all reactions of a tick share its BUDGET. CLOCK, a function that
-returns seconds, or NIL while nobody cares, serves to warn of Lisp code that runs for more than SLOW
-seconds. DICE choose for
-TRY-ONE.
-BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
-after each post, in the posting thread; ATTENDED-P says whether a thread will hear that anyway.
-ON-END is called with each top-level task that ends; by default it reports failures. CLIENT, any
-object, is on whose behalf it does all this."
+  "Return a plan runner, whose time is TICK.
+  TRACE: true to keep a trace.
+  BUDGET: how many steps a reaction may take before time passes; NIL: as many as it needs.
+  CHARGED: if true, thoughts with a stated cost take ticks, and all reactions of a tick share
+BUDGET.
+  CLOCK: a function that returns seconds, or NIL while nobody cares; with it there are warnings of
+Lisp code that runs for more than SLOW seconds.
+  DICE: what TRY-ONE chooses by.
+  BUSY-P: a function that says whether others, such as a command in progress, may still post.
+  ON-POST: a function called after each post, in the posting thread.
+  ATTENDED-P: a function that says whether a thread applies posts anyway.
+  ON-END: a function called with each top-level task that ends; by default it reports failures.
+  CLIENT: any object, for which the runner works."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
   (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget
@@ -273,12 +276,11 @@ number, or until nothing goes on; the rest is given up, with a warning for each 
 
 (addition run-plan-alone)
 (defun run-plan-alone (plan &key arguments (runner (make-plan-runner)) limit)
-  "Run PLAN, a plan procedure or the name of one, with the list ARGUMENTS by RUNNER in virtual time:
-when no task is ready the next tick at which one wakes comes at once. Return the plan's value, its
-failure if it failed, and as a second value :succeeded, :failed, :evaporated, :deadlock (reported as
-an error message) or :limit (tick LIMIT came first). A plan that is not over then, or when this is
-left, as by an abort, ends: it cleans up, as far as that can be by tick LIMIT. Signals
-WRONG-ARGUMENT."
+  "Run PLAN, a plan procedure or its name, with the list ARGUMENTS by RUNNER in virtual time: time
+jumps to the next tick at which a task wakes. Return the plan's value, or its failure, and as a
+second value :succeeded, :failed, :evaporated, :deadlock (reported as an error message) or :limit
+(tick LIMIT came first). A plan that is not over then, or when this is left, as by an abort, is
+ended; its cleanups run until tick LIMIT at most. Signals WRONG-ARGUMENT."
   (check-argument run-plan-alone arguments (proper-list-p arguments) "a list of arguments")
   (check-argument run-plan-alone limit (or (null limit) (quantity-p limit))
                   "a tick, a number up to 1e15, or NIL")

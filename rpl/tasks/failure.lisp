@@ -22,8 +22,8 @@
    (passed-on-by :initform nil :accessor failure-passed-on-by)
    (expressions :initform '() :accessor failure-plan-backtrace))
   (:report (lambda (failure stream) (write-string (report-of failure) stream)))
-  (:documentation "A plan could not do what it is for. Conditions of a user's own may inherit from
-this; (fail :class name ...) makes one of them, or a plain one of class NAME."))
+  (:documentation "A failure of a plan. Your own conditions may inherit from it; (fail :class name
+...) makes one of them, or a plain one of class NAME."))
 
 (addition composite-failure)
 (define-condition composite-failure (plan-failure)
@@ -103,9 +103,9 @@ type if that signals an error."
 
 (public fail)
 (defun fail (&rest arguments)
-  "Let the task fail. ARGUMENTS are nothing; or :class, a name or a condition class inheriting from
-PLAN-FAILURE, and a property list of data or initargs, with or without the word :class; or a
-condition (manual D.2). The failure spreads to the nearest construct that can absorb it."
+  "Make the task fail. ARGUMENTS are nothing; a condition; or a class and a property list of data or
+initargs, with or without the word :class before. A class is a name, or a condition class inheriting
+from PLAN-FAILURE (manual D.2). The failure propagates to the nearest construct that handles it."
   (error (make-failure arguments)))
 
 (defun failure-matches-p (failure type)

@@ -27,8 +27,8 @@ posted meanwhile is heard although some of them have not waited yet.")
 
 (addition *plan-task-limit*)
 (defparameter *plan-task-limit* 200000
-  "How many tasks of a robot's plans, or of another plan runner, may be under way at once. To start
-one more fails with class :TOO-MANY-TASKS.")
+  "How many tasks a plan runner, such as that of a robot's plans, may have at once. Starting one
+more fails with class :TOO-MANY-TASKS.")
 
 (define-record (plan-runner (:include home) (:constructor %make-plan-runner) (:conc-name runner-))
   "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside."
