@@ -1,10 +1,10 @@
-;;;; changes.lisp -- the keys that move the cursor in the line that is typed, or change the line.
+;;;; changes.lisp -- the keys that move the cursor in the line being typed, or change the line.
 
 (in-package :ars-magna.cli)
 
-;;; Each such key is a function from a text and the place of the cursor in it, its point, to
-;;; another text and point; and to what it has killed, which control Y brings back. They are those
-;;; that Emacs has, and shells. A text that was pasted may have several lines.
+;;; Each such key is a function of a text and of the position of the cursor in it, its point. It
+;;; returns a new text and point, and what it has killed, which Control-Y brings back. The keys are
+;;; those of Emacs and of shells. A pasted text may have several lines.
 
 (defvar *changes* '() "Lists (key function).")
 

@@ -1,25 +1,25 @@
-;;;; editor.lisp -- a line that is typed at a terminal, key by key: what is edited, and where.
+;;;; editor.lisp -- editing a line at a terminal, key by key.
 
 (in-package :ars-magna.cli)
 
-;;; Why not rlwrap, or GNU readline? What arrives while a line is typed is to be written above it,
-;;; by whichever thread has it; control C is to end what was typed before it and nothing else; Tab
-;;; is to know what the simulator knows. A program around this one can do none of that, and readline
-;;; can be called by one thread only, and has a licence of another kind.
+;;; Why not rlwrap or GNU readline? Output that arrives while a line is typed must appear above it,
+;;; from any thread. Control-C must end only what was typed before it. Tab must complete names of
+;;; the simulator. A program around this one can do none of that; readline can be called by one
+;;; thread only, and has a different kind of licence.
 
 (defclass edited-text (typed-text)
   ((console :initarg :console :reader edited-console)
    (history :initarg :history :initform (make-history) :reader edited-history)
-   ;; Octets that were handed over before their time, and lines that were pasted.
+   ;; Octets that arrived early, and lines that were pasted.
    (ahead :initform (make-octet-queue) :reader edited-ahead)
    (lines :initform '() :accessor edited-lines)
    (killed :initform "" :accessor edited-killed)
-   ;; What Tab listed last, if nothing has changed since, or NIL.
+   ;; What Tab has listed last, if nothing has changed since, or NIL.
    (listed :initform nil :accessor edited-listed)
    ;; What was being typed when another line was entered, as a list of text and point, or NIL.
    (put-off :initform nil :accessor edited-put-off)
-   ;; The entries of the history before the one that is shown, and those after it, the nearest
-   ;; first; after the newest comes what was typed.
+   ;; The entries of the history before the shown one, and those after it, the nearest first; after
+   ;; the newest comes what was typed.
    (older :initform '() :accessor edited-older)
    (newer :initform '() :accessor edited-newer))
   (:documentation "The text that somebody types at this process's terminal, who can edit each line,
@@ -119,8 +119,8 @@ for it.")
       (when (and killed (string/= "" killed)) (setf (edited-killed stream) killed))
       (change-to stream text point))))
 
-;;; Keys that do other things: each a function of the stream. What it returns ends the line, if it
-;;; is the text that was typed, or :EOF.
+;;; Keys that do other things, as functions of the stream. If one returns the typed text or :EOF,
+;;; that ends the line.
 
 (defvar *actions* '() "Lists (key function).")
 
@@ -255,7 +255,7 @@ without saying so, is drawn once. Return a text, or :EOF, if the line has ended 
   (loop for key = (read-key (octet-reader stream))
         for end = (if (stringp key) (press-text stream key) (press stream key))
         until end
-        ;; Only its first line stands on the screen; the others are shown when they are read.
+        ;; Only its first line is shown; the others appear when they are read.
         finally (let* ((text (typed-text-of stream)) (newline (position #\Newline text)))
                   (when newline (change-to stream (subseq text 0 newline) newline)))
                 (return end)))
@@ -265,7 +265,7 @@ without saying so, is drawn once. Return a text, or :EOF, if the line has ended 
 of the input."
   (flet ((edit () (call-editing (lambda () (press-keys stream)) stream)))
     (prog1 (if *program-reads* (call-asking (edited-console stream) #'edit) (edit))
-      ;; Control C in what has been typed after the line is for that line.
+      ;; A Control-C typed after the line is for that line.
       (let ((ahead (edited-ahead stream)))
         (add-octets ahead (octets-come stream))
         (let ((interrupt-p (forget-until-interrupt ahead)))
@@ -295,8 +295,8 @@ of the input."
 
 ;;;; Control R
 
-;;; The prompt says meanwhile what is looked for. Control R again goes on to an older line; control
-;;; G gives up; any other key takes the line that was found and does what it does to it.
+;;; The prompt shows what is searched for. Control-R again goes on to an older line; Control-G
+;;; cancels; any other key takes the found line and acts on it.
 
 (defun found-entry (stream sought skipped)
   "Return the entry of the history with SOUGHT in it that comes before SKIPPED others, and where in

@@ -1,19 +1,19 @@
-;;;; history.lisp -- texts that go on line by line, and the file of those that were typed.
+;;;; history.lisp -- texts that grow line by line, and the file of typed lines.
 
 (in-package :ars-magna.cli)
 
-;;; One text grows in place. Copied for each line, long forms would take quadratic time.
+;;; One text grows in place. Copying it for each line would take quadratic time for long forms.
 
 (defclass growing-text (fundamental-character-input-stream)
   ((text :initarg :text :reader grown-text)
    (position :initarg :position :accessor grown-position)
    (more :initarg :more :reader text-grower))
-  (:documentation "The characters of TEXT, which has a fill pointer, from POSITION on. After its end
-comes a newline, and then the line that the function MORE returns of the text so far; or its own
-end, if that is NIL."))
+  (:documentation "The characters of TEXT, which has a fill pointer, from POSITION on. At its end,
+the function MORE returns the next line for the text so far, which follows after a newline; NIL is
+the end."))
 
 (defun extensible-text (text)
-  "Return TEXT if lines can be put behind it, or else a copy for which they can."
+  "Return TEXT if lines can be appended to it, or else a copy to which they can."
   (if (array-has-fill-pointer-p text)
       text
       (make-array (length text) :element-type 'character :adjustable t :fill-pointer t
@@ -43,18 +43,18 @@ end, if that is NIL."))
 
 ;;;; The history
 
-;;; A Lisp form that was typed in several lines is one entry. So an entry is written into the file
-;;; when the next one begins, or the session ends. The file has an entry on each line, in which \n
-;;; stands for a newline and \\ for a backslash. Several sessions may add to it at once. What cannot
-;;; be read or written of it is done without.
+;;; A Lisp form typed in several lines is one entry. So an entry is written to the file when the
+;;; next one begins, or the session ends. The file has an entry on each line, with \n for a newline
+;;; and \\ for a backslash. Several sessions may add to it at once. A file that cannot be read or
+;;; written is ignored.
 
 (defparameter *history-limit* 1000 "How many entries a history has.")
 
 (defstruct (line-history (:conc-name history-) (:copier nil)
                          (:constructor %make-history))
-  "What was typed, newest first. FILE is the pathname of where it is kept, or NIL; UNSAVED-P is true
-if the newest entry is not in it. GROWING is the text that the line added last goes on from, or
-NIL: the newest entry then has a fill pointer."
+  "Typed lines, newest first. FILE is the pathname of the history file, or NIL; UNSAVED-P is true if
+the newest entry is not in it. GROWING is the text that the last line continues, or NIL: the newest
+entry then has a fill pointer."
   (entries '() :type list)
   (growing nil :type (or null string))
   (file nil :type (or null pathname) :read-only t)
@@ -123,7 +123,7 @@ NIL: the newest entry then has a fill pointer."
   (and (<= (length start) (length text))
        (string= start text :end2 (length start))))
 
-;; That the same text goes on is known without looking through it for each line.
+;; The same text need not be compared for each line to see that it continues.
 (defun amend-entry (history line before)
   "Put LINE, which goes on from the text BEFORE, behind the newest entry, if BEFORE begins with
 that."

@@ -1,19 +1,19 @@
-;;;; keys.lisp -- from what a terminal hands over to the keys that were pressed.
+;;;; keys.lisp -- from the octets of a terminal to keys.
 
 (in-package :ars-magna.cli)
 
-;;; A key is the text that it types, a string; a keyword such as :UP or :CONTROL-A, or :META-F for
-;;; one after escape; or a list (:PASTE text), or (:ENTRY text) for a line that has been chosen
-;;; elsewhere, as from a menu. No terminal hands over the latter. NEXT, in what follows, is a
-;;; function that returns the next octet that the terminal hands over, as a character, or NIL at the
-;;; end; an octet that it is called with, it will return first.
+;;; A key is one of these: the text that it types, a string; a keyword such as :UP or :CONTROL-A, or
+;;; :META-F for one after Escape; a list (:PASTE text); or (:ENTRY text) for a line that was chosen
+;;; elsewhere, as from a menu, which no terminal sends. NEXT, in what follows, is a function that
+;;; returns the terminal's next octet, as a character, or NIL at the end. Called with an octet, it
+;;; puts that back.
 
 (defparameter *keys-of-codes*
   '(("A" :up) ("B" :down) ("C" :right) ("D" :left) ("H" :home) ("F" :end)
     ("1~" :home) ("7~" :home) ("4~" :end) ("8~" :end) ("3~" :delete)
     ("1;5C" :meta-f) ("1;5D" :meta-b) ("1;3C" :meta-f) ("1;3D" :meta-b)
     ("200~" :paste) ("202~" :entry))
-  "Lists (code key): what terminals hand over after escape and [, or escape and O.")
+  "Lists (code key): what terminals send after Escape and [, or Escape and O.")
 
 (defun read-code (next)
   "Return the code that NEXT returns: all up to the first letter or ~."
@@ -35,7 +35,7 @@
                                   (t 0)))
                    for char = (funcall next)
                    while char
-                   ;; One that does not follow in a character is the next to be read.
+                   ;; An octet that does not continue the character is read next.
                    do (unless (<= #x80 (char-code char) #xBF)
                         (funcall next char)
                         (return))
@@ -88,7 +88,7 @@
           ((< (char-code char) 32) (key-called "control-~C" (code-char (+ 64 (char-code char)))))
           (t (read-text char next)))))
 
-;;; The other way round, for keys that are pressed elsewhere than at a terminal.
+;;; The reverse, for keys that are pressed elsewhere than at a terminal.
 
 (defun escaped-key (key)
   "Return what a terminal hands over for KEY, a keyword, if that begins with escape; else NIL."
@@ -113,9 +113,8 @@ for one that it does not know."
 
 ;;;; Octets handed over before their time
 
-;;; Of many lines that are pasted at once, most wait here while the first are carried out. Neither
-;;; to add to them, nor to see whether control C is among them, may take the longer the more they
-;;; are.
+;;; Of many lines pasted at once, most wait here while the first ones run. Adding to them, and
+;;; looking for Control-C among them, must not take longer with their number.
 
 (defparameter *control-c* (code-char 3))
 

@@ -18,7 +18,7 @@ alone."
   (let ((start (position-if-not #'blank-p text)))
     (or (null start) (comment-at-p text start))))
 
-;; #|, which may end in the line, is for others, and #FOO is a word like others.
+;; Comments #| ... |#, which may end in the line, are handled elsewhere; #FOO is a word like others.
 (defun sharp-form-p (text start)
   "True if a form of Lisp begins in TEXT at START with #, such as #'car, #(1 2), #xFF or #p\"f\"."
   (flet ((char-at (position) (and (< position (length text)) (char text position))))
@@ -73,9 +73,9 @@ and goes on to the end of TEXT if there is no second one."
 
 ;;;; What is pasted
 
-;;; Somebody may paste what a page or the window shows, prompts and all. They are taken off. What
-;;; stands after one may also be a message of the robot's, such as "robot-turn: Robot turned 1.00":
-;;; its first word ends with a colon. Other answers are known by having no prompt where lines have.
+;;; A user may paste text from a page or window, prompts included. The prompts are removed. What
+;;; follows one may also be a message of the robot's, such as "robot-turn: Robot turned 1.00": its
+;;; first word ends with a colon. Other answers are lines without a prompt among lines with prompts.
 
 (defparameter *labels* '("Robot>" "Break>") "What prompts look like.")
 
@@ -110,7 +110,7 @@ on from another."
         ((going-on-p text) (subseq text (length +going-on+)))
         (t text)))
 
-;;; Where several lines were pasted, prompts tell which of them were typed.
+;;; If several lines were pasted, prompts tell which of them were typed.
 
 (defun typed-line-of (line)
   "Return LINE, as pasted among others with prompts, without its own; NIL if it was not typed."

@@ -1,13 +1,13 @@
-;;;; typing.lisp -- what is typed at the terminal or in a window, also ahead of its time.
+;;;; typing.lisp -- keys typed at the terminal or in a window, also ahead of time.
 
 (in-package :ars-magna.cli)
 
 (export '(take-waiting make-handed-text press-key typed-ahead))
 
-;;; Nobody reads the keys then. So they are kept as what they come to: lines that wait, each as a
-;;; line that was chosen elsewhere, and after those what is being typed, as if it had been pasted.
-;;; Whoever reads next finds keys like others. The arrow up goes to what was entered before, as at a
-;;; prompt. What needs the prompt, such as Tab, does nothing.
+;;; Keys typed while nobody reads them are kept by their effect: finished lines wait, each like a
+;;; line chosen from a menu, and after them the text being typed, as if it had been pasted. The next
+;;; reader gets them as keys. Arrow up goes through earlier lines, as at a prompt. Keys that need
+;;; the prompt, such as Tab, do nothing.
 
 (defstruct (ahead (:copier nil))
   "What was typed ahead. LINES wait, the oldest first; TEXT is being typed, the cursor at POINT."
@@ -87,7 +87,7 @@ first."
 
 ;;;; The terminal
 
-;;; A terminal that obeys nothing, such as a buffer of Emacs, edits lines itself.
+;;; A terminal without escape codes, such as a buffer of Emacs, edits lines itself.
 
 (defun obeying-terminal-p (stream)
   "True if STREAM, of this process, is a terminal that moves its cursor when it is told to."
@@ -141,9 +141,8 @@ that is not NIL.")
         (amend-entry (edited-history input) line before)
         (add-entry (edited-history input) line))))
 
-;;; A terminal may paste without saying so, as those do that edit lines themselves. What comes all
-;;; at once, with more than a line, is counted as pasted, too: nobody types as fast, but while
-;;; nothing was read.
+;;; Some terminals do not mark pasted text, such as those that edit lines themselves. More than one
+;;; line at once counts as pasted, too: nobody types as fast, except while nothing was read.
 
 (defgeneric pasted-lines-left-p (input)
   (:documentation "True if lines that were pasted into INPUT, with the one read last, wait to be
@@ -194,8 +193,8 @@ there were."
 
 ;;;; Windows
 
-;;; A window hands over keys, and shows the line on a console of its own. All else is as at a
-;;; terminal: what keys do, the history, Tab. What the terminal does meanwhile is not touched.
+;;; A window passes on keys, and shows the line on a console of its own. All else is as at a
+;;; terminal: keys, history, Tab. The terminal's state is not affected.
 
 (defclass handed-text (edited-text) ()
   (:default-initargs :by-hand-p t)

@@ -1,17 +1,17 @@
-;;;; arguments.lisp -- from the characters of a line to arguments, and which there can be.
+;;;; arguments.lisp -- from the characters of a line to arguments, and the possible arguments.
 
 (in-package :ars-magna.cli)
 
-;;; Arguments are read by the Lisp reader and not evaluated (manual E), and reading them runs
-;;; nothing; numbers stand for cameras, hands, storage bins and designators. What follows a
-;;; semicolon, or a # that stands alone, is a comment.
+;;; The Lisp reader reads arguments, without evaluating anything (manual E). Numbers stand for
+;;; cameras, hands, storage bins and designators. A comment begins with a semicolon, or with a #
+;;; that stands alone.
 
 ;; As reading 227 says.
 (defgeneric read-argument (type datum robot)
   (:documentation
-   "Return the argument of the type called TYPE (a keyword) that DATUM, as typed, stands for with
-ROBOT; signal BAD-LINE if it stands for none. Parts go by their numbers. Otherwise, without a
-method, DATUM is the argument.")
+   "Return the argument of the type called TYPE (a keyword) that DATUM, as typed, means for ROBOT.
+Signal BAD-LINE if it means none. Parts are given by number. Without a method for TYPE, return
+DATUM.")
   (:method (type datum robot)
     (if (part-type-p type)
         (numbered datum (parts-of-kind robot type) (kind-words type) robot)
@@ -162,11 +162,11 @@ another datum, and where that ends."
 
 (defparameter *hints-on-more*
   '(("GO" "GO-TO x y drives to a place."))
-  "Lists (line hint): what may be meant by a line with more arguments than it takes.")
+  "Lists (line hint): hints for lines with too many arguments.")
 
 (defun reject-rest (line text)
-  "Signal BAD-LINE since TEXT stands behind the arguments of LINE. Where a unit could stand, say
-which there are."
+  "Signal BAD-LINE as TEXT follows the arguments of LINE. If a unit could stand there, list the
+units."
   (let* ((slot (first (last (line-parameters line))))
          (dimension (and slot (dimension-of (slot-type slot)))))
     (if (and dimension (alpha-char-p (char text 0)))

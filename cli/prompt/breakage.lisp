@@ -1,12 +1,12 @@
-;;;; breakage.lisp -- telling users what has broken or reads, and who of them is asked.
+;;;; breakage.lisp -- reporting breaks and reading programs to users, and choosing whom to ask.
 
 (in-package :ars-magna.cli)
 
 (export '(awaited-answers ways-awaited simulator-broken-p asker-of-break answers-break-p))
 
-(defvar *session* nil "The session that the debugger asks, in whatever thread; the newest.")
+(defvar *session* nil "The session that the debugger asks, in any thread; the newest.")
 
-(defvar *asking-p* nil "True in a thread that has broken and asks how to go on.")
+(defvar *asking-p* nil "True in a thread that has broken and asks how to continue.")
 
 ;;; What the user sees.
 
@@ -92,13 +92,12 @@ thread of SIMULATION, which has broken, goes on; or NIL."
 
 ;;;; Who is asked
 
-;;; Each prompt has a hook for what breaks in its own thread. All other threads share one, which
-;;; follows from the prompts that are at work, in whatever order they come and go: the debugger's if
-;;; one of them can ask its user; else the one that says that nobody sits there. Without prompts it
-;;; is what it was before.
+;;; Each prompt has a debugger hook for its own thread. All other threads share one, which depends
+;;; on the running prompts, however they start and end: the debugger's if one of them can ask its
+;;; user; else the one that reports that nobody can answer. Without prompts it is the original hook.
 
 (defvar *hooks-at-work* '() "The hooks of the prompts that are at work, the newest first.")
-(defvar *hook-before* nil "What hook all threads shared before the first of them.")
+(defvar *hook-before* nil "The hook that all threads shared before the first prompt.")
 
 (defun hook-to-share ()
   (cond ((find-if-not #'disabled-hook-p *hooks-at-work*))
@@ -106,11 +105,11 @@ thread of SIMULATION, which has broken, goes on; or NIL."
         (t *hook-before*)))
 
 (defclass prompts () ()
-  (:documentation "The prompts at work, as the front end that asks their users."))
+  (:documentation "The running prompts, as the front end that asks their users."))
 
 (setf *front-end* (make-instance 'prompts))
 
-;; An editor that comes takes the place of the prompts, who ask again when it has gone.
+;; When an editor connects it replaces the prompts; they ask again when it has gone.
 (defmethod hook-of-front-end ((prompts prompts))
   (and *hooks-at-work* (hook-to-share)))
 
@@ -126,14 +125,14 @@ thread of SIMULATION, which has broken, goes on; or NIL."
           (common-debugger-hook) (hook-to-share))))
 
 (defun answered-elsewhere-p ()
-  "True if somebody else answers what breaks, such as an editor, and the prompt is not in the thread
-in which he began it."
+  "True if another front end, such as an editor, answers breaks, and this is not the thread of the
+prompt in which it started."
   (let ((hook (common-debugger-hook)))
     (and (own-thread-p) (null *hooks-at-work*) hook (not (disabled-hook-p hook)))))
 
 (defun call-sharing (hook function)
-  "Call FUNCTION, a prompt at work, while HOOK is the debugger's in this thread, and one of those
-that others may share."
+  "Call FUNCTION, a prompt, while HOOK is this thread's debugger hook, and one that other threads
+may share."
   (with-debugger-hook (hook)
     (if (answered-elsewhere-p)
         (funcall function)
@@ -141,21 +140,22 @@ that others may share."
                (unwind-protect (funcall function)
                  (end-sharing hook))))))
 
-;;; A program that reads what is typed, in the thread of a run or of plans.
+;;; Programs that read typed input in the thread of a run or of plans.
 
-;;; Only the thread that has the prompt reads what is typed. So what reads in another one breaks,
-;;; and ANSWER is how it goes on, with a line.
+;;; Only the thread of the prompt reads what is typed. So a program that reads in another one
+;;; breaks, and ANSWER continues it with a line.
 
 (define-condition answer-wanted (condition) ()
-  (:documentation "A program reads what is typed, in another thread than that of a prompt.")
+  (:documentation "A program reads typed input in a thread other than a prompt's.")
   (:report "A program reads a line; ANSWER gives it one"))
 
 (defclass asking-text (typed-text) ()
-  (:documentation "What programs read in the thread of a run: the users of prompts are asked for
-each line; where nobody sits, it is read from where else it would be."))
+  (:documentation "The input stream of programs in the thread of a run: it asks the users of prompts
+for each line, or, without a terminal or window, reads from the original input."))
 
 (defun ask-for-answer ()
-  "Let the user of a prompt say what line a program reads. Return it, or NIL if he has gone."
+  "Ask the user of a prompt for the line that a program reads. Return it, or NIL if the user has
+gone."
   (restart-case (invoke-debugger (make-condition 'answer-wanted))
     (answer (&optional line)
       :report "Give it the text that follows, or is typed next."

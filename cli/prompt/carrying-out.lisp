@@ -1,19 +1,19 @@
-;;;; carrying-out.lisp -- doing what a line says, which is Lisp or a line command.
+;;;; carrying-out.lisp -- carrying out a line, which is Lisp or a line command.
 
 (in-package :ars-magna.cli)
 
 ;;; A line that begins with a parenthesis, or with # as forms do, is Lisp, in the package ARS-USER
-;;; and the syntax of the readtable :NISP; IN-PACKAGE holds for the lines that follow. A form may go
-;;; on over lines. Numbers typed are exact, double-floats. What runs, files that it loads included,
-;;; finds what Lisp has for it everywhere else.
+;;; and the syntax of the readtable :NISP; IN-PACKAGE applies to the lines that follow. A form may
+;;; span lines. Typed numbers are double-floats. Code that runs, loaded files included, finds the
+;;; standard variables of Lisp as everywhere else.
 
 (defvar *undefined* '()
-  "Lists (name kind new-p) of what the compiler has found undefined in the forms at hand, newest
-first. NEW-P is true if it had no value then.")
+  "Lists (name kind new-p) of undefined names that the compiler has found in the present forms,
+newest first. NEW-P is true if the name had no value then.")
 
 (defun quiet-warning (condition)
-  "Keep the compiler from telling users at length what they will be told in a moment. Doubts about
-definitions are messages like others."
+  "Hide the compiler's long report of what users are about to be told. Warnings about definitions
+are messages like others."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
@@ -29,8 +29,8 @@ definitions are messages like others."
     (funcall function)))
 
 (defun call-telling-undefined (function &optional file)
-  "Call FUNCTION and return its values. What the forms that it evaluates, of FILE or typed, use and
-nobody has defined at its end are messages."
+  "Call FUNCTION and return its values. Names that its forms, of FILE or typed, use and that are
+still undefined at the end are reported as messages."
   (let ((*undefined* '()))
     (multiple-value-prog1 (funcall function)
       (loop for (name kind new-p) in (reverse *undefined*)
@@ -78,7 +78,7 @@ file and line. Do nothing elsewhere."
   "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
 together, and what is wrong in files that it compiles, are messages."
   (let ((last nil))
-    ;; Each EVAL that is under way signals once more what comes up in the compiler.
+    ;; Each nested EVAL signals the compiler's conditions once more.
     (handler-bind ((condition (lambda (condition)
                                 (unless (eq condition (shiftf last condition))
                                   (tell-of-compiling condition)))))
@@ -90,7 +90,7 @@ together, and what is wrong in files that it compiles, are messages."
     (unwind-protect (let ((*error-output* diagnostics)
                           (*read-default-float-format* 'single-float))
                       (call-quietly (lambda () (eval (with-own-name form)))))
-      ;; But for the compiler's, and what Lisp says of a full stack, of which users are told.
+      ;; Except those of the compiler, and Lisp's own note on a full stack, which users are told of.
       (dolist (line (lines-in (get-output-stream-string diagnostics)))
         (unless (or (string= line "") (char= #\; (char line 0))
                     (starts-with-subseq "Control stack guard page" line))

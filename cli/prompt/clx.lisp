@@ -6,7 +6,8 @@
 ;;; that is longer than 32 bytes. Newer ones read with READ-SEQUENCE, in the file common.lisp.
 ;;; Debian 13 has SBCL 2.5.2 and CLX 0.7.5.
 
-;;; cli/build.lisp loads this file, too, into a bare SBCL: it has to know before it compiles McCLIM.
+;;; cli/build.lisp loads this file, too, into a bare SBCL: it needs the answer before it compiles
+;;; McCLIM.
 
 (defpackage :ars-magna.clx
   (:documentation "Versions of CLX: which one ASDF finds, and whether it works on this SBCL.")
@@ -22,12 +23,12 @@
   "How a user gets a CLX that works.")
 
 (defun find-library (name)
-  "Return the ASDF system of the library that users call NAME, such as CLX, or NIL."
+  "Return the ASDF system of the library called NAME, such as CLX, or NIL."
   (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
     (ignore-errors (asdf:find-system (string-downcase name) nil))))
 
 (defun quicklisp-file ()
-  "Return the file that makes Quicklisp known, where the user has installed it, or NIL."
+  "Return the file that loads Quicklisp, where the user has installed it, or NIL."
   (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
 
 (defun get-by-quicklisp ()

@@ -1,14 +1,13 @@
-;;;; completing.lisp -- Tab: what a line that is being typed could become.
+;;;; completing.lisp -- Tab: completions of a line that is being typed.
 
 (in-package :ars-magna.cli)
 
 (defvar *completer* nil
-  "NIL, or a function of a text and of the point in it where the cursor is. It returns where what is
-to be completed begins, a list of all texts that it could become, and what follows one that is the
-only one.")
+  "NIL, or a function of a text and of the position of the cursor in it. It returns where the text
+to complete begins, a list of all completions, and what follows a single completion.")
 
 (defun common-start (texts)
-  "Return what all of TEXTS begin with, in whatever case."
+  "Return the longest common beginning of TEXTS, ignoring case."
   (let ((first (first texts)))
     (subseq first 0 (reduce #'min (rest texts)
                             :key (lambda (text)
@@ -65,7 +64,7 @@ and AFTER if it is one; list them if that is no more than there is."
                               common
                               (uiop:strcat common after))))
           ((< (length typed) (length common)) (replace-typed stream start common))
-          ;; What has been listed, with nothing typed since, is not listed again.
+          ;; The same list is not shown twice if nothing was typed since.
           ((not (equal texts (edited-listed stream)))
            (list-choices stream texts)
            (setf (edited-listed stream) texts)))))
@@ -80,8 +79,9 @@ and AFTER if it is one; list them if that is no more than there is."
 
 ;;;; What there is
 
-;;; The first word is the name of a command; each other is of the type that the command takes there;
-;;; inside parentheses stand symbols, in quotes files. What of it makes no sense is not completed.
+;;; The first word is the name of a command; each other has the type of the command's argument;
+;;; inside parentheses are symbols, in quotes file names. Parts that make no sense are not
+;;; completed.
 
 (defun text-of-choice (choice)
   (typecase choice

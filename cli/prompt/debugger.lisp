@@ -1,21 +1,21 @@
-;;;; debugger.lisp -- what comes up when a program breaks: how to go on is for the user to say.
+;;;; debugger.lisp -- when a program breaks, the user says how to continue.
 
 (in-package :ars-magna.cli)
 
 (export '(*break-hooks*))
 
-;;; Only the thread that has the prompt reads what is typed. When a program in it breaks, by (BREAK)
-;;; or an error that the user wants to look into, it asks how to go on before it reads the next
-;;; line. When one in another thread breaks, such as the simulator's, that thread waits, and the
-;;; lines typed at the prompt are for it until one says how it goes on. Where nobody sits, there is
-;;; no debugger: a break is a message. So it is for what is typed to answer a break: there is no
-;;; break in a break.
+;;; Only the thread of the prompt reads what is typed. When a program in it breaks, by (BREAK) or an
+;;; error that the user wants to look into, it asks how to continue before it reads the next line.
+;;; When a program in another thread breaks, such as the simulator's, that thread waits, and the
+;;; lines typed at the prompt are for it until one continues it. Without a terminal or window there
+;;; is no debugger: a break is a message. The same holds for the lines that answer a break: there is
+;;; no break in a break.
 
 ;;; What the user says.
 
 (defun hand-order (session breakage function)
-  "Let the thread of BREAKAGE, which is another, call FUNCTION, as soon as it can, with the package
-and syntax that are used here."
+  "Let the thread of BREAKAGE, another thread, call FUNCTION as soon as it can, with this thread's
+package and syntax."
   (flet ((call-ordered ()
            (let* ((console (session-console session))
                   (*standard-output* console)
@@ -159,7 +159,7 @@ windows, as somebody may wait in Lisp's own REPL meanwhile; or NIL."
                            (signal-semaphore (breakage-done breakage))))
     (dolist (session sessions) (forget-break session breakage))))
 
-;; Somebody's window may be lost, though he has another, or the terminal.
+;; A user's window may be lost although there is another, or the terminal.
 (defun heirs-of (session)
   "Return the sessions whose users can answer what that of SESSION, which is over, cannot any more:
 those that listen to its run, or else all; NIL if its user has left it."
@@ -187,7 +187,7 @@ those that listen to its run, or else all; NIL if its user has left it."
                       (if (session-visit session)
                           (call-aside #'read-lines)
                           (read-lines)))))
-  ;; Others may say how it goes on if its user cannot any more.
+  ;; Others may say how to continue if its user no longer can.
   (let ((heirs (heirs-of session)))
     (when heirs (debug-elsewhere heirs (broken-here (breakage-condition breakage) heirs))))
   (invoke-restart 'end-line))
@@ -223,7 +223,7 @@ does other things too, and no prompt runs in it."
 
 (defun enter-debugger (condition hook)
   "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
-  ;; What asks needs the room that is not there.
+  ;; The question needs stack that is not there.
   (when (typep condition 'storage-condition) (give-up condition))
   (let* ((*asking-p* t) (sessions (sessions-to-ask)))
     (cond ((others-matter-p) nil)
@@ -272,7 +272,7 @@ does other things too, and no prompt runs in it."
                                text
                                "There are more errors in threads; they are told no more.")))))
 
-;; By this name the rest of the program knows that there is none.
+;; The rest of the program recognises by this name that there is no debugger.
 (defun debugger-disabled-hook (condition hook)
   "Say what CONDITION is and go on, if it is no error, or give up what this thread is at. Called
 instead of Lisp's debugger where nobody sits, or a break is being answered."
@@ -283,7 +283,7 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
   (unless (typep condition 'serious-condition) (continue condition))
   (give-up condition))
 
-;;; Somebody else's debugger, such as an editor's, may ask instead.
+;;; Another debugger, such as an editor's, may ask instead.
 
 (defmethod ask-how-to-go-on ((prompts prompts) condition)
   (when (sessions-to-ask) (enter-debugger condition nil)))

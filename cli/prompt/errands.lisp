@@ -1,30 +1,30 @@
-;;;; errands.lisp -- what the prompt has issued to the robot, and waiting for it.
+;;;; errands.lisp -- commands that the prompt has issued, and waiting for them.
 
 (in-package :ars-magna.cli)
 
-;;; A command is issued and the prompt is back at once. A patient session, each that has more lines
-;;; pasted with the one read last, and each in a headless simulation, reads on when what was issued
-;;; has completed, that is, when its continuation is called. REPEAT waits in the same way. Tracking
-;;; a grasp goes on until the grasp is lost, so what is waited for is that it has begun. Plans are
-;;; errands, too: see plans.lisp.
+;;; A command is issued and the prompt returns at once. These wait until the continuation of the
+;;; command is called before they read the next line: a patient session, a session with pasted lines
+;;; left, and a session in a headless simulation. REPEAT waits in the same way. Tracking a grasp
+;;; lasts until the grasp is lost, so only its beginning is waited for. Plans are errands, too: see
+;;; plans.lisp.
 
 (defparameter *patience* 100000
   "How many ticks a headless prompt waits for one command to complete.")
 
 (defstruct (errand (:constructor make-errand (&key name verdict-p resource)) (:copier nil))
-  "A command, or a plan, that the prompt has issued. NAME is what the line is called that gives
-several commands one after the other, or NIL; if VERDICT-P is true, that recovers from their errors,
-and says itself how it has ended. RESOURCE is what carries out a single command, or NIL."
+  "A command or plan that the prompt has issued. NAME is the name of a line that gives several
+commands one after the other, or NIL; VERDICT-P is true if that line recovers from their errors and
+reports the outcome itself. RESOURCE is what carries out a single command, or NIL."
   (done-p nil)
   ;; It has ended with an error.
   (failed-p nil)
-  ;; It is reported by itself, as a line had to wait for it.
+  ;; It is reported separately, as a line had to wait for it.
   (apart-p nil)
   (name nil :type (or null string) :read-only t)
   (verdict-p nil :read-only t)
   (resource nil :read-only t))
 
-;; It is the prompt's, whatever of a run leads to it.
+;; It belongs to the prompt, even if it leads on from a run.
 (define-shared errand)
 
 (defun requests-waiting ()
@@ -38,14 +38,14 @@ and says itself how it has ended. RESOURCE is what carries out a single command,
            (grip-watched-p (errand-resource errand)))))
 
 (defun end-errand (errand error-code)
-  "Let ERRAND be done, with ERROR-CODE, or NIL if it has succeeded."
+  "Mark ERRAND as done, with ERROR-CODE, or NIL if it has succeeded."
   (setf (errand-failed-p errand) (not (member error-code '(nil :interrupt)))
         (errand-done-p errand) t))
 
 ;;; Waiting.
 
 (defun held-up-p (simulation)
-  "True if SIMULATION, which is live, is paused, and nobody is there to let it go on."
+  "True if SIMULATION, which is live, is paused, and nobody can resume it."
   (and (not *waits-while-paused-p*) (stands-still-p simulation)))
 
 (defun await-live (test simulation)
@@ -101,8 +101,8 @@ it go on."
               (errands-under-way session)
               (remove-if (lambda (errand) (member errand errands)) (session-errands session))))))
 
-;;; Lisp may have issued commands too. Plans that it has begun go on by themselves: nobody waits for
-;;; what they ask for, of which there may be no end.
+;;; Lisp may have issued commands too. Plans that it has begun run by themselves: the prompt does
+;;; not wait for their commands, which may never end.
 
 (defun awaited-p (request)
   (not (request-forked-p request)))
@@ -139,7 +139,7 @@ True if none does."
        (if (live-p *simulation*)
            (and (or (session-patient-p session) (pasted-lines-left-p (session-input session)))
                 (not (paused-p *simulation*)))
-           ;; One that STOP-SIMULATOR has stopped waits for RESUME.
+           ;; A simulation stopped by STOP-SIMULATOR waits for RESUME.
            (or (session-patient-p session) (headless-p *simulation*)))))
 
 (defun catch-up (session)

@@ -26,18 +26,18 @@
                  items))
 
 (defun reject-ambiguous (name names &optional hint)
-  "Signal BAD-LINE as NAME, which was typed, may be any of NAMES."
+  "Signal BAD-LINE: NAME, as typed, may be any of NAMES."
   (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it.~@[ ~A~]" (string-upcase name)
                names hint))
 
 (defun reject-absent (kind name names &optional hint)
-  "Signal BAD-LINE as there is nothing of KIND, words, called NAME; NAMES are known."
+  "Signal BAD-LINE: there is no KIND, words, called NAME; NAMES are known."
   (reject-line "There is no ~A ~A.~@[ Did you mean ~A?~]~@[ ~A~]" kind (string-upcase name)
                (nearest-name name names) hint))
 
 (defparameter *other-names*
   '(("?" "HELP") ("EXIT" "QUIT") ("BYE" "QUIT") ("LOGOUT" "QUIT"))
-  "Lists (name line): words that other programs have for lines of ours.")
+  "Lists (name line): other programs' words for lines.")
 
 (defparameter *hints*
   '((("LEFT")  "TURN-LEFT turns by a quarter, TURN -30 deg by an angle.")
@@ -69,12 +69,12 @@
     (("SET" "SETQ" "SETF" "PARAM" "PARAMETER")
      "PARAMS lists the parameters; (setq motion-noise* 0), a line of Lisp, sets one.")
     (("PRINT" "ECHO" "LET") "A line in parentheses is Lisp: (print (robot-names))."))
-  "Lists (words hint): what newcomers type that is no line, and what they may mean.")
+  "Lists (words hint): words that newcomers type which are no lines, and hints.")
 
 (defun hint-for (name)
   (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *hints*)))
 
-;;; How what is no line is typed.
+;;; Advice on how to type what is no line.
 
 (defun plan-advice (name)
   (let ((plan (find-procedure name nil)))
@@ -110,7 +110,7 @@
 
 (defun complete-line (name)
   "Return the line command whose name, or else full name, begins with NAME: the only one, or the one
-that all others go on from."
+whose name begins all the others."
   (let ((candidates (or (all-starting name (all-lines) #'line-name)
                         (all-starting name (robot-lines) #'line-full-name))))
     (cond ((null candidates) (reject-unknown name))
@@ -124,8 +124,8 @@ that all others go on from."
 
 (defun find-line (name)
   "Return the line command called NAME, a string of any case: its name, the full name of a command's
-function, or the beginning of a name; if several begin so, of the one that the others go on from.
-What other programs call it will do, too. Signals BAD-LINE."
+function, another program's word for it, or the beginning of a name. If several begin so, it is the
+one whose name begins all the others. Signals BAD-LINE."
   (let* ((typed (string-upcase name))
          (name (or (second (assoc typed *other-names* :test #'string=)) typed)))
     (or (line-called name)
@@ -135,8 +135,8 @@ What other programs call it will do, too. Signals BAD-LINE."
 ;;; Functions that nobody has defined.
 
 (defun advice-on-function (condition)
-  "Return in a sentence what may be meant by the name that CONDITION says is of no function; NIL of
-other conditions."
+  "Return a sentence of advice if CONDITION reports an undefined function; NIL for other
+conditions."
   (let ((name (and (typep condition 'undefined-function) (cell-error-name condition))))
     (when (and name (symbolp name))
       (or (plan-advice name)
@@ -163,8 +163,8 @@ takes."
                        (shape-text (lambda-list-of (first form))) trouble
                        (line-advice (symbol-name (first form)))))))))
 
-;; Of Lisp's own that are called like lines, STEP and GO do nothing with a number. What is called
-;; like no function is looked at before its arguments, such as DEG, are evaluated.
+;; Lisp's own STEP and GO, which are called like lines, do nothing with a number. An undefined
+;; function is reported before its arguments, such as DEG, are evaluated.
 (defun check-line-in-parentheses (form)
   "Signal BAD-LINE if FORM, as typed, is a line in parentheses, such as (step 5) or (turn 90 deg)."
   (when (and (typep form '(cons symbol))

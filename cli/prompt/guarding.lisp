@@ -1,9 +1,9 @@
-;;;; guarding.lisp -- whatever goes wrong in a line ends that line, with one line that says why.
+;;;; guarding.lisp -- an error in a line ends that line, with one line that says why.
 
 (in-package :ars-magna.cli)
 
-;;; An interrupt (control C) ends the line that is being read or carried out; the simulator does not
-;;; notice. Between lines it waits for the next.
+;;; An interrupt (Control-C) ends the line that is being read or carried out, and does not affect
+;;; the simulator. Between lines it waits for the next one.
 
 (defun debug-if-wanted (session condition)
   (when (and *break-on-user-error*
@@ -12,8 +12,8 @@
     (invoke-debugger condition)))
 
 (defun complain-of-printing (session trouble)
-  "Say in SESSION that what went wrong cannot be printed, because of TROUBLE. At a terminal no line
-could be typed either: so signal that."
+  "Say in SESSION that the error cannot be printed, because of TROUBLE. At a terminal no line could
+be typed either: so signal that."
   (when (session-terminal-p session) (error trouble))
   (incf (session-errors session))
   (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))

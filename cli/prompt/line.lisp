@@ -1,18 +1,18 @@
-;;;; line.lisp -- what is known of a line command: the prompt's own, and the robot's.
+;;;; line.lisp -- definitions of line commands: the prompt's own, and the robot's.
 
 (in-package :ars-magna.cli)
 
 (export '(line usage))
 
 ;;; The prompt's own commands are defined here and in the files that follow, each once, by
-;;; DEFINE-LINE; the robot's come from the command layer (see below). HELP, the menus and
-;;; what is said of wrong arguments come from these definitions. Manual E.
+;;; DEFINE-LINE. The robot's commands come from the command layer (see below). HELP, the menus and
+;;; messages on wrong arguments are made from these definitions. Manual E.
 
 (defstruct (parameter-of-line (:conc-name slot-) (:copier nil)
                               (:constructor make-slot (name type text optional-p)))
-  "An argument of a line command. TYPE is an argument type of the command layer, or a keyword:
-:REST, :LINE (another line) or :FORM (of Lisp) for all that is left of the line; any other for the
-characters up to the next blank: :TOKEN, or what they stand for, such as :FILE (see CHOICES)."
+  "An argument of a line command. TYPE is an argument type of the command layer, or a keyword.
+:REST, :LINE (another line) and :FORM (of Lisp) are the whole rest of the line. :TOKEN is the text
+up to the next blank; others, such as :FILE, are such texts with a meaning (see CHOICES)."
   (name "" :type string :read-only t)
   (type nil :type symbol :read-only t)
   (text "" :type string :read-only t)
@@ -33,7 +33,8 @@ characters up to the next blank: :TOKEN, or what they stand for, such as :FILE (
 
 (defvar *lines* '() "The line commands made by DEFINE-LINE, in order of definition.")
 
-(defvar *aliases* '() "Lists (name text), in upper case and as typed: what ALIAS has defined.")
+(defvar *aliases* '() "Lists (name text), in upper case and as typed: the aliases defined by
+ALIAS.")
 
 (defun register-line (line)
   (let ((old (member (line-name line) *lines* :key #'line-name :test #'string=)))
@@ -44,9 +45,9 @@ characters up to the next blank: :TOKEN, or what they stand for, such as :FILE (
 
 (defmacro define-line (name (session &rest parameters) (family &rest details) sentence &body body)
   "Define the line command NAME, a string. Each of PARAMETERS is (variable type text [:optional]),
-the last ones optional; BODY runs with the variables bound to what was read, NIL if left out, and
-SESSION to the session. FAMILY, a keyword, says where HELP lists it, SENTENCE what it says, and
-DETAILS, strings, what it says below the parameters, a paragraph each."
+the last ones optional. BODY runs with the variables bound to what was read, NIL if left out, and
+SESSION to the session. FAMILY, a keyword, says where HELP lists it, SENTENCE is its help, and
+DETAILS, strings, are paragraphs below the parameters."
   `(register-line
     (make-line :name ,(string-upcase name) :family ,family :sentence ,sentence
                :details (list ,@details)
@@ -57,13 +58,13 @@ DETAILS, strings, what it says below the parameters, a paragraph each."
                          (declare (ignorable ,session))
                          ,@body))))
 
-;;; What a line command takes, in words.
+;;; The arguments of a line command, in words.
 
 (defgeneric argument-words (type)
-  (:documentation "Return in words what is typed for an argument of TYPE, a symbol."))
+  (:documentation "Return in words what to type for an argument of TYPE, a symbol."))
 
 (defun usage (line)
-  "Return how LINE is typed, such as \"POS x y\"."
+  "Return how to type LINE, such as \"POS x y\"."
   (format nil "~A~{ ~A~}" (line-name line)
           (loop for slot in (line-parameters line)
                 collect (format nil "~:[~A~;[~A]~]" (slot-optional-p slot) (slot-name slot)))))
@@ -105,8 +106,8 @@ DETAILS, strings, what it says below the parameters, a paragraph each."
 
 ;;;; The robot's commands as line commands
 
-;;; For each command of the command layer there is a line command of the same arguments, without the
-;;; robot. Manual E lists those that differ; they take what a camera tracks for the designator.
+;;; For each command of the command layer there is a line command with the same arguments, without
+;;; the robot. Manual E lists the exceptions; they take what a camera tracks as the designator.
 
 (defun slot-of (specification)
   (make-slot (string-downcase (spec-name specification)) (spec-type specification)

@@ -1,19 +1,19 @@
-;;;; listener.lisp -- who shows messages, how often, and who is hushed.
+;;;; listener.lisp -- showing messages, and hiding those that repeat.
 
 (in-package :ars-magna.cli)
 
-;;; An error is shown three times, then at the tenth, the hundredth time and so on. A transcript has
-;;; it all. What a line asks for fails once for each line, so the count begins anew with the next;
-;;; what runs by itself is counted on, until its code is another, or it is in another run.
+;;; An error is shown three times, then at the tenth, the hundredth time and so on; a transcript has
+;;; every one. For an error of a line, the count begins again with the next line. For code that runs
+;;; by itself, it continues until that code changes or is in another run.
 
 (defstruct (tally (:copier nil))
-  "How often an error was told, in CODE, a function that runs by itself, or NIL, last at TICK."
+  "How often an error was reported, in CODE, a function that runs by itself, or NIL, last at TICK."
   (count 0 :type (integer 0))
   (code nil)
   (tick 0 :type integer))
 
 (defun item-at-fault (message)
-  "Return the item of MESSAGE that says whose code that runs by itself is at fault, or NIL."
+  "Return the item of MESSAGE that says whose code, running by itself, is at fault, or NIL."
   (find-if #'recurring-code (message-items message)))
 
 (defun tick-of (message)
@@ -35,13 +35,13 @@
       (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
 
 (defun repeated-often-p (message told)
-  "Count MESSAGE in TOLD. True if it is one of many alike that is not shown."
+  "Count MESSAGE in TOLD. True if it is one of many alike and is to be hidden."
   (let* ((tally (tally-for message told)) (count (incf (tally-count tally))))
     (setf (tally-tick tally) (tick-of message))
     (and (< 3 count) (not (power-of-ten-p count)))))
 
 (defun repetition-text (message told)
-  "Return what is to be said of how often MESSAGE, which is shown, was told by TOLD, or NIL."
+  "Return a note on how often MESSAGE, which is shown, was reported by TOLD, or NIL."
   (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) told)))
          (count (if tally (tally-count tally) 0))
          (item (item-at-fault message)))
@@ -53,11 +53,11 @@
               (and item (recurring-remedy item))))))
 
 (defun count-anew (told)
-  "Forget how often was told by TOLD what a line has asked for."
+  "Forget the counts in TOLD of errors of lines."
   (maphash (lambda (text tally) (unless (tally-code tally) (remhash text told))) told))
 
 (defun take-counts (told others)
-  "Let TOLD count on from what the table OTHERS has."
+  "Continue the counts of TOLD from those of the table OTHERS."
   (maphash (lambda (text tally)
              (let ((own (gethash text told)))
                (when (or (null own) (< (tally-count own) (tally-count tally)))
@@ -66,19 +66,19 @@
                                    :tick (tally-tick tally))))))
            others))
 
-;;; What comes of the commands of plans may be more than anybody reads.
+;;; Plans may give more messages than anybody can read.
 
 (define-constant +flood+ 50
-  :documentation "After how many messages of others' commands, with no line between them, it is
-said how they can be hushed.")
+  :documentation "After this many messages from others' commands, with no line between them, a
+message says how to hide them.")
 
 (defstruct (flood (:copier nil))
-  "How many messages of others' commands have been SHOWN since a line was read, or, once they were a
-flood, in all."
+  "How many messages from others' commands were SHOWN since the last line was read; or, after too
+many, in all."
   (shown 0 :type fixnum))
 
 (defun flood-text (flood count)
-  "Count COUNT more messages in FLOOD. Return, once, what is to be said where they are a flood; else
+  "Count COUNT more messages in FLOOD. Return, once, the message to show if they are too many; else
 NIL."
   (let* ((before (flood-shown flood)) (now (+ before count)))
     (setf (flood-shown flood) now)
@@ -88,39 +88,38 @@ NIL."
                       give.~%"))))
 
 (defun begin-flood-anew (flood)
-  "Begin to count anew in FLOOD, unless that was one."
+  "Start counting again in FLOOD, unless there were too many."
   (when (< (flood-shown flood) +flood+)
     (setf (flood-shown flood) 0)))
 
 ;;;; Messages
 
-;;; Messages come as they please (manual E). A plain message continues the line of the prompt; a
-;;; warning or an error starts a fresh one; then the prompt is shown again. What a tick has to say
-;;; is shown together, when the tick is over.
+;;; Messages arrive at any time (manual E). A plain message continues the line of the prompt; a
+;;; warning or an error starts a fresh one; then the prompt is shown again. All messages of a tick
+;;; are shown together, when the tick is over.
 
 (defstruct (listener (:copier nil))
-  "Who is shown, on a console, what the lines of a session and a simulation have to say."
+  "Shows, on a console, the messages of a session's lines and of a simulation."
   (console (make-console *standard-output*) :type console :read-only t)
   ;; Somebody sits there.
   (terminal-p nil :type boolean :read-only t)
-  ;; What comes of the commands that plans and programs give is not shown.
+  ;; Messages from commands of plans and programs are hidden.
   (quiet-p nil :type boolean)
-  ;; The tallies of errors, by their text, as above: any thread tells, so the lock
-  ;; guards them.
+  ;; The counts of errors, by text, as above: any thread may report, so the lock guards them.
   (told (make-hash-table :test 'equal) :type hash-table :read-only t)
   (flood (make-flood) :type flood :read-only t)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)
   (observer nil)
-  ;; The name of the robot that is commanded there.
+  ;; The name of the robot that it commands there.
   (robot-name nil :type symbol)
-  ;; True if there are messages that somebody will show soon.
+  ;; True if there are messages that will be shown soon.
   (news-p nil)
   (errors 0 :type fixnum)
-  ;; Where it is in what it reads, if somebody wants to know; see reporting.lisp.
+  ;; Where its reading has got to, if that is needed; see reporting.lisp.
   (account nil :type (or null account) :read-only t)
-  ;; Its user is lost, and has not left it: what he was to answer, others are asked.
+  ;; Its user is lost, but has not left it: others are asked what this user was to answer.
   (abandoned-p nil :type boolean))
 
 ;;; Complaints and messages.
@@ -140,7 +139,7 @@ NIL."
           (when (and *simulation* (not (eq *message-queue* (simulation-messages *simulation*))))
             (take-messages (simulation-messages *simulation*)))))
 
-;;; What others than the prompt ask of the robot, such as plans, ends with messages like its own.
+;;; Commands from others than the prompt, such as plans, end with the same messages.
 
 (defun left-to-program-p (message)
   "True if MESSAGE tells how a command ended that a program has given, with a continuation: that is

@@ -1,14 +1,14 @@
-;;;; listening.lisp -- which sessions are at work, and in which run; which show what it says.
+;;;; listening.lisp -- the running sessions: which runs they are in, and which messages they show.
 
 (in-package :ars-magna.cli)
 
 (export '(*whereabouts-hooks* tell-first-messages go-to-run run-after tell-of-run run-of-robot
           words-for-run away-p way-in pace-of))
 
-;;; Each has a thread, a robot and a current simulation of its own. What a simulation has to say is
-;;; shown by all that listen to it, and each of them can answer what breaks in its thread.
+;;; Each session has a thread, a robot and a current simulation of its own. Messages of a simulation
+;;; are shown by all sessions in it, and each of them can answer a break in its thread.
 
-(defvar *sessions* '() "The sessions at work, the newest first.")
+(defvar *sessions* '() "The running sessions, the newest first.")
 (defvar *sessions-lock* (make-lock "sessions"))
 
 (defun call-among-sessions (session function)
@@ -61,8 +61,8 @@ and those that listen to its run; or if there is none, SESSION."
                                   for those in hearers
                                   when (member hearer those) collect message)))))
 
-;;; What users' programs print in a simulator's thread, as continuations do, goes to the terminal,
-;;; and to the windows of that simulation.
+;;; Output of users' programs in a simulator's thread, as of continuations, goes to the terminal and
+;;; to the windows of that simulation.
 
 (defmethod mirrors-of ((console console))
   (when (and *simulation*
@@ -84,7 +84,7 @@ the prompts again. One whose user is not there any more leaves them to others."
         (let ((*showing-p* t))
           (tell-hearers session (take-all-messages)))))))
 
-;;; What is said of a world as its file is loaded is said before there is a run to listen to.
+;;; Messages about a world's file, while it is loaded, come before there is a run.
 
 (defvar *first-messages* '()
   "The messages about the definitions of the program, that the prompt has shown before any run.")
@@ -98,14 +98,14 @@ the prompts again. One whose user is not there any more leaves them to others."
 (defun hear (session simulation)
   "Show the messages of SIMULATION, of which one is new."
   (cond ((not (simulation-ticking-p simulation)) (show-messages session))
-        ;; Its tick ends when somebody says how it goes on, who may need to know this.
+        ;; Its tick ends when a user says how to continue, who may need these messages.
         ((users-code-broken-p simulation) (show-messages session))
         ((or (not (live-p simulation)) (eq (simulation-thread simulation) (current-thread)))
-         ;; When all changes of this tick are made, before programs are told of them.
+         ;; After all changes of this tick, before programs are told of them.
          (unless (shiftf (session-news-p session) t)
            (notify-later (timeline-of simulation) (lambda () (show-messages session)))))
         (t (setf (session-news-p session) t)
-           ;; The tick may have ended just now, without seeing the news.
+           ;; The tick may have ended just now, without this message.
            (unless (simulation-ticking-p simulation) (look session)))))
 
 (defun look (session)
@@ -128,7 +128,7 @@ another, so that nobody waits for the tick to end, which it may never."
         (and session (lambda () (hear session simulation)))))
 
 (defun listen-to (session simulation)
-  ;; A new window does not know what others have been told often.
+  ;; A new window does not know what others have shown often.
   (dolist (other (remove session (sessions-hearing simulation)))
     (let ((counts (make-hash-table :test 'equal)))
       (with-lock ((session-lock other)) (take-counts counts (session-told other)))
@@ -204,10 +204,10 @@ a line. A headless run stands still then.")
           ((session-visit session) (pace-of-visit (session-visit session)))
           (t :forked))))
 
-;;; One prompt may end the run that others are in: by WORLD, or by starting a robot anew in Lisp.
-;;; One rule says where these go on, in a terminal or a window: with their robot, if that is in a
-;;; live run now; else where WORLD has led, with the robot that it has led to. Those that wait for a
-;;; line say so at once, and listen there; each goes there before it does the next line.
+;;; One prompt may end the run that others are in: by WORLD, or by starting a robot again in Lisp.
+;;; One rule says where these continue, in a terminal or a window: with their robot, if it is in a
+;;; live run now; otherwise in the run that WORLD has led to, with its robot. Prompts that wait for
+;;; a line say so at once, and show messages from there; each switches before it runs the next line.
 
 (defvar *replacements* (make-hash-table :test 'eq :weakness :key :synchronized t)
   "For each run that WORLD has led out of, the one that it has led to and the name of the robot

@@ -1,4 +1,4 @@
-;;;; loading.lisp -- which file a name means; loading a Lisp file form by form.
+;;;; loading.lisp -- the file that a name means; loading a Lisp file form by form.
 
 (in-package :ars-magna.cli)
 
@@ -101,7 +101,7 @@ where the form begins, if it does not end."
 
 (defun load-forms (path)
   "Do as LOAD does with the Lisp file at PATH. Signals FILE-TROUBLE."
-  ;; Whoever is told why a file has been left needs no word of the compiler's that it has been.
+  ;; The message says why a file has been left; the compiler's own is not needed.
   (let ((*error-output* (make-broadcast-stream)))
     (call-telling-undefined (lambda ()
                               (call-telling-doubts (lambda () (load-each-form path))))

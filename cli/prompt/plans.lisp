@@ -1,28 +1,29 @@
-;;;; plans.lisp -- plans that the prompt has started: waiting for them and telling how they end.
+;;;; plans.lisp -- plans started by the prompt: waiting for them and reporting how they end.
 
 (in-package :ars-magna.cli)
 
-;;; A plan is an errand like a command to the robot. Live, a thread watches each plan and tells of
-;;; its end. Now and then it asks, between two reactions of the plans, whether they can still go on;
-;;; one that cannot is ended if the session waits for it. Headless, the prompt asks after each tick.
+;;; A plan is an errand like a command to the robot. Live, a thread watches each plan and reports
+;;; its end. Now and then, between two reactions of the plans, it checks whether they can still
+;;; continue; a plan that cannot is ended if the session waits for it. Headless, the prompt checks
+;;; after each tick.
 ;;;
-;;; It is the plan's business to recover from errors of its commands. So a session that waits for a
-;;; plan does not count those, only the plan's own failure: see VERDICT.
+;;; A plan should recover from errors of its commands. So a session that waits for a plan does not
+;;; count those errors, only the plan's own failure: see VERDICT.
 
 (defstruct (plan-errand (:include errand) (:copier nil)
                         (:constructor make-plan-errand (plan session simulation)))
-  "A plan that the prompt has started. STUCK says what keeps it from ever going on, and what could
-be done, a list of two texts, or is NIL."
+  "A plan that the prompt has started. STUCK is a list of two texts, what keeps it from ever
+continuing and what could be done, or NIL."
   (plan nil :type symbol :read-only t)
   (session nil :type session :read-only t)
   (simulation nil :read-only t)
   ;; Who has started it, as messages tell.
   (asker *asker* :read-only t)
   (task nil)
-  ;; Nothing is to be told of its end, as the run has been rewound.
+  ;; Its end is not to be reported, as the run has been rewound.
   (let-go-p nil)
   (stuck nil :type list)
-  ;; What has been told last of that.
+  ;; The last message on that.
   (told-stuck nil :type list)
   (over (make-semaphore "plan over") :read-only t)
   (told (make-semaphore "plan's end told") :read-only t))
@@ -37,7 +38,7 @@ be done, a list of two texts, or is NIL."
 (defun plan-runner-now ()
   (handler-case (rpl-runner) (misuse () nil)))
 
-;;; A plan may end before BEGIN-PLAN has told which task it is.
+;;; A plan may end before BEGIN-PLAN has returned its task.
 
 (defun note-plan-end (task)
   "Let who waits for TASK, a plan, know that it is over. True if the prompt has started it."
@@ -90,8 +91,8 @@ be done, a list of two texts, or is NIL."
        (with-lock (*plan-errands-lock*)
          (find session *plan-errands* :key #'plan-errand-session))))
 
-;; Those of a trial are the trial's, and those of commands that a plan, GO-TO or a program gives
-;; that is told of them are its own.
+;; Errors in a trial belong to the trial. Those of commands issued by a plan, GO-TO or a program
+;; that gets them belong to that.
 (defmethod error-counts-p (message (session session))
   (and (null (session-visit session))
        (or (verdict-p (first (message-items message)))
@@ -179,7 +180,7 @@ answer to the last such question."
 
 (defun start-watching-plan (errand)
   (let ((runner (plan-runner-now)))
-    ;; The thread would see the run of the terminal's prompt, and this may be that of a window.
+    ;; The thread would see the run of the terminal's prompt; this may be that of a window.
     (start-thread (lambda ()
                     (let* ((*simulation* (plan-errand-simulation errand))
                            (*world* (simulation-world *simulation*)))
@@ -208,7 +209,7 @@ answer to the last such question."
          (show-messages (plan-errand-session errand)))
         (t (await-plan-headless errand))))
 
-;;; A run that was rewound has other plans under way.
+;;; A run that was rewound has other running plans.
 
 (defun take-up-plan (session task)
   "Let SESSION wait for TASK, a plan under way, as if its PLAN had just started that."

@@ -1,4 +1,4 @@
-;;;; prompt.lisp -- reading lines and doing what they say, at the terminal and in windows.
+;;;; prompt.lisp -- reading lines and running them, at the terminal and in windows.
 
 (in-package :ars-magna.cli)
 
@@ -6,7 +6,7 @@
           at-work-on abandon-session asked-of-others-p))
 
 (defun waits-for-time-p (session errands inbox)
-  "True if something has been asked for that waits for time to pass, which stands still, since
+  "True if something was requested that waits for time to pass, while time stands still, since
 SESSION had ERRANDS, and the simulation INBOX."
   (and *simulation*
        (if (live-p *simulation*) (paused-p *simulation*) (not (headless-p *simulation*)))
@@ -16,8 +16,8 @@ SESSION had ERRANDS, and the simulation INBOX."
        t))
 
 (defun do-telling-of-time (session text)
-  "Do what TEXT, a line of SESSION, says. If it asks for what cannot begin, since time stands still,
-tell somebody who sits there."
+  "Run TEXT, a line of SESSION. If it requests something that cannot begin, since time stands still,
+say so to a user at a terminal or window."
   (let ((errands (session-errands session)) (inbox (requests-waiting))
         (breakage (first (session-breaks session))))
     (if breakage
@@ -32,7 +32,7 @@ tell somebody who sits there."
                    (lines-typed (session-input session)) (session-errors session)))
 
 (defun begin-next (session text trouble)
-  "Begin the line of SESSION that is TEXT, or that TEXT is an outline of if the condition TROUBLE
+  "Begin the line of SESSION that is TEXT; or of which TEXT is an outline, if the condition TROUBLE
 says that it is too long. Return it without comments between #| and |#, of any length."
   (begin-line-of session (if trouble (line-beginning trouble) text))
   (multiple-value-bind (rest trouble) (without-blocks session text trouble)
@@ -41,7 +41,7 @@ says that it is too long. Return it without comments between #| and |#, of any l
     rest))
 
 (defun read-next (session)
-  "Return the next line of SESSION, or NIL at the end; of one that is too long to be done an
+  "Return the next line of SESSION, or NIL at the end. For a line that is too long, return an
 outline, and the condition that says so."
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
@@ -166,7 +166,7 @@ others do."
         (*message-queue* (simulation-messages simulation))
         (*forks-to-keep* t))
     (handler-case (funcall function)
-      ;; One that has come before the session was ready for it, or after.
+      ;; A message that came before the session was ready for it, or after.
       (user-interrupt () nil))))
 
 (defun run-session-apart (session simulation robot-name)
@@ -177,7 +177,7 @@ beside other sessions, until QUIT or the end of its input. Return SESSION."
                 (call-typing (lambda () (run-session session)) (session-input session))))
   session)
 
-;;; What those do to it who do not type.
+;;; What other users than those who type do to it.
 
 (defun heed-in-session ()
   "Let the session of this thread end the line that is under way, if there is one. What has broken

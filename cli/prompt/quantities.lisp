@@ -1,10 +1,10 @@
-;;;; quantities.lisp -- numbers as people say them: 90 deg, pi/2, 5 m.
+;;;; quantities.lisp -- numbers with units: 90 deg, pi/2, 5 m.
 
 (in-package :ars-magna.cli)
 
-;;; What a command takes as an angle, a length, a speed or a time may be typed with a unit, joined
-;;; to the number or as the next word, and with pi in it. A number alone is in the simulator's own
-;;; units: radians, metres (a cell is one wide), ticks.
+;;; An angle, length, speed or time may be typed with a unit, joined to the number or as the next
+;;; word, and with pi in it. A number alone is in the simulator's own units: radians, metres (a cell
+;;; is one wide), ticks.
 
 (defparameter *quantities*
   '((angle     :angle  "0.5, pi/2 or 90 deg")
@@ -26,7 +26,7 @@
     (:time   "a time"               (1 "tick" "ticks"))
     (:clock  "a time of the clock"  (nil "s" "sec" "second" "seconds" "min" "minute" "minutes"))
     (:pace   "a speed by the clock" (nil "m/s" "km/h" "cells/s" "rad/s" "deg/s")))
-  "Lists (dimension words (factor name...)...): what one of each unit is in the simulator's.")
+  "Lists (dimension words (factor name...)...): each unit's value in the simulator's units.")
 
 (defparameter *other-ways*
   '((:time   :length "GO 5 m drives so far.")
@@ -34,14 +34,13 @@
     (:speed  :pace   "Time is counted in ticks; RATE says how many pass in a second.")
     (:length :time   "GO-FORWARD 5 drives for so many ticks.")
     (:angle  :length "GO 5 m drives so far."))
-  "Lists (wanted said sentence): what to do instead with a quantity of another dimension.")
+  "Lists (wanted said sentence): advice for a quantity of the wrong dimension.")
 
 (defun dimension-of (type)
   (second (find type *quantities* :key #'first :test #'same-name-p)))
 
 (defun quantity-examples (type)
-  "Return how an argument of TYPE may be typed, such as \"pi/2 or 90 deg\"; NIL if it is no
-quantity."
+  "Return how to type an argument of TYPE, such as \"pi/2 or 90 deg\"; NIL if it is no quantity."
   (third (find type *quantities* :key #'first :test #'same-name-p)))
 
 (defun find-unit (name)
@@ -51,7 +50,7 @@ quantity."
                  when (find name names :test #'string-equal)
                    do (return-from find-unit (list dimension factor)))))
 
-;;; Joined to the number, it is read by Lisp as a symbol: 90DEG, PI/2, -3PI/4, 5M.
+;;; A unit joined to the number is read by Lisp as a symbol: 90DEG, PI/2, -3PI/4, 5M.
 
 (defun plain-number-in (text)
   "Return the number that TEXT, of digits, signs, points and slashes, is; NIL if it is none."

@@ -1,13 +1,13 @@
-;;;; reading.lisp -- reading lines, and forms and comments that go on over lines.
+;;;; reading.lisp -- reading lines, and forms and comments that span lines.
 
 (in-package :ars-magna.cli)
 
 (export '(tell-asking))
 
-;;; What is typed next is for the program then, and for the prompt only after that.
+;;; The next typed line is then for the program, and for the prompt only after that.
 
 (defgeneric tell-asking (console)
-  (:documentation "Let the user of CONSOLE know that a program reads what he types next.")
+  (:documentation "Tell the user of CONSOLE that a program reads the next line.")
   (:method ((console console))
     (unless (shiftf (console-asking-told-p console) t)
       (write-fitted console "A program waits for your answer; control-C ends the program.~%"))
@@ -31,7 +31,7 @@
   "Return the next line that is typed in SESSION, or NIL at the end. Whoever edits it can complete
 it, and have it again; if BEFORE is a text, together with that, which it goes on from."
   (let* ((line (progn
-                 ;; What goes on over lines is kept whole.
+                 ;; Forms that span lines are kept whole.
                  (unless before (keep-lines (session-input session)))
                  (let ((*program-reads* nil)) (read-line (session-input session) nil))))
          (first-p (and line (not (shiftf (reader-typed-p (session-reader session)) t))))
@@ -68,8 +68,8 @@ that."
 
 ;;; Forms that cannot be read.
 
-;;; Where the reader gives up amid a form, what stands below is the rest of it, and no command. Only
-;;; parentheses, quotes and comments say here how far it goes on.
+;;; If the reader fails inside a form, the lines below are the rest of it, not commands. Only
+;;; parentheses, quotes and comments show how far it extends.
 
 (defun skip-to (char stream)
   "Read STREAM up to and with the next CHAR that no backslash is before."
@@ -134,10 +134,10 @@ and the condition that says so; NIL at the end."
   `(handler-bind ((error (lambda (condition) (skip-after condition ,session ,text ,start))))
      ,@body))
 
-;;; A form of Lisp that goes on over lines is read while its lines come.
+;;; A form of Lisp that spans lines is read while its lines come.
 
-;;; Each character is read once or twice, however many lines there are, and what is evaluated while
-;;; it is read, after #., is so as often.
+;;; Each character is read once or twice, however many lines there are. What is evaluated during
+;;; reading, after #., is evaluated as often.
 
 (defun read-growing (session text start)
   "Return what READ-FORM does, of a form that goes on after TEXT."
@@ -175,8 +175,8 @@ One that cannot be read is read over to its end."
 
 ;;;; Comments between #| and |#
 
-;;; In a form they are Lisp's to read. Around forms, and before, in and behind other lines, they are
-;;; left out here, and lines are read until they end.
+;;; Comments in a form are read by Lisp. Around forms, and before, in and behind other lines, they
+;;; are removed here, and lines are read until they end.
 
 (defun block-at-p (text position)
   "True if a comment begins in TEXT at POSITION that goes on until |#."

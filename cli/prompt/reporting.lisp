@@ -1,17 +1,17 @@
-;;;; reporting.lisp -- what a session tells other programs, and which line has asked for it.
+;;;; reporting.lisp -- reports of a session to other programs, and which line each is for.
 
 (in-package :ars-magna.cli)
 
-;;; A session that has an account of its lines can say where a script is wrong. If its console is on
-;;; an OBJECT-STREAM, it reports by objects instead of text. Their types are in cli/README.md. Where
-;;; there is no account, NIL stands for it, and nothing is reported.
+;;; A session with an account of its lines can say where a script is wrong. If its console is on an
+;;; OBJECT-STREAM, it reports objects instead of text. Their types are in cli/README.md. Without an
+;;; account, NIL stands for it and nothing is reported.
 
 (defstruct (account (:constructor make-account (file &optional console)) (:copier nil))
-  "Where a session is in FILE, the name of a script or NIL. The line under way, TEXT, is the one
-with the number LINE, or 0 if an option has asked for it; ERRORS were there before it. CONSOLE is
-where objects are written, or NIL. WAITING are lines before it whose work waits for time to pass,
-the newest first. PLANS are pairs of an asker and the line that has begun that plan. TROUBLE-LINE
-is the one of those of a form under way that makes no sense, or NIL if that is not known."
+  "Where a session is in FILE, the name of a script or NIL. The running line, TEXT, has the number
+LINE, or 0 if an option has caused it; ERRORS is the number of errors before it. CONSOLE is where
+objects are written, or NIL. WAITING are earlier lines whose work waits for time to pass, the newest
+first. PLANS are pairs of an asker and the line that has begun that plan. TROUBLE-LINE is the number
+of the faulty line in a running form, or NIL if that is not known."
   (file nil :type (or null string) :read-only t)
   (console nil :type (or null console) :read-only t)
   (line 0 :type fixnum)
@@ -28,20 +28,19 @@ is the one of those of a form under way that makes no sense, or NIL if that is n
   (and *simulation* (simulation-tick *simulation*)))
 
 (defun report-object (account type &rest properties)
-  "Write an object of TYPE, a string, with PROPERTIES, a property list, if ACCOUNT is of what
-reports by objects. True if it is."
+  "Write an object of TYPE, a string, with PROPERTIES, a property list, if ACCOUNT reports objects.
+True if it does."
   (when (reports-p account)
     (with-console (stream (account-console account))
       (write-object (list* :type type properties) stream))
     t))
 
 (defun line-under-way (account)
-  "Return the number of the line that is being done; NIL before the first, and for what an option
-has asked for."
+  "Return the number of the running line; NIL before the first, and for an option."
   (and (plusp (account-line account)) (account-line account)))
 
 (defun report-message (account kind text &optional (line (line-under-way account)))
-  "Report a message of KIND that says TEXT, of what LINE has asked for."
+  "Report a message of KIND with TEXT, caused by LINE."
   (report-object account "message" :kind kind :text text :tick (now) :line line))
 
 (defun report-values (account texts)
@@ -109,7 +108,7 @@ then :OK or :FAILED."
       (cond (end (push (list line text good-p end) (account-waiting account))
                  (report-line account "waiting" line text))
             (t (report-line account "done" line text :ok (if good-p t :false))))
-      ;; Of plans, those of lines that do not wait any more are forgotten.
+      ;; Plans of lines that no longer wait are forgotten.
       (setf (account-plans account)
             (remove-if-not (lambda (plan)
                              (find (cdr plan) (account-waiting account) :key #'first))
@@ -120,13 +119,14 @@ then :OK or :FAILED."
 
 ;;;; Who asks
 
-;;; What a line asks for while time stands still ends under a later line, such as RESUME. So where
-;;; lines are counted, each asks by a text of its own: equal to that of others, but another object.
+;;; What a line requests while time stands still ends under a later line, such as RESUME. So where
+;;; lines are counted, each has an asker text of its own: equal to that of others, but another
+;;; object.
 
 (define-constant +asker+ "the prompt" :test #'string=
   :documentation "Who asks for what lines ask for.")
 
-;; Equal to that, but another object: an error of what a line has asked for is the line's.
+;; Equal to that, but another object: an error of the line's requests is the line's.
 (defparameter *line-asker* (copy-seq +asker+)
   "Who asks for what lines that are no Lisp ask for, where no lines are counted.")
 

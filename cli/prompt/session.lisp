@@ -1,4 +1,4 @@
-;;;; session.lisp -- one run of the prompt: what it reads, shows and asks, and what it is at.
+;;;; session.lisp -- one run of the prompt: what it reads, shows and asks, and its state.
 
 (in-package :ars-magna.cli)
 
@@ -7,14 +7,14 @@
 
 (defstruct (breakage (:constructor make-breakage (condition restarts thread sessions))
                      (:copier nil))
-  "A program that has broken and waits in THREAD, until the user of one of SESSIONS says how to go
-on. ORDER is what it is to do next, a function."
+  "A program that has broken and waits in THREAD until the user of one of SESSIONS says how to
+continue. ORDER is the function that it is to call next."
   (condition nil :type condition :read-only t)
   (restarts '() :type list :read-only t)
   (thread nil :read-only t)
   (sessions '() :type list)
   (order nil :type (or null function))
-  ;; How to go on has been shown.
+  ;; The ways to continue have been shown.
   (told-p nil :type boolean)
   (ordered (make-semaphore "order") :read-only t)
   (done (make-semaphore "order done") :read-only t))
@@ -36,14 +36,13 @@ on. ORDER is what it is to do next, a function."
 (defparameter *asking-restarts*
   '("USE-VALUE" "STORE-VALUE" "RETURN-VALUE" "CALL-FORM" "REPLACE-FUNCTION" "SPECIFY-PACKAGE"
     "USE-PACKAGE" "RENAME" "ANSWER")
-  "The names of restarts that ask for what they need.")
+  "The names of restarts that ask for their values.")
 
 (defun asks-p (restart)
   (member (restart-name restart) *asking-restarts* :test #'string=))
 
 (defun restarts-to-offer (condition)
-  "Return the ways to go on after CONDITION that a user can choose, those first that he may be
-expected to."
+  "Return the restarts for CONDITION that a user can choose, the likeliest first."
   (stable-sort (restarts-within condition)
                #'< :key (lambda (restart) (rank restart condition))))
 
@@ -51,14 +50,14 @@ expected to."
   (eq (breakage-thread breakage) (current-thread)))
 
 (defun break-words (condition)
-  "Return what CONDITION says: on a line, unless it is that a plan has stopped, with its stack."
+  "Return the text of CONDITION: on a line, unless a plan has stopped, with its stack."
   (if (plan-break-p condition)
       (visible (condition-text condition))
       (complaint-text (condition-text condition))))
 
 (defstruct (break-state (:copier nil))
-  "What waits until the user of THREAD says how it goes on: OWN has broken in that thread, which
-reads lines for it, or is NIL; OTHERS have in other threads, the oldest first."
+  "The breaks that wait for the user of THREAD: OWN has broken in that thread, which reads lines for
+it, or is NIL; OTHERS in other threads, the oldest first."
   (thread nil)
   (own nil :type (or null breakage))
   (others '() :type list))
@@ -71,17 +70,17 @@ reads lines for it, or is NIL; OTHERS have in other threads, the oldest first."
   ;; Files to load, and lines to do, before any is read.
   (files '() :type list)
   (lines '() :type list)
-  ;; In which package they are read at first; NIL for the users' own.
+  ;; The package in which they are first read; NIL for the users' own.
   (package nil :type (or null package) :read-only t)
   ;; No prompt is shown.
   (batch-p nil :type boolean :read-only t)
-  ;; What is read is shown, for transcripts.
+  ;; Lines that are read are shown, for transcripts.
   (echo-p nil :type boolean :read-only t)
   ;; The first line that is an error is the last.
   (stop-p nil :type boolean :read-only t)
-  ;; A line has been read of what is typed.
+  ;; A typed line has been read.
   (typed-p nil :type boolean)
-  ;; Nothing more is typed: nobody has said QUIT.
+  ;; Input has ended without QUIT.
   (ended-p nil :type boolean))
 
 (defvar *prompt-robot* nil
@@ -100,25 +99,26 @@ reads lines for it, or is NIL; OTHERS have in other threads, the oldest first."
   (break-state (make-break-state) :type break-state :read-only t)
   ;; Each command completes before the next is read.
   (patient-p nil :type boolean :read-only t)
-  ;; A function that is called before each line is read, outside of trials and forks: it sees to it
-  ;; that the right robot is commanded, as a window does for its own; or NIL.
+  ;; A function to call before each line is read, outside of trials and forks, or NIL: it makes sure
+  ;; that the right robot is commanded, as a window does for its own.
   (place nil :type (or null function) :read-only t)
-  ;; The run that it was in when it read a line last; see TELL-WHEREABOUTS.
+  ;; The run that it was in when it last read a line; see TELL-WHEREABOUTS.
   (whereabouts nil)
-  ;; The trial that it is in, or NIL, and in how many forks it is, one in another.
+  ;; The trial that it is in, or NIL, and how many nested forks it is in.
   (visit nil)
   (forks 0 :type fixnum)
-  ;; What the plans are called that it has started; those of a rewound run are its own, too.
+  ;; The names of the plans that it has started; those of a rewound run are its own, too.
   (plans '() :type list)
-  ;; That of the last plan, if it failed, and the plan's name, in a list.
+  ;; The failure of the last plan, if it failed, and the plan's name, in a list.
   (failure nil)
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (errands '() :type list)
   (lisp-p nil)
-  ;; If the run of plans that it waits for was rewound: what to call first, with this session.
+  ;; After a rewind of a run whose plans it waits for: the function to call first, with this
+  ;; session.
   (after-rewind nil :type (or null function))
   (over-p nil)
-  ;; The robot to go on with, in batch mode, when this one's lines are over.
+  ;; The robot to continue with, in batch mode, when this one's lines are over.
   (next-robot nil))
 
 (defmethod print-object ((session session) stream)

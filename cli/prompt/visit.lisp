@@ -7,23 +7,23 @@
   (experiment nil :read-only t)
   (condition nil :read-only t)
   (trial 0 :type integer :read-only t)
-  ;; Where it has a row, or NIL.
+  ;; The directory of its row, or NIL.
   (directory nil :type (or null string) :read-only t)
   ;; A line has been read in it.
   (begun-p nil :type boolean)
-  ;; How many ticks are to pass before the next line, and whether to say so when they have.
+  ;; How many ticks are to pass before the next line, and whether to report when they have.
   (steps 0 :type (integer 0))
   (stepped-p nil :type boolean)
-  ;; What says at a terminal how many have passed, or NIL.
+  ;; The progress line at a terminal, or NIL.
   (progress nil)
   ;; Ticks pass by themselves, at RATE, the next when it is DUE.
   (running-p nil :type boolean)
   (rate *default-rate*)
   (due 0d0 :type double-float)
-  ;; The user has pressed control C while ticks passed; it is being left.
+  ;; The user has pressed Control-C while ticks passed; it is being left.
   (interrupted-p nil :type boolean)
   (left-p nil :type boolean)
-  ;; What came of it, once it is over, and the tick from which on it was no longer the same run.
+  ;; Its result, once it is over, and the tick at which it was changed.
   (result nil)
   (changed nil :type (or null integer)))
 
@@ -71,10 +71,10 @@ has none."
 ;;;; The prompt inside of a trial
 
 ;;; The prompt's own thread runs the trial, and reads lines at its gate, between two ticks. So what
-;;; lines look at stands still, and is the trial's own: robots, plans, variables. A line that wants
-;;; time to pass says so, and has it when it is done. Where somebody types, ticks pass at a pace
-;;; while nothing is typed. Whatever leads out of the trial, be it a line, an error or control C,
-;;; unwinds it; there is nothing else to be ended.
+;;; lines see stands still and belongs to the trial: robots, plans, variables. A line that needs
+;;; time says so, and gets it when it is done. At a terminal or window, ticks pass at the set rate
+;;; while nothing is typed. Everything that leaves the trial, be it a line, an error or Control-C,
+;;; unwinds it; nothing else needs to be ended.
 
 (defun leave-visit (session &optional (next #'values))
   "Leave the trial that SESSION is in; then call NEXT, a function. Nobody hears what the trial has
@@ -89,7 +89,7 @@ to say of that."
       (leave-visit session function)
       (funcall function)))
 
-;;; Has a line changed the run? Then that is no longer the one of the experiment.
+;;; Has a line changed the run? Then it is no longer the experiment's.
 
 (defun visit-state ()
   "Return what decides how the current simulation goes on: a digest, and what has been asked of it."

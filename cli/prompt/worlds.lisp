@@ -1,13 +1,13 @@
-;;;; worlds.lisp -- the worlds that the prompt can go to, and what their robots are called.
+;;;; worlds.lisp -- the worlds that the prompt can enter, and the names of their robots.
 
 (in-package :ars-magna.cli)
 
 (export '(package-of-caller))
 
-;;; The variable of a robot is a symbol of the package that its world was written in. ARS-USER
-;;; imports the robots that the prompt may command, so that (robot-turn robbie 1 nil) means what it
-;;; says. What the user has defined under such a name himself stays as it is; and a robot that he
-;;; defines under it is another one, his own.
+;;; The variable of a robot is a symbol of the package in which its world was written. ARS-USER
+;;; imports the robots that the prompt may command, so that (robot-turn robbie 1 nil) works. A
+;;; user's own definition of such a name stays as it is; a robot that the user defines under it is
+;;; another one.
 
 (defun user-package () (find-package :ars-user))
 
@@ -20,10 +20,10 @@
        (robot-p (symbol-value symbol))))
 
 (defun call-by-its-name (name)
-  "Let NAME, a robot's variable, be known in ARS-USER, unless its name means something else there."
+  "Import NAME, a robot's variable, into ARS-USER, unless its name means something else there."
   (multiple-value-bind (known status) (find-symbol (symbol-name name) (user-package))
     (unless (eq known name)
-      ;; What has merely been read, or is a robot's of another world, gives way.
+      ;; A symbol that has only been read, or is a robot's of another world, is replaced.
       (when (and (member status '(:internal :external))
                  (or (not (defined-p known)) (other-robot-p known)))
         (unintern known (user-package))
@@ -48,12 +48,12 @@
 
 ;;;; Worlds
 
-;;; The shipped worlds, in the directory worlds/, are there from the start and called as their maps
-;;; are. Others come from files: Lisp files that define a map and at least one robot in it.
+;;; The shipped worlds, in the directory worlds/, are always there and have the names of their maps.
+;;; Others come from files: Lisp files that define a map and at least one robot in it.
 
 (defun package-of-caller ()
-  "Return the package in which a prompt begins that is opened from here: the current one, unless
-that does not know the simulator."
+  "Return the package of a prompt that is opened from here: the current one, unless it does not use
+the simulator's."
   (if (eq 'simulator (find-symbol (string 'simulator) *package*))
       *package*
       (user-package)))
@@ -67,19 +67,19 @@ of FLOAT-FORMAT."
     (nisp:in-readtable :nisp)
     (funcall function)))
 
-;;; A file has the floats that (load ...) reads in any Lisp, so that it defines one world on all
-;;; roads.
+;;; A file is read with the floats of (load ...), so that it defines the same world however it is
+;;; loaded.
 
 (defun load-lisp (path)
-  "Load the Lisp file at PATH as users write it: in ARS-USER and Nisp's syntax, unless
-it says otherwise. Signals BAD-LINE if it is something else."
+  "Load the Lisp file at PATH as users write it: in ARS-USER and Nisp's syntax, unless it says
+otherwise. Signals BAD-LINE if it is something else."
   (check-lisp-file path)
   (call-with-syntax 'single-float
                     (lambda () (call-quietly (lambda () (load-forms path))))))
 
 (defun blueprints-defined-by (function)
-  "Call FUNCTION. Return the blueprints that it defines, and leaves defined, in the order in which
-it does; whatever had their names before."
+  "Call FUNCTION. Return the blueprints that it defines and that are still defined at its end, in
+order."
   (let* ((defined '())
          (*definition-listener* (lambda (object) (push object defined))))
     (funcall function)

@@ -1,19 +1,18 @@
-;;;; console.lisp -- an output stream that knows where the cursor is and whether a prompt stands.
+;;;; console.lisp -- an output stream that tracks the cursor and whether a prompt is shown.
 
 (in-package :ars-magna.cli)
 
 (export '(console console-line console-asked-p wipe draw leave-line clear-screen fitted))
 
-;;; What the simulator and the user's programs print comes from other threads, at any time. The
-;;; console keeps what each of them writes in one piece, and knows when a prompt has been written
-;;; over and must be shown again. A terminal moves the cursor when the user presses return; nobody
-;;; but ANSWERED can know. When what is written cannot be delivered, it is lost, and the program
-;;; ends.
+;;; Output of the simulator and of users' programs comes from other threads, at any time. The
+;;; console keeps each write in one piece. It records when a prompt has been written over and must
+;;; be shown again. A terminal moves the cursor when the user presses Return; only ANSWERED tells
+;;; the console of that. Output that cannot be delivered is lost, and the program ends.
 ;;;
-;;; While the prompt edits a line itself, that stands below all that is written, with the prompt
-;;; before it: it is taken off before something is written, and drawn again when that is shown.
+;;; While the prompt edits a line itself, that line is below all output, after the prompt. It is
+;;; erased before output is written, and drawn again when the output is shown.
 
-(defconstant +longest-line-kept+ 500 "How many characters of a line that goes on are kept.")
+(defconstant +longest-line-kept+ 500 "How many characters of an unfinished line are kept.")
 
 (defclass console (fundamental-character-output-stream)
   ((stream :initarg :stream :reader console-stream)
@@ -171,7 +170,7 @@ below.")
       (let ((prompt (console-rest console)))
         (setf (console-line console)
               (make-drawn-line :label prompt :shown (list prompt "" 0))))
-      ;; What has been written last is the line's now. Under one that stands, it is not.
+      ;; The last output now belongs to the line. Under a shown line, it does not.
       (begin-row console))
     (wipe console stream)
     (draw console stream)

@@ -1,18 +1,17 @@
-;;;; drawn-line.lisp -- a line that is being typed, as it stands on a terminal.
+;;;; drawn-line.lisp -- drawing a line that is being typed on a terminal.
 
 (in-package :ars-magna.cli)
 
 (export '(rows-to-show))
 
-;;; The line stands below all that is written meanwhile: it is wiped out before something is
-;;; written, and drawn again after that. It has as many rows as the window is wide for; of more
-;;; rows than the window has, those around the cursor are drawn. A window that becomes narrower
-;;; breaks rows anew, as we do; so rows that go on in the next one are not ended by a newline. It
-;;; may push the first of them out at its top: so the line is drawn again when the window has
-;;; changed.
+;;; The line is below all output: it is erased before output is written, and drawn again after that.
+;;; It breaks into rows at the width of the window; if it has more rows than the window, those
+;;; around the cursor are drawn. A window that becomes narrower breaks rows again, in the same way,
+;;; so a row that continues in the next is not ended by a newline. It may push the first rows out at
+;;; its top, so the line is drawn again when the window has changed.
 
 (define-record drawn-line
-  "A line that is being typed. It stands on the screen if SHOWN is true."
+  "A line that is being typed. SHOWN is true if it is on the screen."
   (label "" string "the prompt that stands before the line. Can be set" :writable :export)
   (text "" string "what has been typed of the line. Can be set" :writable :export)
   (point 0 (integer 0) "where in the text of the line the cursor is. Can be set" :writable :export)
@@ -47,7 +46,7 @@ not on the screen" :writable :export)
                  (setf place-row (length rows)
                        place-column column)))
              (put (shown width)
-               ;; What is wide may not fit although there is room.
+               ;; A wide character may not fit although there is room for a narrow one.
                (when (> (+ column width) columns) (end-row :newline))
                (write-string shown out)
                (incf column width)
@@ -82,8 +81,8 @@ cursor."
   "Write ROWS. The cursor is then in the last of them."
   (loop for ((text how) . more) on rows
         do (write-string text stream)
-           ;; Only what is written next moves the cursor on from a row that is full; and that need
-           ;; not be in the next one.
+           ;; The cursor leaves a full row only when the next character is written, and then not
+           ;; always for the next row.
            (when (and more (or how (string= "" (first (first more))))) (terpri stream))))
 
 (defun draw-line (line stream columns height)

@@ -1,12 +1,12 @@
-;;;; escapes.lisp -- text on a terminal: colours, where it is written, how many columns it takes.
+;;;; escapes.lisp -- escape codes of terminals: colours, cursor, and how wide text is.
 
 (in-package :ars-magna.cli)
 
 (export '(painted-spans unpainted-text broken-text))
 
-;;; No other file of the prompt knows an escape code. They are those that all terminals of today
-;;; have in common. Colours are the sixteen that users choose themselves, so that they suit their
-;;; background; white and black are left to be what text is.
+;;; Only this file has escape codes. It uses those that all present terminals have. Colours are the
+;;; sixteen that users choose themselves, so that they suit the background; white and black are left
+;;; for plain text.
 
 (defparameter *inks*
   '(("RED" . "31") ("GREEN" . "32") ("YELLOW" . "33") ("BLUE" . "34") ("VIOLET" . "35")
@@ -15,9 +15,9 @@
     ("GRAY" . "90") ("SILVER" . "90") ("ORANGE" . "33") ("BROWN" . "33") ("GOLD" . "93")
     ("PINK" . "95") ("PURPLE" . "35") ("MAGENTA" . "35") ("TURQUOISE" . "36")
     ("BOLD" . "1") ("REVERSE" . "1;7"))
-  "What inks are called, and their codes.")
+  "The names and codes of inks.")
 
-(defconstant +escape+ #\Escape "What codes begin with, of terminals and of their keys.")
+(defconstant +escape+ #\Escape "The beginning of the codes of terminals and of their keys.")
 
 (defun escape (control &rest arguments)
   (format nil "~C[~?" +escape+ control arguments))
@@ -74,7 +74,7 @@ terminal unless the environment has NO_COLOR."
                 (member (environment-value "NO_COLOR") '(nil "") :test #'equal)
                 t))))
 
-;;; Where the cursor is, and what is wiped out.
+;;; Moving the cursor, and erasing.
 
 (defun cursor-up (count)
   (if (plusp count) (escape "~DA" count) ""))
@@ -83,7 +83,7 @@ terminal unless the environment has NO_COLOR."
   (if (plusp count) (escape "~DC" count) ""))
 
 (defun row-cleared ()
-  "Return what wipes out the row of the cursor, from there on."
+  "Return the code that erases the row of the cursor, from there on."
   (escape "K"))
 
 (defun cleared-below ()
@@ -104,7 +104,7 @@ terminal unless the environment has NO_COLOR."
   "Return what a terminal hands over after what was pasted."
   (escape "201~~"))
 
-;;; A screen of its own, on which what changes is written over.
+;;; A separate screen, for output that is updated in place.
 
 (defun screen-begun ()
   "Return what lets a terminal show an empty screen, and no cursor; what was there is kept."
@@ -127,8 +127,8 @@ terminal unless the environment has NO_COLOR."
 
 ;;;; Columns
 
-;;; Accents take no column of their own, the characters of East Asia two. Codes that terminals obey,
-;;; such as those for colours, take none.
+;;; Accents have no column of their own, East Asian characters have two. Codes that terminals
+;;; interpret, such as those for colours, have none.
 
 (defun char-columns (char)
   (if (< (char-code char) 256) 1 (char-width char)))
@@ -148,7 +148,7 @@ terminal unless the environment has NO_COLOR."
 (defun text-columns (text)
   (reduce #'+ (columns-of-chars text)))
 
-;;; Lines that are too long are broken between words.
+;;; Long lines are broken between words.
 
 (defun breaking-point (line columns)
   "Return where LINE is to be broken so that what comes before takes no more than COLUMNS: at the

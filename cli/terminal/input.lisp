@@ -1,31 +1,31 @@
-;;;; input.lisp -- lines as they are typed: any bytes, of any length, from what may go away.
+;;;; input.lisp -- lines as they are typed: any bytes, any length, from streams that may end.
 
 (in-package :ars-magna.cli)
 
-;;; What is not UTF-8 is read as question marks. A line that is too long is an error once it has
-;;; been read over, so that the next one is the next. What cannot be read any more, such as a
-;;; terminal that is gone, has ended.
+;;; Bytes that are not UTF-8 are read as question marks. A line that is too long is an error after
+;;; all of it has been read, so that the next line is read correctly. A stream that can no longer be
+;;; read, such as a terminal that is gone, counts as ended.
 
-(defconstant +longest-line-typed+ 1000000 "How many bytes a line has at most.")
+(defconstant +longest-line-typed+ 1000000 "Most bytes of a line.")
 
-;; What stands behind so much of one line may be taken for something else.
+;; What follows so many bytes of one line may be misread.
 (defconstant +longest-outline+ 50000000
-  "How many bytes of a line are looked at for parentheses and the like.")
+  "How many bytes of a line are searched for parentheses and the like.")
 
 (define-condition line-too-long (bad-line)
   ((beginning :initarg :beginning :reader line-beginning)
    (outline :initarg :outline :reader line-outline))
-  (:documentation "A line that was typed is too long. BEGINNING is how it begins, OUTLINE a text
-that has its beginning, parentheses, quotes, marks of comments and of each word a beginning."))
+  (:documentation "A line that was typed is too long. BEGINNING is how it begins; OUTLINE is a text
+with its beginning, its parentheses, quotes, comment marks, and a beginning of each word."))
 
 (defvar *program-reads* nil
-  "What is called before a program of the user, not the prompt, reads a line that is typed; NIL
-while the prompt reads.")
+  "A function to call before a user's program, not the prompt, reads a typed line; NIL while the
+prompt reads.")
 
 (defclass typed-text (fundamental-character-input-stream)
   ((octets :initarg :octets :reader typed-octets)
    (by-hand-p :initarg :by-hand-p :initform nil :reader typed-by-hand-p)
-   ;; What is left of the line that is being read, and where that begins.
+   ;; The rest of the line that is being read, and where that begins.
    (rest :initform "" :accessor typed-line)
    (position :initform 0 :accessor typed-position)
    (count :initform 0 :accessor typed-count)
@@ -90,11 +90,11 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
   (:method ((stream typed-text))
     (multiple-value-bind (octets too-long-p) (read-octets (typed-octets stream))
       (when too-long-p (reject-length octets))
-      ;; Some editors begin files with a mark of the order of bytes.
+      ;; Some editors begin files with a byte order mark.
       (string-left-trim '(#.(code-char #xFEFF)) (decoded octets)))))
 
 (defun fill-line (stream)
-  "Let STREAM have something left of a line, unless it is at its end."
+  "Read more of a line for STREAM, unless it is at its end."
   (when (= (typed-position stream) (length (typed-line stream)))
     (when *program-reads* (funcall *program-reads*))
     (setf (typed-position stream) 0
@@ -125,7 +125,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
   (decf (typed-position stream))
   nil)
 
-;; A stream for questions that is made of this one asks for it.
+;; A stream for questions that is built on this one calls this.
 (defmethod stream-line-column ((stream typed-text))
   nil)
 
@@ -136,8 +136,8 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
 (defmethod stream-listen ((stream typed-text))
   (or (typed-ahead-p stream) (listen (typed-octets stream))))
 
-;; Somebody may have typed too much; what a script or another program says is meant. The rest of a
-;; line that a program has begun to read, as Y-OR-N-P of "yes", is no line for the prompt, though.
+;; A user may have typed too much; a script or another program means what it says. But the rest of a
+;; line that a program has begun to read, as Y-OR-N-P reads "yes", is no line for the prompt.
 (defmethod stream-clear-input ((stream typed-text))
   (when (or (typed-by-hand-p stream)
             (plusp (typed-position stream)))
@@ -145,8 +145,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
   (when (typed-by-hand-p stream) (clear-input (typed-octets stream)))
   nil)
 
-;;; Whether something has been typed can be found out, without waiting for it, of this process's own
-;;; streams only.
+;;; Only streams of this process can be checked, without waiting, for typed input.
 
 (defun source-of (stream)
   "Return the stream that what STREAM reads comes from."
@@ -167,13 +166,13 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
 
 ;;;; What another thread hands over
 
-;;; As a terminal's keys are read from a file, those of a window are read from such a stream: each
-;;; character stands for an octet.
+;;; A terminal's keys are read from a file, those of a window from such a stream: each character is
+;;; an octet.
 
 (defclass handed-octets (fundamental-character-input-stream)
   ((lock :initform (make-lock "octets") :reader handed-lock)
    (ready :initform (make-semaphore "octets") :reader handed-ready)
-   ;; Those handed over last, how many of them have been read, and whether more may come.
+   ;; The last octets, how many of them have been read, and whether more may come.
    (octets :initform "" :accessor handed-string)
    (start :initform 0 :accessor handed-start)
    (over-p :initform nil :accessor handed-over-p))

@@ -1,11 +1,11 @@
-;;;; json.lisp -- output for other programs: objects of JSON, one on each line.
+;;;; json.lisp -- output for other programs: JSON objects, one on each line.
 
 (in-package :ars-magna.cli)
 
-;;; Nothing of JSON is ever read here, and what is written is simple, so that a library would be one
-;;; more to install for forty lines. A property list becomes an object, whose keys have underscores
-;;; for hyphens; a vector an array; T, :FALSE and NIL become true, false and null; other symbols are
-;;; strings in lower case.
+;;; The prompt never reads JSON and writes simple objects only, so forty lines here replace a
+;;; library. A property list becomes an object, with underscores for hyphens in its keys; a vector
+;;; becomes an array; T, :FALSE and NIL become true, false and null; other symbols become strings in
+;;; lower case.
 
 (defun write-json-number (number stream)
   (let ((*read-default-float-format* 'double-float))

@@ -1,11 +1,11 @@
-;;;; layout.lisp -- how the prompt writes what goes wrong, numbers, values and running text.
+;;;; layout.lisp -- how the prompt writes errors, numbers, values and running text.
 
 (in-package :ars-magna.cli)
 
 (export '(bad-line))
 
-;;; Whoever makes a mistake may have typed a list without an end, an object that cannot be printed,
-;;; or bytes that a terminal would obey.
+;;; An error message may have to show a list without an end, an object that cannot be printed, or
+;;; bytes that a terminal would interpret.
 
 (define-condition bad-line (ars-magna-error)
   ((text :initarg :text :reader bad-line-text))
@@ -19,12 +19,12 @@
 ;;; Conditions.
 
 (define-constant +unprintable+
-    "What was to be said cannot be printed. Perhaps a method for PRINT-OBJECT fails."
+    "The message cannot be printed. Perhaps a method for PRINT-OBJECT fails."
   :test #'string=
-  :documentation "What is said where not even an error can be.")
+  :documentation "The message if not even an error can be printed.")
 
 (defun ending-text (condition)
-  "Return what CONDITION, which ends this process, says, if that can be printed."
+  "Return the text of CONDITION, which ends this process, if it can be printed."
   (if (string= "" (own-text condition)) +unprintable+ (condition-text condition)))
 
 (defun condition-text (condition)
@@ -47,8 +47,8 @@
 
 ;;;; Values
 
-;;; As in the session of manual E: positions and angles with two decimals, readings with one, truth
-;;; as Yes and No, symbols capitalised, four attributes to a line.
+;;; As in the session of manual E: positions and angles have two decimals, readings one; truth is
+;;; Yes and No; symbols are capitalised; four attributes go on a line.
 
 (defun amount-text (number)
   "Return NUMBER, a size or weight that somebody specified, as he would write it."
@@ -139,7 +139,7 @@ has a line of its own if it is too long."
                       return i)))
     (subseq text 0 end)))
 
-;;; A live world is looked at between two ticks.
+;;; A live world is read between two ticks.
 
 (defun call-still (function)
   "Write what FUNCTION writes to standard output while the world stands still."

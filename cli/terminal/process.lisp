@@ -19,7 +19,7 @@ can, or is.")
     (input-within-p stream seconds)))
 
 (defun say-on-error-output (text)
-  "Write TEXT to the error output, whatever state streams are in, as a line that says who says so."
+  "Write TEXT to the error output as a line that names the program, whatever state streams are in."
   (flet ((write-to (output)
            (write-string (concatenate 'string "ars-magna: " text '(#\Newline)) output)
            (finish-output output)))
@@ -27,8 +27,8 @@ can, or is.")
     (handler-case (write-to (text-output 2))
       (error () (ignore-errors (write-to *error-output*))))))
 
-;;; Control C. It reaches this process's first thread, between any two of its instructions. So that
-;;; it ends what the user wants to end and nothing else, the prompt holds it: see RUN-SESSION.
+;;; Control-C. It reaches this process's first thread, between any two of its instructions. The
+;;; prompt catches it, so that it ends only what the user wants to end: see RUN-SESSION.
 
 (defvar *interrupts-while-ending* nil
   "How often control C has come since one began to end this process; NIL while none has.")
@@ -46,7 +46,7 @@ can, or is.")
     (with-simple-restart (go-on "Go on.")
       (signal-user-interrupt))))
 
-;; What control C ends is to be put in order before this process ends; often it comes twice.
+;; After Control-C, cleanup must finish before this process ends; Control-C often comes twice.
 (defun take-interrupt ()
   "Heed that control C has come, unless it has already begun to end this process."
   (cond ((null *interrupts-while-ending*) (heed-interrupt))
@@ -72,8 +72,8 @@ values of THEN, another function, which is not interrupted."
             (funcall function)))
       (user-interrupt () (funcall then)))))
 
-;; Users' code may take what is signalled here for an error of its own, or let no interrupt in. What
-;; counts how often control C comes is called in any thread, and lets no code be called but ours.
+;; Users' code may handle this signal as an error of its own, or block interrupts. The function that
+;; counts how often Control-C comes runs in any thread and calls no users' code.
 
 (defvar *before-ending-at-once* nil
   "A function of no arguments to call before control C ends this process at once; NIL where somebody
@@ -109,27 +109,28 @@ third time, or, unless it came twice for once, the second if the first has had n
 
 ;;;; The terminal
 
-;;; Left alone, a terminal hands over whole lines, and shows what is typed wherever the cursor is.
-;;; While the prompt edits lines itself, it hands over each key at once and shows nothing. What
-;;; control C does is told apart: while a line is carried out, it is a signal; while one is typed, a
-;;; key like others, so that nothing typed before or after it comes in another order.
+;;; By default, a terminal passes on whole lines, and echoes what is typed wherever the cursor is.
+;;; While the prompt edits lines itself, the terminal passes on each key at once without echo.
+;;; Control-C works in two ways: while a line runs, it is a signal; while one is typed, it is a key
+;;; like others, so that the order of keys is kept.
 
 (defvar *first-manner* nil "The manner of the terminal before the prompt changed it, or NIL.")
 (defvar *keys-interrupt-p* nil "True if control C and its like are signals, as said last.")
-(defvar *continued-p* nil "True if this process was stopped and goes on, and nobody has seen that.")
+(defvar *continued-p* nil "True if this process was stopped and continues, and this has not been
+noticed yet.")
 
 (defun manner ()
-  "Return the manner of the terminal, as the system keeps it, or NIL if there is no terminal."
+  "Return the mode of the terminal, as the system keeps it, or NIL if there is no terminal."
   (ignore-errors (sb-posix:tcgetattr 0)))
 
 (defun set-manner (manner)
-  "Let the terminal have MANNER. One that is gone needs none."
+  "Set the mode of the terminal to MANNER. Do nothing if it is gone."
   (ignore-errors (sb-posix:tcsetattr 0 sb-posix:tcsanow manner)))
 
 (defun hand-over-keys (&key interrupts)
-  "Let the terminal hand over keys as they are pressed, without showing them. If INTERRUPTS is true,
-control C and its like are signals instead, which let what is on its way to the screen arrive. Only
-within CALL-HANDING-OVER-KEYS."
+  "Let the terminal pass on keys as they are pressed, without echo. If INTERRUPTS is true, Control-C
+and the like are signals instead, which let pending output reach the screen. Only within
+CALL-HANDING-OVER-KEYS."
   (setf *keys-interrupt-p* interrupts)
   (let ((manner (manner))
         (line-manner (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))
@@ -142,7 +143,7 @@ within CALL-HANDING-OVER-KEYS."
       (set-manner manner))))
 
 (defun restore-manner ()
-  "Let the terminal hand over lines, as it did before the prompt began to edit them, if it did."
+  "Let the terminal pass on lines again, if the prompt had begun to edit them."
   (when *first-manner* (set-manner *first-manner*)))
 
 (defun call-handing-over-keys (function)
@@ -153,20 +154,19 @@ within CALL-HANDING-OVER-KEYS."
     (setf *first-manner* nil)))
 
 (defun stop-for-a-while ()
-  "Let whoever started this process have the terminal, as control Z wants, until this process is
-told to go on."
+  "Give the terminal to the parent process, as Control-Z does, until this process continues."
   (restore-manner)
   (sb-posix:kill 0 sb-posix:sigtstp)
   (hand-over-keys))
 
-;; Whoever had the terminal meanwhile, such as a shell, has left it in a manner of his own.
+;; Another program, such as a shell, may have changed the mode of the terminal meanwhile.
 (defun take-terminal-again ()
-  "Let the terminal hand over keys as before, as this process goes on that was stopped."
+  "Let the terminal pass on keys again, as this process continues after a stop."
   (hand-over-keys :interrupts *keys-interrupt-p*)
   (setf *continued-p* t))
 
 (defun quit-by-signal ()
-  "End this process as control \\ does where no keys are handed over."
+  "End this process as Control-\\ does when keys are not passed on."
   (restore-manner)
   (sb-posix:kill (process-number) sb-posix:sigquit))
 

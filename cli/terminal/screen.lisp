@@ -1,9 +1,9 @@
-;;;; screen.lisp -- what changes in its place on a terminal: a screen, as of WATCH, and a line.
+;;;; screen.lisp -- output that is updated in place: a screen, as of WATCH, and a line.
 
 (in-package :ars-magna.cli)
 
 (defun write-at-once (text console)
-  "Write TEXT to what is below CONSOLE, whether or not that holds back what is written to it."
+  "Write TEXT below CONSOLE, whether or not CONSOLE holds back output."
   (with-console (stream console)
     (write-string text stream)
     (finish-output stream)))
@@ -36,7 +36,7 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
      (unwind-protect (call-open-to-interrupts function)
        (end-screen console)))))
 
-;;; A line that says how far something has come.
+;;; A line that shows progress.
 
 (defstruct (progress-line (:constructor make-progress-line (console)) (:copier nil))
   "A line of CONSOLE that says how far something has come, once that takes a while."
@@ -65,7 +65,7 @@ if it is time to."
 
 (defun say (control &rest arguments)
   "Tell the user something beside what he has asked for."
-  ;; A line that tells of progress may stand there.
+  ;; A line that shows progress may be there.
   (when (interactive-stream-p *error-output*)
     (format *error-output* "~C~A" #\Return (row-cleared)))
   (format *error-output* "ars-magna: ~?~%" control arguments)
