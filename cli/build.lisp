@@ -1,10 +1,10 @@
 ;;;; build.lisp -- compiles the project for ./cli/ars-magna and ./tests/run.
 
-;;; Loaded into a bare SBCL by those scripts, which say in the environment where compiled files
-;;; go. For the tests, a warning of any kind, undefined functions included, ends the build with
-;;; status 2 and leaves none of the project's compiled files behind, so that the next build finds it
-;;; again. For users, who may have another SBCL, what ASDF accepts is accepted; the tests compile
-;;; anew what was compiled so with warnings.
+;;; Those scripts load this file into a bare SBCL. The environment says where compiled files go. For
+;;; the tests, any warning, undefined functions included, ends the build with status 2 and removes
+;;; the project's compiled files, so that the next build finds it again. For users, who may have
+;;; another SBCL, whatever ASDF accepts is accepted; the tests compile files again that were so
+;;; compiled with warnings.
 
 (require "asdf")
 
@@ -28,7 +28,7 @@
     (and value (uiop:parse-native-namestring value))))
 
 (defvar *cache* (path-in-environment "ARS_MAGNA_CACHE")
-  "The directory of all that is compiled; NIL means ASDF's own.")
+  "The directory of all compiled files; NIL means ASDF's own.")
 
 (defun project-fasls ()
   (uiop:subpathname *cache* "project/"))
@@ -37,7 +37,7 @@
   (uiop:subpathname *cache* "libraries/"))
 
 (defun configure ()
-  "Let ASDF find the project here, put compiled files into the cache, and stay as it is."
+  "Make ASDF find the project here and put compiled files into the cache."
   (mapc #'asdf:register-immutable-system '("asdf" "uiop"))
   (asdf:initialize-source-registry
    `(:source-registry (:directory ,*root*) :inherit-configuration))
@@ -108,7 +108,7 @@
                        (remove-if (lambda (name) (eql 0 (search "sb-" name)))
                                   (sort (libraries "ars-magna/cli") #'string<))))))))
 
-;;; What has been loaded besides the project: library_state in setup.sh looks at it at each start.
+;;; The libraries that were loaded: library_state in setup.sh checks them at each start.
 
 (defun loaded-libraries ()
   "Return the systems that are loaded, but for the project's and those that SBCL comes with."
@@ -178,7 +178,7 @@ for what it is told about that, and where Quicklisp does."
 
 (defvar *began* (get-universal-time) "When this Lisp has begun.")
 
-(defvar *damaged-p* nil "True if what was compiled before cannot be loaded.")
+(defvar *damaged-p* nil "True if compiled files cannot be loaded.")
 
 (defun loading-old-p ()
   "True while a file is loaded that was compiled before this Lisp began."
@@ -263,7 +263,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
   (unless (some #'missing-p (libraries "ars-magna/clim-tests"))
     (load-strictly "ars-magna/clim-tests")))
 
-;;; McCLIM, which only the window needs, is found by ASDF or through a Quicklisp that is installed.
+;;; McCLIM, which only the window needs, is found by ASDF or by an installed Quicklisp.
 
 (defun print-window-libraries ()
   "Print by what McCLIM is to be had: asdf, quicklisp, or nothing; or why CLX, which it needs, does
@@ -285,9 +285,9 @@ not work."
 ;;; The prompt.
 
 (defun save-prompt (&optional (system "ars-magna/cli"))
-  "Save a core that runs the prompt, with SYSTEM, in the file that the environment says."
+  "Save a core that runs the prompt, with SYSTEM, in the file named in the environment."
   (load-project system)
-  ;; What is in the core is not to be compiled again under its user.
+  ;; Files in the core must not be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)
   (uiop:symbol-call :ars-magna.cli :make-process-own)

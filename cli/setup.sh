@@ -1,21 +1,21 @@
-# setup.sh -- what ./cli/ars-magna and ./tests/run share: what is missing, what is out of date.
+# setup.sh -- shared by ./cli/ars-magna and ./tests/run: installing and compiling what is needed.
 #
-# To be sourced with $root set to the project's directory. Everything that is made here lies in
+# Source it with $root set to the project's directory. All files that it makes are in
 # $cache, one directory for each checkout and version of SBCL: compiled files, logs, saved cores.
 
 say() { printf 'ars-magna: %s\n' "$*" >&2; }
 
 give_up() { say "$*"; exit 1; }
 
-# Programs take another view of a home with a relative name.
+# Programs interpret a relative home directory differently.
 case ${HOME:-/} in /*) ;; *) HOME=$PWD/$HOME ;; esac
 
-# Signals. Whoever ends a start ends what it has begun too. The shell heeds a signal only when its
-# child has ended, unless it waits for one in the background.
+# Signals. Ending a start also ends the processes that it has begun. The shell handles a signal only
+# after its child has ended, unless it waits for a child in the background.
 
 watching=
 
-heeding() {  # COMMAND...: run it, and end it if this shell is told to end meanwhile.
+heeding() {  # COMMAND...: run it, and end it if this shell is ended meanwhile.
     watching=yes
     "$@" &
     wait $!
@@ -24,8 +24,8 @@ heeding() {  # COMMAND...: run it, and end it if this shell is told to end meanw
     return $ended
 }
 
-# A Lisp may hang in what it does when it is told to end. Halves that it leaves are forgotten later.
-end_by() {  # SIGNAL: end the child and this shell, as if nothing heeded the signal.
+# A Lisp may hang in its exit handlers, so it is killed. Half-written files are removed later.
+end_by() {  # SIGNAL: end the child and this shell, as by default for the signal.
     trap '' HUP INT TERM
     [ -z "$watching" ] || { kill -s KILL "$!" && wait "$!"; } 2>/dev/null
     [ "$1" != INT ] || say stopped.
@@ -49,7 +49,7 @@ make_private() {  # DIRECTORY: true if it is there and ours to write.
 }
 
 choose_cache() {
-    # Who starts SBCL by a script of his may have it print more.
+    # A user's script for SBCL may print more.
     version=$(sbcl --version 2>/dev/null | grep '^SBCL ' | tail -n 1 | tr -c 'A-Za-z0-9.\n' '-')
     own=$(printf '%s' "$root" | cksum | cut -d ' ' -f 1)/${version:-no-SBCL}
     cache=$(home_directory "${XDG_CACHE_HOME:-}" .cache)/ars-magna/$own
@@ -87,7 +87,7 @@ plainly='--noinform --no-sysinit --no-userinit --non-interactive'
 
 plain_sbcl() { heeding sbcl $plainly "$@" </dev/null; }
 
-# build.lisp writes to the standard output what went wrong, SBCL to the other one.
+# build.lisp writes errors to the standard output, SBCL to the error output.
 ask_lisp() {  # FORM: what this form of build.lisp prints.
     plain_sbcl --load "$root/cli/build.lisp" --eval "$1"
 }
@@ -133,18 +133,18 @@ ensure_packages() {  # SYSTEM...
     choose_cache
 }
 
-# Programs whose packages are called as they are.
+# Programs whose packages have the same names.
 ensure_programs() {  # PROGRAM...: true if all of them are there, or can be installed.
     packages=$(for program; do command -v "$program" >/dev/null || printf '%s ' "$program"; done)
     [ -z "$packages" ] || (install_packages $packages)
 }
 
-# SBCL and the libraries that something was made of. build.lisp lists in a file, X.list, one a line,
-# their files, and where ASDF looks for libraries, by which names: `file PATH`, `tree DIRECTORY`,
-# `directory DIRECTORY`, `name ENDING`. To ask ASDF at each start would take a second; to look at
-# dates and sizes takes some hundredths, and X.found keeps what was found. That changes when a
-# library does, when one of the same name comes to another place, which may be found first, and when
-# ASDF is told to look elsewhere.
+# The SBCL and libraries from which something was made. build.lisp lists, in a file X.list, their
+# files and the places and names by which ASDF finds libraries, one a line: `file PATH`,
+# `tree DIRECTORY`, `directory DIRECTORY`, `name ENDING`. Asking ASDF at each start would take a
+# second; comparing dates and sizes takes some hundredths. X.found has the last result. It changes
+# when a library changes, when one of the same name appears in another place, which may be found
+# first, and when ASDF is configured to look elsewhere.
 
 library_state() (  # LIST: size, date and path of each of these files, one a line.
     # Paths may have spaces.
@@ -168,8 +168,8 @@ libraries_current() {  # X: are the libraries of X.list as they were?
     [ -s "$1.list" ] && [ "$(cat "$1.found" 2>/dev/null)" = "$(library_state "$1.list")" ]
 }
 
-# ASDF goes by dates: a library that was installed in the place of another one may be older than
-# what was compiled of that.
+# ASDF compares dates: a library that was installed in place of another may be older than the
+# compiled files of that one.
 forget_changed_libraries() {
     for list in "$cache"/libraries/*.list; do
         [ ! -e "$list" ] || libraries_current "${list%.list}" ||
@@ -177,8 +177,8 @@ forget_changed_libraries() {
     done
 }
 
-# Compiling. Starts at the same time wait for each other, where the system has flock; also for what
-# goes on compiling when the start that wanted it has been killed.
+# Compiling. Simultaneous starts wait for each other, where the system has flock. They also wait for
+# a compiler that still runs after its start was killed.
 
 with_lock() {  # COMMAND...
     command -v flock >/dev/null || { "$@"; return; }
@@ -192,15 +192,15 @@ with_lock() {  # COMMAND...
 }
 
 source_sums() {  # DIRECTORY...: a check sum of each source there, and its name.
-    # Editors keep links that lead nowhere beside files, with names such as .#file.lisp.
+    # Editors keep broken links beside files, with names such as .#file.lisp.
     ( cd "$root" && find ars-magna.asd "$@" ! -name '.*' \( -name '*.lisp' -o -name '*.asd' \
                 -o -name 'usage*.txt' -o -name 'spread-*.sh' -o -name '*.js' -o -name '*.css' \) \
                 -exec cksum {} + |
           LC_ALL=C sort -k 3 )
 }
 
-# The compiler goes by dates. So that a source with an old one counts as changed, and one that is
-# gone as missing, what was compiled of others than those that are there is forgotten.
+# The compiler compares dates. Compiled files of sources that have changed or are gone are removed.
+# So a changed source with an old date is compiled again, and a missing one is noticed.
 forget_changed() {
     known=$cache/sources
     source_sums src rpl worlds cli tests >"$known.new" || return
@@ -212,17 +212,17 @@ forget_changed() {
     mv -f "$known.new" "$known"
 }
 
-# Half of a compiled file is what a compiler that was killed leaves.
+# A compiler that was killed may leave half of a compiled file.
 forget_halves() {
     find "$cache" \( -name '*-tmp*.fasl' -o -type d -name '*.fasl' \) -prune -exec rm -rf {} +
 }
 
-# What was compiled before may be damaged, so much that Lisp dies of it. With status 2 sources are.
+# Compiled files may be so damaged that Lisp crashes. Status 2 means that the sources are at fault.
 compile_anew() {  # COMMAND...: do it, and once more without what was compiled before if that fails.
     before=$(ls -d "$cache/project" "$cache"/libraries/*/ 2>/dev/null)
     "$@" && return
     [ $? -ne 2 ] && [ -n "$before" ] && roomy || return
-    say "what was compiled before is damaged; compiling again"
+    say "compiled files are damaged; compiling again"
     rm -rf "$cache/project" "$cache/libraries"
     "$@"
 }
@@ -234,7 +234,7 @@ roomy() {  # Is there room for another 10 MB?
     [ "${kept:-0}" -eq 10000000 ]
 }
 
-# The output is the child's alone: what this shell says when it is told to end is for the screen.
+# Only the child's output is redirected: this shell's messages go to the screen.
 into() {  # FILE COMMAND...
     file=$1; shift
     exec "$@" >"$file" 2>&1
@@ -250,7 +250,7 @@ compile() {  # NAME LISP-FORM: evaluate the form of build.lisp; show its trouble
     [ ! -d "$log" ] || rm -rf "$log"
     forget_halves
     forget_changed_libraries
-    forget_changed || say "what has changed cannot be told; is $cache full?"
+    forget_changed || say "cannot check which sources have changed; is $cache full?"
     ARS_MAGNA_LIBRARIES=$libraries.list
     export ARS_MAGNA_LIBRARIES
     compile_anew evaluate_building "$log" "$2"
@@ -258,13 +258,13 @@ compile() {  # NAME LISP-FORM: evaluate the form of build.lisp; show its trouble
     unset ARS_MAGNA_LIBRARIES
     if [ $compiled -eq 0 ]; then
         library_state "$libraries.list" >"$libraries.found"
-        # Such as that this SBCL is newer than those tried.
+        # For example, that this SBCL is newer than those tested.
         grep -a '^ars-magna: ' "$log" >&2 || :
         return 0
     fi
     if roomy && ! grep -a -q -e 'No space left' -e 'quota exceeded' "$log"; then
         grep -a -v -e '^; compil' -e '^; wrote' -e '^$' "$log" | tail -n 60 >&2
-        say "that did not compile; all of it is in $log"
+        say "compiling failed; the whole output is in $log"
     else
         say "there is no room in $cache. Make some, or set XDG_CACHE_HOME to another directory."
     fi

@@ -136,7 +136,7 @@ echo \"none missing$(missing_packages ars-magna)\""))))
 
 (test compiled-files.that-are-damaged-are-made-again-at-once
   (is (equal '("build" "1" "build" "1" "build"
-               "ars-magna: what was compiled before is damaged; compiling again" "build" "0")
+               "ars-magna: compiled files are damaged; compiling again" "build" "0")
              (lines-of-shell "build() { echo build; [ ! -e \"$cache/project\" ] || return $1; }
 fail() { echo build; return 1; }
 mkdir \"$cache/project\"; compile_anew build 2; echo $?
@@ -151,7 +151,7 @@ sbcl() { ~A; return 1; }
 compile tests '()' 2>&1 | sed 's/^.*no room.*$/no room/'"))
     (flet ((last-line (command) (car (last (lines-of-shell (format nil script command))))))
       (is (string= "no room" (last-line "echo 'No space left on device'")))
-      (is-true (has-words-p (last-line "echo 'The variable X is unbound.'") "did not compile")))))
+      (is-true (has-words-p (last-line "echo 'The variable X is unbound.'") "compiling failed")))))
 
 (defun said-of-library (text &rest variables)
   "Return the lines that are said when a library is looked for whose definition is TEXT."

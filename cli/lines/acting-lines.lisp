@@ -1,10 +1,10 @@
-;;;; acting-lines.lisp -- GO-TO and MANIPULATE: lines that come to several commands.
+;;;; acting-lines.lisp -- GO-TO and MANIPULATE: lines that issue several commands.
 
 (in-package :ars-magna.cli)
 
 (defun tell-rewound (point simulation)
-  "Queue a message that the way to POINT, a text, is given up, as another run goes on in the place
-of SIMULATION."
+  "Queue a message that the robot no longer goes to POINT, a text, because another run has replaced
+SIMULATION."
   (let ((*message-queue* (simulation-messages (latest simulation))))
     (warning-set (format nil "go-to: The run was rewound on the way to ~A, so the robot no ~
                               longer goes there. Give the line again if it should."
@@ -40,8 +40,9 @@ of SIMULATION."
 
 ;;;; MANIPULATE
 
-;;; The methods of a manipulation say what is typed: a number of a designator for each object, the
-;;; number of the part that does it, 0 if left out, or nothing if that is the robot; then the rest.
+;;; The methods of a manipulation determine what is typed: the number of a designator for each
+;;; object; then the number of the part that acts, 0 if left out, or nothing if the robot acts; then
+;;; the other arguments.
 
 (defun by-part-p (by)
   "True if BY, a list (variable type), is for a part of the robot."
@@ -74,7 +75,7 @@ few."
       (when (or (zerop extra) (and (= 1 extra) (by-part-p by)))
         (append (loop for number in (subseq data 0 count)
                       collect (designator-numbered number robot))
-                ;; The part that does it, the first if its number is left out, or the robot.
+                ;; The part that acts, the first if its number is left out, or the robot.
                 (list (if (by-part-p by)
                           (read-argument (type-key (second by))
                                          (if (= 1 extra) (nth count data) 0) robot)

@@ -6,7 +6,7 @@
   '((:general . "The prompt") (:seeing . "The robot and its world") (:planning . "Plans")
     (:running . "Running")
     (:moving . "Moving and turning") (:manipulating . "Manipulating"))
-  "The families of the main menu, with what it calls them.")
+  "The families of the main menu, with their titles.")
 
 (defun write-menu (lines)
   (dolist (line lines)

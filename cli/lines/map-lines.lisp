@@ -1,12 +1,12 @@
-;;;; map-lines.lisp -- MAP: the world as characters; WATCH: while the robot moves.
+;;;; map-lines.lisp -- MAP: the world as characters; WATCH: the same while time passes.
 
 (in-package :ars-magna.cli)
 
-;;; On a terminal a map is made to fit, and has colours; elsewhere it is as long as the world.
+;;; On a terminal a map is made to fit, and has colours; elsewhere it shows the whole world.
 
 (defun terminal-size (session)
-  "Return how many columns the terminal of SESSION has, as far as can be found out, and how many
-lines; NIL if there is none."
+  "Return how many columns and lines the terminal of SESSION has, as far as is known; NIL without a
+terminal."
   (flet ((size-said (variable)
            (ignore-errors (parse-integer (environment-value variable)))))
     (multiple-value-bind (columns lines)
@@ -95,9 +95,9 @@ characters mean. PICTURE's names WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS work
 
 ;;; WATCH.
 
-;;; On a terminal each map is written over the one before, and a key ends that. What comes
-;;; meanwhile, such as messages, is shown afterwards, its last line at once. Elsewhere the maps
-;;; follow one another.
+;;; On a terminal each map replaces the one before, and a key ends this. Messages that arrive
+;;; meanwhile are shown afterwards, the last line of them at once. Elsewhere the maps follow one
+;;; another.
 
 (defconstant +frame-seconds+ 0.1d0 "How long a map is seen at least, in seconds.")
 (defconstant +usual-rate+ 20 "How many ticks pass in a second where time has no pace of its own.")
@@ -171,7 +171,7 @@ NIL, or a key is pressed, or there is something else to be done. True if it was 
            (unless (time-passes-p session simulation) (pass-tick session simulation))))
 
 (defun watch-in-place (session simulation count options)
-  ;; The key that has ended it is no beginning of a line.
+  ;; The key that has ended it does not begin a line.
   (when (handler-case (call-with-screen
                        (lambda () (watch-screen session simulation count options))
                        (session-console session))

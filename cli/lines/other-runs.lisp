@@ -1,12 +1,12 @@
-;;;; other-runs.lisp -- REWIND, TRIAL and FORK: from the run that goes on to another one.
+;;;; other-runs.lisp -- REWIND, TRIAL and FORK: continuing in another run.
 
 (in-package :ars-magna.cli)
 
-;;; The plans that go on after that are others than those that the prompt waited for: it lets these
-;;; go without a word, and takes up those, also when somebody rewinds by Lisp.
+;;; After a rewind the running plans are others than those that the prompt waited for. It drops the
+;;; old ones without a message and waits for the new ones, also when the rewind comes from Lisp.
 
 (defun let-errands-go (old new)
-  "Say nothing of how the plans of OLD end that prompts wait for, as NEW goes on in its place."
+  "Report no ends of the plans of OLD that prompts wait for, as NEW replaces it."
   (declare (ignore new))
   (dolist (errand (with-lock (*plan-errands-lock*)
                     (remove old *plan-errands* :key #'plan-errand-simulation :test-not #'eq)))
@@ -17,7 +17,7 @@
 
 (defun rewind-here (session ticks)
   (rewind ticks)
-  ;; The commands that are under way again are nobody's errands.
+  ;; No session waits for commands that are in progress again.
   (setf (session-after-rewind session) nil
         (session-lisp-p session) t)
   (take-up-plans session))
@@ -255,9 +255,9 @@ opens one of them."
 
 ;;;; FORK
 
-;;; In a fork the prompt is in a headless run: time passes as its lines need it. The run that was
-;;; forked stands still meanwhile. As a trial, a fork is entered by a line that goes on until
-;;; another one leads out.
+;;; In a fork the prompt is in a headless run: time passes as its lines need it. The forked run
+;;; stands still meanwhile. Like a trial, a fork is entered by a line that continues until another
+;;; one leads out.
 
 (defun read-in-fork (session)
   (loop until (session-over-p session)

@@ -1,10 +1,10 @@
-;;;; own-lines.lisp -- ALIAS, EVAL, REPEAT and QUIT: lines about lines.
+;;;; own-lines.lisp -- ALIAS, EVAL, ECHO, REPEAT and QUIT: lines about lines.
 
 (in-package :ars-magna.cli)
 
 (defun circle-of (name text)
-  "Return the aliases that TEXT, which the alias NAME is to stand for, leads through on the way back
-to NAME, that one first and last; NIL if it does not."
+  "Return the aliases through which TEXT, the meaning of the alias NAME, leads back to NAME, with
+that one first and last; NIL if it does not."
   (loop with aliases = (acons name (list text) *aliases*)
         for word = name then (split-line (second alias))
         for alias = (assoc word aliases :test #'string-equal)
@@ -14,8 +14,8 @@ to NAME, that one first and last; NIL if it does not."
         when (< (length aliases) (length names)) return nil))
 
 (defun check-alias (name text)
-  "Signal BAD-LINE if TEXT, which the alias NAME is to stand for, begins with no command, or leads
-back to NAME."
+  "Signal BAD-LINE if TEXT, the meaning of the alias NAME, begins with no command, or leads back to
+NAME."
   (let ((circle (circle-of name text)))
     (when circle
       (reject-line "The alias ~A would stand for itself: ~{~A~^ = ~}. Give a command after its ~
@@ -51,7 +51,7 @@ back to NAME."
   (let ((*asker* (asker-for (session-account session)))) (evaluate-text session exp)))
 
 (defun switch-setting (name word)
-  "Return true if WORD, what the line NAME was given, is on, NIL if it is off. Signals BAD-LINE for
+  "Return true if WORD, the argument of the line NAME, is on, NIL if it is off. Signals BAD-LINE for
 another."
   (cond ((string-equal word "on") t)
         ((string-equal word "off") nil)
@@ -66,8 +66,8 @@ own. Without SETTING, tell which is set."
           (session-quiet-p session)))
 
 (defun check-time-passes (session cmd errands inbox)
-  "Signal BAD-LINE if what SESSION has issued, by the line CMD, waits for RESUME: one of ERRANDS, or
-what was not in INBOX before."
+  "Signal BAD-LINE if what SESSION has issued by the line CMD waits for RESUME: one of ERRANDS, or a
+request that was not in INBOX before."
   (when (and (waits-for-resume-p session)
              (or (notevery #'errand-over-p errands)
                  (some #'awaited-p (set-difference (requests-waiting) inbox))))
@@ -75,7 +75,7 @@ what was not in INBOX before."
 
 (defun await-repetition (session cmd errands inbox)
   "Wait until ERRANDS, which SESSION has issued by the line CMD, and what Lisp has issued are done.
-Signals BAD-LINE if that waits for RESUME. INBOX is what did so before."
+Signals BAD-LINE if that waits for RESUME. INBOX has the requests that waited before."
   (check-time-passes session cmd errands inbox)
   (await-errands session errands)
   ;; For what Lisp has issued, too.
@@ -84,7 +84,7 @@ Signals BAD-LINE if that waits for RESUME. INBOX is what did so before."
   (check-time-passes session cmd errands inbox))
 
 (defun repeat-once (session cmd)
-  "Do what CMD, a line, says, and wait for what it has issued, unless SESSION is in a trial."
+  "Run CMD, a line, and wait for what it has issued, unless SESSION is in a trial."
   (let ((before (session-errands session)) (inbox (requests-waiting)))
     (run-text session cmd)
     (unless (session-visit session)

@@ -2,19 +2,18 @@
 
 (in-package :ars-magna.cli)
 
-;;; A picture shows the layers that pictures show by default, and those whose names are typed.
+;;; A picture shows the default layers, and those whose names are typed.
 
 (defun picture-word (text line)
-  "Return the layer that TEXT means after LINE: a word or its beginning, which names a layer, as MAP
-or PICTURE call it, or is BARE, for none of those shown by default."
+  "Return the layer that TEXT means after LINE: a word or its beginning that names a layer for MAP
+or PICTURE, or BARE, for no default layers."
   (layer-named (word-meant text
                            (mapcar #'symbol-name
                                    (append (picture-layers) '(:bare) (text-layers)))
                            line "a file, a scale, and words: ~{~A~^, ~}")))
 
 (defun picture-options (text &optional (line "PICTURE"))
-  "Return as options of SAVE-PICTURE what TEXT, as typed after LINE and the name of the file, asks
-for."
+  "Return options of SAVE-PICTURE for TEXT, as typed after LINE and the name of the file."
   (loop for word in (split-words (or text ""))
         for number = (number-typed word)
         if number collect number into numbers
@@ -72,9 +71,9 @@ it even if definitions have changed since the run began."
 
 ;;;; Windows
 
-;;; Neither this program nor its tests need McCLIM. It is found by ASDF, or through a Quicklisp that
-;;; is installed. The program's own second core, for --window, has it already; the first one, and a
-;;; Lisp of the user's, load it when somebody wants a window.
+;;; Neither this program nor its tests need McCLIM. ASDF finds it, or an installed Quicklisp. The
+;;; program's second core, for --window, has it already; the first one, and a Lisp of the user's,
+;;; load it when a window is opened.
 
 (defun call-or-say (function trouble)
   "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
@@ -101,16 +100,16 @@ says why."
 ;; Read when this file is loaded, so that a saved program has it with it.
 (defparameter *how-to-get-windows*
   (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt"))
-  "What is to be done where McCLIM is not installed.")
+  "How to install McCLIM.")
 
 (defun ensure-windows ()
-  "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM, or
-if CLX does not work."
+  "Load what opens windows, if needed. Signals BAD-LINE if there is no X server or McCLIM, or if CLX
+does not work."
   (unless *display-opener*
     (when (member (environment-value "DISPLAY") '(nil "") :test #'equal)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
                     world here, PICTURE in a file."))
-    ;; In this program, ASDF is to find the project, and what has been compiled of it.
+    ;; In this program, ASDF must find the project and its compiled files.
     (when (find-package :ars-magna.build)
       (uiop:symbol-call :ars-magna.build :configure))
     (let ((found-p (ars-magna.clx:find-library "mcclim/looks")))
@@ -164,7 +163,7 @@ the window at any time. It closes by itself when the run is over."
     (and point (list (pt-x point) (pt-y point)))))
 
 (defun tell-imported (map report)
-  "Say what MAP is like, of which REPORT is what IMPORT-MAP reports, and what can be done with it."
+  "Describe MAP by REPORT, the report of IMPORT-MAP, and say how to use it."
   (destructuring-bind (&key width height cell free occupied unknown walls) report
     (format t "~(~A~): ~D by ~D cells of ~A m~:[~;, each a metre here~], ~D free, ~D occupied, ~
                ~D unknown, in ~D walls.~%"

@@ -5,7 +5,7 @@
 ;;; Which plan is meant.
 
 (defun plan-called (name)
-  "Return the plan procedure called NAME, a string: the user's own, or else the newest in whatever
+  "Return the plan procedure called NAME, a string: the user's own, or else the newest in any
 package; NIL if there is none."
   (handler-case (find-procedure (or (find-symbol (string-upcase name)) name))
     (unknown-name () nil)))
@@ -28,7 +28,7 @@ package; NIL if there is none."
 (defun plan-documentation (plan)
   (or (documentation (procedure-name plan) 'function) "Not documented."))
 
-;; A plan that another one of its author calls is a part, and not what one would start.
+;; A plan that another plan of its author calls is a part, and not listed.
 (defun parts-of-plans ()
   "Return the plans that others of the same package call."
   (loop for plan in (all-procedures)
@@ -148,7 +148,7 @@ ended failed, tell where and why."
                          (reject-line "No plan ~D is under way. PLANS shows which are." n))))
         (t (end-plan :all))))
 
-;;; PLAN-TREE, WHY and PLAN-TIMELINE: what goes on, and how it came to that.
+;;; PLAN-TREE, WHY and PLAN-TIMELINE: what plans do, and why.
 
 (defun tree-text (which)
   "Return the whole stacks and variables of WHICH, a task or a plan runner with plans, as text."
@@ -194,7 +194,7 @@ ticks, with what it waited for and the commands that it issued. This needs a tra
 or in Lisp (setf *trace-plans* t), before the plan starts."
   (format t "~A~%" (native-name (save-plan-timeline (path-called file)))))
 
-;;; END-TASK, STEP-TASK and TRACE-PLANS: what one does to plans under way.
+;;; END-TASK, STEP-TASK and TRACE-PLANS: changing running plans.
 
 (define-choices :task-number
   (call-with-plans-in-use
@@ -237,7 +237,7 @@ OUT or CONTINUE. OFF ends this. Without a terminal or window, each stop is only 
 timeline. OFF stops tracing and discards the trace. Without ON or OFF, tell which is set."
   (when switch
     (let ((on-p (switch-setting "TRACE-PLANS" switch)))
-      ;; A plan may keep the thread of all: then none is asked, and nothing changes.
+      ;; A plan may hold the lock of all plans: then none is asked, and nothing changes.
       (call-with-plans-in-use
        (lambda (runner)
          (when runner (if on-p (start-trace runner) (stop-trace runner)))))

@@ -11,7 +11,7 @@
     simulation))
 
 (defun time-text (session simulation &optional (tick (simulation-tick simulation)))
-  "Return in words that it is TICK in SIMULATION, in which SESSION is, and how time passes there."
+  "Return in words that it is TICK in SIMULATION, the run of SESSION, and how time passes there."
   (format nil "Tick ~D, ~A." tick
           (cond ((session-visit session) (visit-text (session-visit session)))
                 ((simulation-over simulation) (simulation-over simulation))
@@ -29,7 +29,7 @@
     (if (session-visit session)
         (pause-visit (session-visit session))
         (progn (pause (live-simulation))
-               ;; The tick that is under way passes first.
+               ;; The tick in progress ends first.
                (asking (simulation))))
     (format t "~A~%" (time-text session simulation))))
 
@@ -50,7 +50,7 @@ end."
       (resume-here session)))
 
 (defun step-here (session count)
-  "Let COUNT ticks pass, and say so, and whether the clock has stopped before."
+  "Let COUNT ticks pass; report that, and whether the clock had been stopped."
   (check-run)
   (let* ((simulation (current-simulation))
          (goal (+ (simulation-tick simulation) count)))
@@ -114,8 +114,8 @@ while the simulator is idle: nothing moves by itself in its world, and no comman
             (value-equal value default) (setting-text default))))
 
 (defun parameters-like (name)
-  "Return the parameters called NAME, with or without the star, or else those that begin so, or else
-those that have it in their names."
+  "Return the parameters called NAME, with or without the star, or else those whose names begin with
+NAME, or else those whose names contain it."
   (flet ((called (test)
            (loop for parameter in (all-parameters)
                  when (funcall test (string-downcase name) (parameter-name parameter))
@@ -175,8 +175,8 @@ those that have it in their names."
         (t (reject-line "REPLAY takes a file, then ANYWAY or nothing, not ~A." word))))
 
 (defun call-telling-ticks (function session end)
-  "Call FUNCTION, which goes through ticks up to END, with a function of a tick that says at the
-terminal of SESSION how far that is. Return the values of FUNCTION."
+  "Call FUNCTION, which goes through ticks up to END, with a function of a tick that shows progress
+at the terminal of SESSION. Return the values of FUNCTION."
   (let ((progress (and (session-terminal-p session)
                        (make-progress-line (session-console session)))))
     (flet ((tell (tick)
@@ -185,7 +185,7 @@ terminal of SESSION how far that is. Return the values of FUNCTION."
         (when progress (end-progress progress))))))
 
 (defun replay-showing (session journal anyway)
-  "Repeat JOURNAL. Return the tick and the digest that it comes to."
+  "Repeat JOURNAL. Return the tick and the digest at its end."
   (flet ((repeat (tell)
            (call-with-replay (lambda () (values (simulation-tick *simulation*) (state-digest)))
                              journal

@@ -1,4 +1,4 @@
-;;;; status-lines.lisp -- STATUS, THINGS, BINS and the like, and what STATUS tells other programs.
+;;;; status-lines.lisp -- STATUS, THINGS, BINS and the like; STATUS for other programs.
 
 (in-package :ars-magna.cli)
 
@@ -56,9 +56,8 @@
 
 ;;;; STATUS and THINGS
 
-;;; The layout of STATUS is that of the session in manual E, with a line for the estimated change
-;;; of position, which the manual lists and its session leaves out. What it shows is what (status)
-;;; returns.
+;;; The layout of STATUS is that of the session in manual E, with a line for the estimated change of
+;;; position, which the manual lists and its session leaves out. The contents are those of (status).
 
 (defun write-views (cameras)
   (loop for camera in cameras
@@ -83,7 +82,7 @@
   (destructuring-bind (&key part command for by by-for tick) entry
     (format nil "~@[~A: ~]~?" part control (list command for by by-for tick))))
 
-;; A line of the manual's session would be in the way while nothing goes on.
+;; While nothing is in progress, these lines are left out, as in the manual's session.
 (defun write-ownership (status)
   (loop for entry in (getf status :under-way)
         do (put-line "~19A~A" "Under way:" (entry-text entry "~(~A~), for ~A")))
@@ -164,10 +163,10 @@ inside a wall."
     (multiple-value-bind (x y) (robot-position robot)
       (place-robot robot x y ang))))
 
-;;; For other programs: what (status) returns, as JSON has it.
+;;; For other programs: the values of (status) as JSON.
 
-;;; In Lisp NIL is nothing, false and the empty list, and a list may be a property list or not. So
-;;; here is said by their keys what the values are, where a program could not tell.
+;;; In Lisp NIL is nothing, false or the empty list, and a list may be a property list or not. So
+;;; the kinds of such values are listed here by key.
 
 (defparameter *kinds-of-keys*
   '((:objects :cameras :hands :bins :sensors :under-way :interrupted :designators)
@@ -188,13 +187,14 @@ inside a wall."
     (t (if (eq key :failed) (object-for-json value) (arrays-for-lists value)))))
 
 (defun object-for-json (plist)
-  "Return PLIST with values that WRITE-JSON takes for what they are."
+  "Return PLIST with values that WRITE-JSON writes as their kinds."
   (loop for (key value) on plist by #'cddr
         collect key
         collect (value-for-json key value)))
 
 (defun report-status (session robot)
-  "Report how ROBOT is, whose world stands still, if SESSION reports by objects. True if it does."
+  "Report the state of ROBOT, whose world stands still, if SESSION reports objects. True if it
+does."
   (let ((account (session-account session)))
     (when (reports-p account)
       (apply #'report-object account "status"

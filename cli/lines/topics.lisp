@@ -237,7 +237,7 @@ max-speed*."
   (append (choices :command session typed)
           (mapcar (lambda (topic) (string-downcase (topic-name topic))) (all-topics))))
 
-;;; What has no name in the simulator: keys, units, scripts.
+;;; Subjects that are no names in the simulator: keys, units, scripts.
 
 (defparameter *subjects*
   '(("KEYS" "At a terminal or in a window you edit a line as in a shell or Emacs. Left, right, Home,

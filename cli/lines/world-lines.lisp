@@ -27,7 +27,7 @@
   "Let the world of ROBOT-NAME start anew, at the pace of the run that SESSION is in; that ends."
   (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
-    ;; In a run that has passed no tick, that world would just go on.
+    ;; In a run that has passed no tick, that world would just continue.
     (when (member robot-name (robots-here)) (end-left old))
     (let ((robot (simulator robot-name :display nil
                                        :rate (if old (simulation-rate old) *default-rate*))))

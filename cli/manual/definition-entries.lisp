@@ -1,4 +1,4 @@
-;;;; definition-entries.lisp -- what the reference says of definitions and of names of Lisp.
+;;;; definition-entries.lisp -- the reference: entries of definitions and of names of Lisp.
 
 (in-package :ars-magna.manual)
 
@@ -9,10 +9,11 @@
 (defparameter *effects-of-cleaning*
   '((:noise . "`clean-simulation` takes it out") (:delay . "a delay") (:limit . "a limit")
     (:setting . "a setting"))
-  "What the kinds of parameters are, in words.")
+  "The kinds of parameters, in words.")
 
 (defun number-words (value)
-  ;; A double-float that a single-float was made of is written like that: it has less digits.
+  ;; A double-float made from a single-float is written like the single-float, which has fewer
+  ;; digits.
   (let ((value (if (and (typep value 'double-float) (= value (coerce value 'single-float)))
                    (coerce value 'single-float)
                    value))
@@ -39,7 +40,7 @@
                               :text (parameter-sentence parameter)
                               :file (file-of-symbol symbol))))
 
-;;; What is defined by name. Where the simulator's own definitions are from is not kept with them.
+;;; Definitions by name. The files of the simulator's own definitions are not recorded with them.
 
 (defun entries-of (kind function)
   "Return what FUNCTION makes of name, object and file of each definition of KIND that is the
@@ -161,14 +162,14 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
           (entries-of 'robot #'robot-entry)
           (entries-of 'kicker #'kicker-entry)
           (entries-of 'manipulation #'manipulation-entry)
-          ;; Of plans, those for users to call.
+          ;; Plans that users call, without their parts.
           (remove-if-not (lambda (entry) (packages-showing (entry-symbol entry)))
                          (entries-of 'plan #'plan-entry))
           (entries-of 'experiment #'experiment-entry)))
 
 ;;;; Names of Lisp
 
-;;; The chapter of a symbol follows from what it is.
+;;; The chapter of a symbol depends on what it is.
 
 (defun definer-p (symbol)
   (let ((name (symbol-name symbol)))
@@ -191,15 +192,15 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
     (("RED" "GREEN" "BLUE" "VIOLET" "LIGHTRED" "LIGHTGREEN" "LIGHTBLUE" "LIGHTVIOLET")
      "A value of the attribute :COLOR.")
     (("VOID" "LST" "~" "THING-DESCRIPTOR" "ROBOT-CONTINUATION")
-     "A word of Nisp's for types, which DEFFUNC, DEFPROC and LET take and pass over (manual 3.1)."))
-  "Lists (names text): words that are users' symbols, and no more.")
+     "A word of Nisp's for types, which DEFFUNC, DEFPROC and LET accept and ignore (manual 3.1)."))
+  "Lists (names text): words that are only symbols.")
 
 (defun word-text (symbol)
   (second (find-if (lambda (names) (member (symbol-name symbol) names :test #'string=))
                    *words* :key #'first)))
 
 (defun restart-name-p (symbol)
-  "True if SYMBOL is no more than the name of a restart."
+  "True if SYMBOL is only the name of a restart."
   (and (null (sorts-of-symbol symbol)) (null (word-text symbol))))
 
 (defun chapter-of-symbol (symbol)

@@ -1,11 +1,11 @@
-;;;; entries.lisp -- what the reference says of a name, and of commands.
+;;;; entries.lisp -- the reference: entries of names, and of commands.
 
 (in-package :ars-magna.manual)
 
 (export '(chapter-title))
 
 (define-record entry
-  "What the reference says of a name."
+  "An entry of the reference."
   (name "" string "what the entry is about, as people write it" :export)
   (chapter nil keyword "the key of the chapter that the entry is in" :export)
   (section "" string "the heading that it is listed under there")
@@ -16,30 +16,32 @@
   (file nil (or null string) "the file where it is defined, or NIL"))
 
 (defparameter *chapters*
-  '((:commands "Commands" "What robots, cameras, hands and storage bins can be told to do.")
-    (:prompt "The prompt's lines" "What can be typed after Robot> besides Lisp.")
-    (:parameters "Parameters" "Special variables that say how the world and its noise are.")
-    (:error-codes "Error codes" "What continuations are told, and who tells it.")
-    (:definers "Definers" "Macros and functions by which users define what is theirs.")
+  '((:commands "Commands" "Commands for robots, cameras, hands and storage bins.")
+    (:prompt "The prompt's lines" "Lines to type after Robot>, besides Lisp.")
+    (:parameters "Parameters" "Special variables that set the physics and noise of the world.")
+    (:error-codes "Error codes" "Error codes that continuations receive, and the commands that pass
+them.")
+    (:definers "Definers" "Macros and functions that define things of your own.")
     (:constructs "Plan constructs" "What plans can say beyond Lisp.")
-    (:plan-functions "Plan functions" "What plans tell their robot, and ask it.")
-    (:fluents "Fluents" "By which plans learn what came of their robot's commands.")
-    (:attributes "Attributes" "What can be said of things, and how well it is sensed.")
-    (:substances "Substances" "What walls and things are made of.")
-    (:place-types "Place types" "What a robot can sense of where it stands.")
+    (:plan-functions "Plan functions" "Functions with which plans command and query their robot.")
+    (:fluents "Fluents" "Variables with the fluents that tell plans how commands of the robot
+ended.")
+    (:attributes "Attributes" "Properties of things, and how well they are sensed.")
+    (:substances "Substances" "Materials of walls and things.")
+    (:place-types "Place types" "Kinds of places that a robot can sense where it stands.")
     (:colours "Colours" "For the drawing code of place types.")
-    (:conditions "Conditions and restarts" "What is signalled when something is misused.")
+    (:conditions "Conditions and restarts" "Errors that are signalled, and how to continue.")
     (:robots "Maps and robots" "The shipped worlds: the system ars-magna/worlds.")
-    (:kickers "Kickers" "What makes things of the shipped worlds move by themselves.")
+    (:kickers "Kickers" "Programs that move or change things of the shipped worlds.")
     (:manipulations "Manipulations" "What robots can do to things of the shipped worlds.")
     (:plans "Shipped plans" "Plans to start with.")
-    (:experiments "Shipped experiments" "Experiments to be run as they are.")
+    (:experiments "Shipped experiments" "Experiments that you can run as they are.")
     (:names "Functions, variables, types" "All other names of ARS and NISP, by layer.")
     (:worlds-names "Other names of the worlds" "What else ARS-WORLDS has: things, and functions."))
-  "Lists (key title introduction), in order. Of names that several have, the first is meant.")
+  "Lists (key title introduction), in order. A name in several chapters means the first.")
 
 (defun chapter-title (chapter)
-  "Return what CHAPTER, a key of *CHAPTERS*, is called."
+  "Return the title of CHAPTER, a key of *CHAPTERS*."
   (second (assoc chapter *chapters*)))
 
 (defun chapter-introduction (chapter) (third (assoc chapter *chapters*)))
@@ -214,8 +216,9 @@
 (defun interrupt-entry ()
   (make-entry :name ":interrupt" :chapter :error-codes :use ":interrupt"
               :facts '(("Told by" "every command"))
-              :text "What the continuation of a command gets that was under way when a newer one
-took its robot, camera, hand or bin over, or the run ended (manual 3.1.1)."))
+              :text "The error code for the continuation of a command that a newer one has
+interrupted by taking over its robot, camera, hand or bin, or that was in progress at the end of the
+run (manual 3.1.1)."))
 
 (defun error-entries ()
   (let* ((commands (own-commands))

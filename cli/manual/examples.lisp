@@ -1,13 +1,13 @@
-;;;; examples.lisp -- which blocks of code in the guide are examples of what.
+;;;; examples.lisp -- which blocks of code in the guide are examples of which names.
 
 (in-package :ars-magna.manual)
 
 (export '(read-examples))
 
-;;; A block is an example of the names that its author gives it: those in a heading or paragraph
-;;; that has nothing but names in code, as in "### `robot-turn`, `turn`", or before it in bold code,
-;;; as in "**`(par form...)`** succeeds when". The names hold for all blocks until others come, or a
-;;; heading. Of names that have no such block, the shortest that uses them is taken.
+;;; A block is an example of the names before it: in a heading or paragraph that consists of names
+;;; in code only, as in "### `robot-turn`, `turn`", or in bold code, as in "**`(par form...)`**
+;;; succeeds when". The names hold for all blocks up to the next names or heading. A name without
+;;; such a block gets the shortest block that uses it.
 
 (defstruct (example (:copier nil))
   "A block of code in the guide: of Lisp, or of what is typed at the prompt. NAMES, strings, are
@@ -93,7 +93,7 @@ it starts, is true."
                text)
     (nreverse names)))
 
-(defparameter *prompt* "Robot> " "What stands before what is typed in a session.")
+(defparameter *prompt* "Robot> " "The prompt before what is typed in a session.")
 
 (defun typed-names (text)
   (loop for line in (uiop:split-string text :separator '(#\Newline))

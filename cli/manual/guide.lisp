@@ -1,4 +1,4 @@
-;;;; guide.lisp -- which of the project's pages make the guide, and what is in them.
+;;;; guide.lisp -- the project's pages that make the guide, and their contents.
 
 (in-package :ars-magna.manual)
 
@@ -53,7 +53,7 @@ HTML of its Markdown, its headings with anchors."
     ("src/host/README.md" "host.html" "SBCL's internals" :inside)
     ("src/readings.md" "readings.html" "How the manual of 1992 is read" :inside)
     ("cli/manual/README.md" "about.html" "About this manual" :about))
-  "Lists (source file title part). Other README.md files are found, and go by their own titles.")
+  "Lists (source file title part). Other README.md files are found, and have their own titles.")
 
 (defun root () (asdf:system-relative-pathname "ars-magna" ""))
 
@@ -130,7 +130,7 @@ HTML of its Markdown, its headings with anchors."
                     (with-attribute "id" (format nil "reading-~D" number) token)
                     token)))
 
-;;; The texts of usage make a page together.
+;;; The usage texts together are one page.
 
 (defparameter *usages*
   '(("ars-magna" "usage.txt") ("ars-magna experiment" "usage-experiment.txt")

@@ -1,15 +1,15 @@
-;;;; html.lisp -- HTML: its characters and anchors; made of Markdown, and taken apart.
+;;;; html.lisp -- HTML: characters and anchors; from Markdown to HTML; splitting HTML.
 
 (in-package :ars-magna.manual)
 
 (export '(escaped anchor html-tokens tag-p tag-name attribute-value))
 
 (defun escaped (text)
-  "Return TEXT as it is written in HTML, between tags or in an attribute's double quotes."
+  "Return TEXT escaped for HTML, between tags or in an attribute's double quotes."
   (with-output-to-string (out) (write-xml-text text out)))
 
 (defun entity-at (html position)
-  "Return the element of *ENTITIES* that HTML has at POSITION, or NIL."
+  "Return the element of *ENTITIES* for the entity at POSITION of HTML, or NIL."
   (find-if (lambda (entity)
              (let ((end (+ position (length (cdr entity)))))
                (and (<= end (length html))
@@ -17,7 +17,7 @@
            *entities*))
 
 (defun unescaped (html)
-  "Return the text that HTML, without tags, stands for."
+  "Return the text of HTML, which has no tags."
   (with-output-to-string (out)
     (loop with i = 0
           while (< i (length html))
@@ -26,7 +26,7 @@
                (incf i (if entity (length (cdr entity)) 1))))))
 
 (defun javascript-string (text)
-  "Return TEXT as a string of JavaScript's, in its double quotes."
+  "Return TEXT as a JavaScript string, in double quotes."
   (with-output-to-string (out) (write-json-string text out :in-page t)))
 
 ;;; Anchors.
@@ -35,8 +35,8 @@
   (or (char<= #\a char #\z) (char<= #\0 char #\9) (char= char #\-)))
 
 (defun anchor (name)
-  "Return the id of the entry NAME on its page: in it are only characters that mean nothing in
-addresses, and no two names have the same."
+  "Return the id of the entry NAME on its page. It has only characters that need no escaping in
+addresses, and differs for different names."
   (with-output-to-string (out)
     (loop for char across (string-downcase name)
           do (if (plain-char-p char)
@@ -50,7 +50,7 @@ addresses, and no two names have the same."
                                (or (alphanumericp char) (find char " -_")))
                              (string-downcase heading))))
 
-;;; From Markdown to HTML, by the program cmark-gfm, and HTML taken apart.
+;;; From Markdown to HTML, by the program cmark-gfm, and splitting HTML.
 
 (defun markdown-html (text)
   "Return the HTML of TEXT, in Markdown as GitHub has it. HTML in TEXT is left out."
@@ -63,8 +63,7 @@ addresses, and no two names have the same."
                    apt-get install cmark-gfm."))
     html))
 
-;;; The HTML that comes of it is simple: a < begins a tag, the next > ends it, and elements are
-;;; nested properly.
+;;; That HTML is simple: a < begins a tag, the next > ends it, and elements are nested properly.
 
 (defun html-tokens (html)
   "Return the tags in HTML and the texts between them, in a list of strings."

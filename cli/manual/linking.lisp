@@ -1,4 +1,4 @@
-;;;; linking.lisp -- which page has what, and pages of Markdown as HTML with links.
+;;;; linking.lisp -- which page has what, and Markdown pages as HTML with links.
 
 (in-package :ars-magna.manual)
 
@@ -24,7 +24,7 @@ their names in lower case. FILES are the project's files that are copied beside 
 (defun page-of-source (source book)
   (find source (book-pages book) :key #'page-source :test #'string=))
 
-;;; Addresses. What a page of the project refers to is another page, or a file that is copied.
+;;; Addresses. Pages of the project refer to other pages, or to files that are copied.
 
 (defun without-dots (name)
   "Return NAME, of a file, without steps to directories above."
@@ -125,8 +125,8 @@ entries."
       (with-attribute "src" (new-address (attribute-value "src" token) page book) token)
       token))
 
-;;; Prose of docstrings: names are in capitals, or in backquotes where we write it ourselves. What
-;;; is indented is a list, whose lines stay apart.
+;;; Prose of docstrings: names are in capitals, or in backquotes where the manual adds text.
+;;; Indented lines are a list and stay apart.
 
 (defun word-char-p (char)
   (or (alphanumericp char) (find char "-*+!?%:./_=<>")))

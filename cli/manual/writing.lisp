@@ -1,4 +1,4 @@
-;;;; writing.lisp -- the pages of the manual, written: their frame, the reference, the index.
+;;;; writing.lisp -- the pages of the manual: their frame, the reference, the names.
 
 (in-package :ars-magna.manual)
 
@@ -9,10 +9,10 @@
 (defparameter *ways*
   '(("index.html" "Contents") ("introduction.html" "Introduction") ("tutorial.html" "Tutorial")
     ("reference.html" "Reference") ("names.html" "All names") ("about.html" "About"))
-  "Lists (file title): where each page leads.")
+  "Lists (file title): the links at the top of each page.")
 
 (defun write-frame (out title body)
-  "Write to OUT a page called TITLE around BODY, HTML. All that it needs lies beside it."
+  "Write to OUT a page called TITLE around BODY, HTML. It needs only files beside it."
   (format out "<!DOCTYPE html>
 <html lang=\"en\">
 <head>
@@ -29,7 +29,7 @@
 <main>
 ~A
 </main>
-<footer><p>ARS MAGNA ~A. Made of its sources by <code>./cli/ars-magna --manual</code>.</p></footer>
+<footer><p>ARS MAGNA ~A. Made from sources by <code>./cli/ars-magna --manual</code>.</p></footer>
 <script src=\"search-index.js\"></script>
 <script src=\"search.js\"></script>
 </body>
@@ -84,7 +84,7 @@
 <h2 id=\"guide\">Guide</h2>~%~A
 <h2 id=\"examples\">Examples</h2>~%~A
 <h2 id=\"reference\">Reference</h2>~%~A
-<p>~A lists everything that has a name.</p>
+<p>~A lists all names.</p>
 <h2 id=\"inside\">Inside</h2>~%~A"
                        (page-links :learning book) (page-links :guide book)
                        (page-links :examples book) (chapter-links book)
@@ -113,7 +113,7 @@
           (from-html example)))
 
 (defun shown-p (example named-p)
-  "True if EXAMPLE is to be shown with the entry, which it names if NAMED-P is true."
+  "True if EXAMPLE is to be shown with the entry. NAMED-P is true if the example names it."
   (or named-p (<= (count #\Newline (example-text example)) *longest-example*)))
 
 (defun examples-of-entry (entry examples)
@@ -135,9 +135,9 @@
                                       (from-html example)))))))
 
 (defparameter *about-examples*
-  "An example is a part of the page that its link leads to. What it uses and Lisp does not know is
-defined there, further up."
-  "What a chapter says of its examples.")
+  "Each example is part of the page that its link leads to. Definitions that it uses are further
+up on that page."
+  "A note on the examples of a chapter.")
 
 ;;; Entries and chapters.
 

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-;;; What comes of an experiment is written to the standard output when it is over, and nothing else
-;;; is; how far it has come goes to the error output.
+;;; The results are written to the standard output when an experiment is over, and nothing else is;
+;;; progress goes to the error output.
 
 ;;; Values of options.
 
@@ -20,7 +20,7 @@
         (reject-usage "--until takes the width of an interval, such as .02, not ~A." text))))
 
 (defconstant +largest-count-of-shards+ 100000
-  "Into how many shards trials can be divided. A command must have room for all their numbers.")
+  "Most shards that trials can be divided into. A command must have room for all their numbers.")
 
 (defun parse-shards (text)
   (let ((count (number-in text)))
@@ -124,7 +124,7 @@ of what has been interrupted."
                                 (handler-bind ((user-interrupt #'look))
                                   (funcall function)))
                               (lambda ()
-                                ;; Who would read it may have been stopped, too.
+                                ;; The reader may have been stopped, too.
                                 (ignore-errors
                                  (tell-stopped command arguments options under-way))
                                 130)))))
@@ -150,7 +150,7 @@ of what has been interrupted."
 (defun known-experiment (words)
   "Return the experiment that WORDS, a file or name and perhaps another name, stand for."
   (prog1 (apply #'experiment-called words)
-    ;; A shell has no prompt that would show what is doubtful in the definitions.
+    ;; A shell has no prompt to show warnings about definitions.
     (dolist (message (take-messages))
       (say "~A" (complaint-text (message-text message))))))
 
@@ -187,9 +187,9 @@ of what has been interrupted."
                     (option-value :plot options))
     0))
 
-;;; Comparing. Two words are directories, of two versions of the code; what else follows says in
-;;; which results or experiment they are conditions, or values of what varies. With --by, all words
-;;; say that.
+;;; Comparing. Two words are directories, of two versions of the code. Other words are conditions or
+;;; values of a factor, then results or an experiment. With --by, all words say where the results
+;;; are.
 
 (defparameter *compare-options*
   '(("--by" :by identity) ("--against" :against identity)
@@ -198,7 +198,7 @@ of what has been interrupted."
   "The options of the command COMPARE, as in *OPTIONS*.")
 
 (defun condition-word (word)
-  "Return what COMPARE-CONDITIONS takes for WORD: a condition's number, its name, or :ALL."
+  "Return the argument of COMPARE-CONDITIONS for WORD: a condition's number, its name, or :ALL."
   (cond ((string-equal word "all") :all)
         ((and (plusp (length word)) (every #'digit-char-p word)) (parse-integer word))
         (t word)))

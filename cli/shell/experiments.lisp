@@ -1,9 +1,9 @@
-;;;; experiments.lisp -- which experiment a user means by a file, a name, or both; what came of it.
+;;;; experiments.lisp -- the experiment that a user means by a file, a name, or both; its results.
 
 (in-package :ars-magna.cli)
 
-;;; A file is meant by its very name, or without its type; an experiment that is known, as those of
-;;; worlds/ are, by its own. The very name of a file goes first, and then an experiment.
+;;; A file is meant by its exact name, or without its type; a defined experiment, such as those of
+;;; worlds/, by its name. The exact name of a file goes first, then an experiment.
 
 (defun experiment-words (experiments)
   (mapcar (lambda (experiment) (string-downcase (experiment-name experiment))) experiments))
@@ -12,15 +12,15 @@
   (find name experiments :key #'experiment-name :test #'same-name-p))
 
 (defun experiments-of (file experiments)
-  "Return those of EXPERIMENTS, of what was loaded with FILE, that are meant by it: its own, or if
-it has none, those of the files that it loads."
+  "Return those of EXPERIMENTS, defined by loading FILE, that FILE means: its own, or if it has
+none, those of the files that it loads."
   (or (remove (native-name (truename file)) experiments :key #'experiment-file :test-not #'equal)
       experiments))
 
 (defun load-experiments (path)
   "Load the Lisp file at PATH. Return the experiments that it defines. Signals BAD-LINE if there are
 none."
-  ;; What the file writes goes to the error output.
+  ;; Output of the file goes to the error output.
   (let ((before (all-experiments)) (*standard-output* *error-output*))
     (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
       (finish-output *error-output*))

@@ -7,7 +7,7 @@
     ("merge" merge-command)
     ("compare" compare-command))
   "Lists (name function): the function gets the arguments that follow, a list of strings, and
-returns the status to exit with. What it does is said in usage-NAME.txt.")
+returns the exit status. usage-NAME.txt describes the command.")
 
 (defun find-command-called (name)
   (or (find name *shell-commands* :key #'first :test #'string=)
@@ -18,14 +18,14 @@ returns the status to exit with. What it does is said in usage-NAME.txt.")
                     (mapcar #'first *shell-commands*))))
 
 (defun run-command-called (name arguments)
-  "Do the command NAME with ARGUMENTS. Return the status to exit with."
+  "Run the command NAME with ARGUMENTS. Return the exit status."
   (let ((command (find-command-called name)) (*error-output* (text-output 2)))
     (unwind-protect (funcall (second command) arguments)
-      ;; What Lisp itself writes there, such as warnings, stays in the stream until then.
+      ;; Lisp's own output, such as warnings, stays in the stream until then.
       (ignore-errors (finish-output *error-output*)))))
 
 (defun usage-of-command (name)
-  "Return the text of usage for the command NAME, or for all if that is NIL or none."
+  "Return the usage text of the command NAME, or the text for all if that is NIL or no command."
   (or (text-called (format nil "usage-~A.txt" name)) (text-called "usage.txt")))
 
 ;;; The prompt.
@@ -35,7 +35,7 @@ returns the status to exit with. What it does is said in usage-NAME.txt.")
 ;;; Interactively, the world is live. A batch without a rate is headless: a fresh world, whose ticks
 ;;; pass only as its lines need them, so that the same lines and seed give the same run.
 
-(defparameter *default-world* "WATSON" "The world of a prompt that is not told another.")
+(defparameter *default-world* "WATSON" "The default world of a prompt.")
 
 (defun first-robot (options)
   (let* ((robot (option-value :robot options))
@@ -97,7 +97,7 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
          (when (option-value :seed options) (list :seed (option-value :seed options))))
   (when (session-terminal-p session) (greet session))
   (run-session session)
-  ;; Where nobody sits at a terminal, the window is what there is to sit at.
+  ;; Without a terminal, the user has only the window.
   (when (and (option-value :window options)
              (reader-ended-p (session-reader session))
              *displays-waiter*)
@@ -125,7 +125,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
                   :color (option-value :color options :auto))))
 
 (defun run-in-world (session robot-name options)
-  ;; What has been said of the world's definitions; a headless run has messages of its own.
+  ;; Messages about the world's definitions; a headless run has messages of its own.
   (tell-messages session (setf *first-messages* (take-all-messages)))
   (let ((*forks-to-keep* t))
     (if (and (session-batch-p session) (null (option-value :rate options)))
@@ -251,7 +251,7 @@ value."
   (finish-output console)
   (let ((trouble (console-trouble console)))
     (cond ((null trouble) status)
-          ;; That nobody wants to read more is no news to him.
+          ;; An output that is closed early is no error.
           ((search "Broken pipe" (own-text trouble)) (max 1 status))
           (t (give-reason trouble (max 1 status))))))
 
@@ -274,13 +274,13 @@ value."
   "Run ./cli/ars-magna: do what the arguments of this process say, and end it. The argument --probe
 only asks whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
-  ;; The core was perhaps saved where the environment names another.
+  ;; The core may have been saved where the environment names another.
   (uiop:setup-temporary-directory)
   (die-of-termination)
   (mind-interrupts)
   (call-on-continuing #'take-terminal-again)
   (refuse-exits (format nil "EXIT would end the whole program here. Signal an error instead, or ~
                              return; at the prompt, QUIT leaves."))
-  ;; An interrupt that still waits when all is done is not to be taken then.
+  ;; An interrupt that still waits at the end is ignored.
   (let ((*beginning* #'main))
     (call-holding-interrupts (lambda () (end-process (run-process))))))

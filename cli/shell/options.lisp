@@ -1,9 +1,8 @@
-;;;; options.lisp -- the arguments of ./cli/ars-magna, taken apart; texts beside the sources.
+;;;; options.lisp -- parsing the arguments of ./cli/ars-magna; texts beside the sources.
 
 (in-package :ars-magna.cli)
 
-;;; What the options do is said in usage.txt and the other files of usage, which the shell script
-;;; prints.
+;;; usage.txt and the other usage files describe the options. The shell script prints them.
 
 (define-condition usage-error (ars-magna-error)
   ((text :initarg :text :reader usage-error-text))

@@ -10,7 +10,7 @@
     (and (pathname-name path) (existing-path path))))
 
 (defun open-script (name)
-  "Return a stream of the lines of the script NAME; - is what is typed."
+  "Return a stream of the lines of the script NAME; - is the standard input."
   (if (string= name "-")
       (standard-input *standard-output* t)
       (make-instance 'typed-text
@@ -31,8 +31,8 @@
 
 ;;;; The time limit
 
-;;; A thread looks now and then at what the session is at, as that of a live run is watched by its
-;;; own (src/time/pacing.lisp).
+;;; A thread looks now and then at what the session does, as another watches a live run
+;;; (src/time/pacing.lisp).
 
 (defparameter *hog-patience* 3
   "How many seconds a batch may be in one call of users' code before that is named.")
@@ -40,19 +40,19 @@
 (defconstant +time-over+ 124 "The status to exit with at a time limit, as that of timeout(1).")
 
 (defparameter *grace* 3
-  "How many seconds what a time limit has ended may take to put itself in order.")
+  "How many seconds the program has to end in order after a time limit.")
 
 (defun call-under-way (session calls)
-  "Return in words whose code SESSION is in, of which CALLS tells, or its live run; and how many
-calls were begun before. Without a second value, which form of a file is loaded, or NIL."
+  "Return in words whose code runs in SESSION, by CALLS, or in its live run; and how many calls were
+begun before. Without a second value, return which form of a file is being loaded, or NIL."
   (let ((simulation (session-simulation session)))
     (cond ((user-calls-origin calls) (values (whose-code calls) (user-calls-count calls)))
           ((user-calls-place calls) (whose-code calls))
           ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
 
 (defun watch-for-calls (session calls ended)
-  "Name users' code that keeps SESSION, of which CALLS tells, until the semaphore ENDED is
-signalled. What is seen four times on end, a third of *HOG-PATIENCE* apart, has been there so long."
+  "Name users' code that blocks SESSION, by CALLS, until the semaphore ENDED is signalled. Code seen
+four times in a row, a third of *HOG-PATIENCE* apart, has run that long."
   (loop with seen = nil and looks = 0
         until (wait-on-semaphore ended (/ *hog-patience* 3))
         do (multiple-value-bind (whose count) (call-under-way session calls)

@@ -28,7 +28,7 @@ need() {  # COMMAND...
     done
 }
 
-# Whoever ends this ends what it runs. One that is just beginning does not heed a signal yet.
+# Ending this script also ends what it runs. A process that is just starting ignores signals.
 stop() {
     trap '' INT TERM HUP
     while kill -s TERM "$child"; do sleep 0.3; done 2>/dev/null
@@ -45,19 +45,19 @@ heeding() {  # COMMAND...
     return $ended
 }
 
-# Where the system can, it ends what this runs also when this is killed.
+# If the system can, it also ends what this runs when this is killed.
 tied='setpriv --pdeathsig TERM'
 $tied true 2>/dev/null || tied=
 
 here() {  # SHARD...
-    # A shell would stand between this and its jobs if it did not become them.
+    # The shell becomes the job, so that no other process is between this and the job.
     heeding parallel --will-cite $bar --quote --jobs "$jobs" --joblog jobs.log \
         exec $tied ./ars-magna experiment "$experiment" --trials "$trials" --out . \
         --shard "{}/$shards" --workers 1 $limit --quiet ::: "$@"
 }
 
-# Each machine gets the program, in a directory in its user's home that is removed at the end. It
-# needs rsync and perl, nothing else.
+# Each machine gets the program, in a directory in the user's home that is removed at the end. It
+# needs only rsync and perl.
 there() {  # SHARD...
     need ssh rsync
     parallel --will-cite --nonall --sshlogin "$hosts" true </dev/null || {
@@ -86,5 +86,5 @@ merged=$?
 
 left=$(program --shards "$shards" --missing) || exit 1
 [ -z "$left" ] && exit $merged
-say "these shards lack rows: $left. jobs.log has their status; start this again to go on."
+say "these shards lack rows: $left. jobs.log has their status; start this again to continue."
 exit 1

@@ -4,8 +4,8 @@
 # ars-magna has written this and does not read it again: change what you like. Start it with
 #     sh job.sh
 # from anywhere, as often as you like. It submits itself, as an array of the shards that lack rows,
-# waits for its end, and puts the tables of all shards together in rows.csv beside it. What tasks
-# write is in slurm.log. All nodes must see this directory.
+# waits for its end, and puts the tables of all shards together in rows.csv beside it. The output
+# of tasks is in slurm.log. All nodes must see this directory.
 #
 #SBATCH --output=slurm.log
 #SBATCH --open-mode=append
@@ -30,7 +30,7 @@ fi
 
 cd -- "$(dirname -- "$0")" || exit 1
 
-# Whoever ends this cancels the job.
+# Ending this script cancels the job.
 cancel() {
     trap '' INT TERM HUP
     kill -s TERM "$child" 2>/dev/null
@@ -61,5 +61,5 @@ merged=$?
 
 left=$(program --shards "$shards" --missing) || exit 1
 [ -z "$left" ] && exit $merged
-say "these tasks lack rows: $left. slurm.log says why; start this again to go on."
+say "these tasks lack rows: $left. slurm.log says why; start this again to continue."
 exit 1

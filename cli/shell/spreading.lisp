@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.cli)
 
-;;; What is saved needs neither SBCL nor sources where it runs, but a machine of this kind. It is
-;;; the same program, in which the user's file has been loaded: `./PROGRAM experiment NAME` runs
-;;; what is in it, with the fingerprints that it would have here.
+;;; A saved program needs neither SBCL nor sources where it runs, but a machine of the same kind. It
+;;; is this program, with the user's file loaded: `./PROGRAM experiment NAME` runs an experiment in
+;;; it, with the same fingerprints as here.
 
-(defvar *beginning* nil "The function that this program has begun by calling.")
+(defvar *beginning* nil "The function with which this program has started.")
 
 (defvar *saved-by-user-p* nil "True in a program that a user has saved.")
 
@@ -29,7 +29,7 @@
 (defun save-program-with (words name)
   "Save this program as the executable file NAME, with the experiments that WORDS, the file or name
 of one, stand for. Signals BAD-LINE."
-  ;; Who saves a Lisp ends it; so it is done by another process.
+  ;; Saving ends the Lisp that does it; so another process does it.
   (let* ((new (format nil "~A.new" name))
          (arguments (append (rest (program-words)) (list "experiment") words
                             (list "--save-executable" new))))
@@ -39,16 +39,16 @@ of one, stand for. Signals BAD-LINE."
 
 ;;;; GNU parallel and Slurm
 
-;;; All that is done here is to write a script, and this program with the user's experiment, into
-;;; the directory of the results, and to start the script: it can be read, changed and started by
-;;; itself. Shards are so large that starting one, a fifth of a second, is cheap beside what it
-;;; does, but enough for several cores; and no more than there may be tasks in an array of Slurm's.
-;;; How many they are depends on nothing but the experiment, so that starting again finds the same.
+;;; This only writes a script, and this program with the user's experiment, into the directory of
+;;; the results, and starts the script. You can read, change and start it yourself. A shard is large
+;;; enough that its start, a fifth of a second, is cheap, and small enough to occupy several cores;
+;;; there are no more shards than a Slurm array may have tasks. Their number depends only on the
+;;; experiment, so that a second start finds the same ones.
 
 (defparameter *shards-of-scripts* '(("run.sh" 500 16) ("job.sh" 5000 1))
-  "Lists (script trials least): for how many trials there is a shard, but at least so many shards.")
+  "Lists (script trials least): trials in a shard, and the least number of shards.")
 
-(defconstant +most-shards+ 1000 "How many shards there are at most unless somebody says.")
+(defconstant +most-shards+ 1000 "Most shards, unless a user asks for more.")
 
 (defun default-shards (experiment trials script)
   "Return how many shards TRIALS trials of each condition of EXPERIMENT make for SCRIPT."
@@ -104,7 +104,7 @@ of one, stand for. Signals BAD-LINE."
   "Run EXPERIMENT, which WORDS, arguments of this program, stand for, by SCRIPT, made of TEMPLATE
 and what SETTINGS, a function, returns. Return the status to exit with."
   (let ((directory (ensure-results-directory (option-value :out options))))
-    ;; What has made the rows that are there is not to be replaced by what cannot go on with them.
+    ;; Rows must not be replaced by a program that cannot continue them.
     (check-same-code experiment directory)
     (save-program-with words (native-name (merge-pathnames "ars-magna" directory)))
     (let ((path (write-script script
