@@ -9,7 +9,7 @@
 (defvar *changes* '() "Lists (key function).")
 
 (defmacro define-change (keys (text point) documentation &body body)
-  "Let each of KEYS do what BODY does with TEXT and POINT; it returns as values another text and
+  "Define what each of KEYS does: BODY gets TEXT and POINT, and returns as values another text and
 point, and what was killed, if anything."
   `(let ((function (lambda (,text ,point) ,documentation (declare (ignorable ,text)) ,@body)))
      (dolist (key ',keys)
@@ -72,11 +72,11 @@ point, and what was killed, if anything."
           (+ point (length string))))
 
 (defun deleted (text start end)
-  "Return TEXT without what is from START to END, and START."
+  "Return TEXT without its part from START to END, and START."
   (values (concatenate 'string (subseq text 0 start) (subseq text end)) start))
 
 (defun killed (text start end)
-  "Do as DELETED does; return as a third value what was there."
+  "Do as DELETED does; return the deleted text as a third value."
   (multiple-value-call #'values (deleted text start end) (subseq text start end)))
 
 (define-change (:rubout) (text point)
@@ -92,7 +92,7 @@ point, and what was killed, if anything."
   (killed text point (line-end text point)))
 
 (define-change (:control-u) (text point)
-  "Kill what comes before, from the beginning of the line on."
+  "Kill the text before the cursor, from the beginning of the line on."
   (killed text (line-start text point) point))
 
 (define-change (:control-w) (text point)

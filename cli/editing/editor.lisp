@@ -22,20 +22,20 @@
    ;; the newest comes what was typed.
    (older :initform '() :accessor edited-older)
    (newer :initform '() :accessor edited-newer))
-  (:documentation "The text that somebody types at this process's terminal, who can edit each line,
-and have again what he has typed before. The line is shown on CONSOLE."))
+  (:documentation "The text typed at this process's terminal, with line editing and history. The
+line is shown on CONSOLE."))
 
 (defmethod initialize-instance :after ((stream edited-text) &key)
   (setf (console-edited-p (edited-console stream)) t))
 
 (defgeneric take-keys (stream &key interrupts)
-  (:documentation "Let each key that is pressed go to STREAM at once; if INTERRUPTS is true, but for
-control C and its like, which are signals.")
+  (:documentation "Pass each key on to STREAM at once; if INTERRUPTS is true, except Control-C and
+the like, which are signals.")
   (:method ((stream edited-text) &key interrupts)
     (hand-over-keys :interrupts interrupts)))
 
 (defun show-again (stream)
-  "Show the line that is typed into STREAM, as this process goes on that was stopped."
+  "Show the line being typed into STREAM, as this process continues after a stop."
   (tell-pastes-apart (edited-console stream) t)
   (change-line (edited-console stream) (constantly nil)))
 
@@ -81,12 +81,11 @@ control C and its like, which are signals.")
     (not (empty-queue-p ahead))))
 
 (defgeneric keep-ahead (stream)
-  (:documentation "Let what has been handed over of STREAM before its time be kept where others look
-for it.")
+  (:documentation "Save type-ahead of STREAM where other readers find it.")
   (:method ((stream edited-text))))
 
 (defun tell-pastes-apart (console on)
-  "Let the terminal tell what is pasted from what is typed, if ON is true."
+  "Let the terminal mark pasted text, if ON is true."
   (with-console (stream console)
     (write-string (paste-in-brackets on) stream)
     (finish-output stream)))
@@ -100,7 +99,7 @@ for it.")
   (drawn-line-text (line-of stream)))
 
 (defun change-to (stream text point)
-  "Let the line that is typed be TEXT, the cursor at POINT."
+  "Make TEXT the line being typed, with the cursor at POINT."
   (setf (edited-listed stream) nil)
   (change-line (edited-console stream)
                (lambda (line)
@@ -125,8 +124,8 @@ for it.")
 (defvar *actions* '() "Lists (key function).")
 
 (defmacro define-action (keys (stream) documentation &body body)
-  "Let each of KEYS do what BODY does. If that returns a text, or :EOF, the line has ended; other
-values say nothing."
+  "Define what each of KEYS does. If BODY returns a text, or :EOF, the line has ended; other values
+do not matter."
   `(let ((function (lambda (,stream) ,documentation ,@body)))
      (dolist (key ',keys)
        (setf *actions* (cons (list key function) (remove key *actions* :key #'first))))))
@@ -170,7 +169,7 @@ values say nothing."
 ;;; The history.
 
 (defun show-entry (stream from to)
-  "Show the entry that the place FROM of STREAM begins with; what is shown goes before those at TO."
+  "Show the first entry of the place FROM of STREAM; what is shown now goes to the place TO."
   (let ((entry (first (slot-value stream from))))
     (when entry
       (pop (slot-value stream from))
@@ -197,7 +196,7 @@ values say nothing."
 ;;; Reading a line.
 
 (defun tell-of-answers (stream count)
-  "Tell who types into STREAM that COUNT lines at the end of what he has pasted are left out."
+  "Tell the user of STREAM that COUNT lines at the end of a pasted text are left out."
   (when (plusp count)
     (write-fresh (format nil "~D line~:P after the last prompt that was pasted ~:*~[~;is~:;are~] ~
                               left out, as answers.~%" count)
@@ -261,7 +260,7 @@ without saying so, is drawn once. Return a text, or :EOF, if the line has ended 
                 (return end)))
 
 (defun edit-line (stream)
-  "Let a line be typed. Return it, which has newlines in it if several were pasted; :EOF at the end
+  "Read a line from the user. Return it, with newlines in it if several were pasted; :EOF at the end
 of the input."
   (flet ((edit () (call-editing (lambda () (press-keys stream)) stream)))
     (prog1 (if *program-reads* (call-asking (edited-console stream) #'edit) (edit))
@@ -308,7 +307,7 @@ it SOUGHT begins; NIL if there is none."
     (values entry (and entry (search sought entry :test #'char-equal)))))
 
 (defun show-search (stream sought skipped)
-  "Show what is found for SOUGHT. NIL if nothing is."
+  "Show the entry found for SOUGHT. Return NIL if there is none."
   (multiple-value-bind (entry place) (found-entry stream sought skipped)
     (change-line (edited-console stream)
                  (lambda (line)
@@ -321,7 +320,7 @@ it SOUGHT begins; NIL if there is none."
     entry))
 
 (defun search-keys (stream)
-  "Let keys say what is looked for. Return the first key that says something else."
+  "Read keys of the search text. Return the first key that is not part of it."
   (loop with sought = "" and skipped = 0
         for key = (read-key (octet-reader stream))
         do (cond ((stringp key) (setf sought (uiop:strcat sought key)

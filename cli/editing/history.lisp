@@ -83,7 +83,7 @@ entry then has a fill pointer."
     (mapcar #'entry-of-line (reverse (last lines *history-limit*)))))
 
 (defun shorten-file (file entries)
-  "Let FILE have no more than ENTRIES, newest first, if it has grown long."
+  "Cut FILE down to ENTRIES, newest first, if it has grown long."
   (when (< (* 2 *history-limit*) (count #\Newline (file-text file)))
     (call-replacing-file (lambda (out)
                            (format out "~{~A~%~}" (mapcar #'entry-on-a-line (reverse entries))))
@@ -111,7 +111,7 @@ entry then has a fill pointer."
 ;;; Entries.
 
 (defun add-entry (history text)
-  "Let TEXT, a line that was typed, be the newest entry, unless it is blank or is so already."
+  "Make TEXT, a line that was typed, the newest entry, unless it is blank or is the newest already."
   (save-entry history)
   (setf (history-growing history) nil)
   (unless (or (every #'blank-p text) (equal text (first (history-entries history))))
@@ -125,8 +125,7 @@ entry then has a fill pointer."
 
 ;; The same text need not be compared for each line to see that it continues.
 (defun amend-entry (history line before)
-  "Put LINE, which goes on from the text BEFORE, behind the newest entry, if BEFORE begins with
-that."
+  "Append LINE, which continues the text BEFORE, to the newest entry, if BEFORE begins with that."
   (let ((newest (first (history-entries history)))
         (same-p (eq before (history-growing history))))
     (when (and newest (or same-p (begins-with-p before newest)))

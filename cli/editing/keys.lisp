@@ -52,7 +52,7 @@
              do (write-char (if (char= char #\Return) #\Newline char) out)))))
 
 (defun read-paste (next)
-  "Return the text that NEXT returns up to the code that ends what is pasted."
+  "Return the text from NEXT up to the code that ends pasted text."
   (loop with end = (paste-ended)
         with octets = (make-array 100 :element-type 'character :adjustable t :fill-pointer 0)
         for char = (funcall next)
@@ -98,8 +98,8 @@
           ((starts-with-subseq "meta-" name) (format nil "~C~A" +escape+ (subseq name 5))))))
 
 (defun octets-of-key (key)
-  "Return what a terminal hands over for KEY, each character of which stands for an octet; nothing
-for one that it does not know."
+  "Return what a terminal sends for KEY, one character for each octet; nothing for a key that it
+does not have."
   (cond ((stringp key) (encoded key))
         ((consp key) (format nil "~A~A~A" (escaped-key (first key)) (encoded (second key))
                              (paste-ended)))
@@ -119,8 +119,8 @@ for one that it does not know."
 (defparameter *control-c* (code-char 3))
 
 (defstruct (octet-queue (:copier nil) (:constructor make-octet-queue ()))
-  "OCTETS, a list of characters, of which LAST is the last cons. INTERRUPTS is how many of them are
-control C."
+  "OCTETS, a list of characters, whose last cons is LAST. INTERRUPTS is the number of Control-C
+among them."
   (octets '() :type list)
   (last '() :type list)
   (interrupts 0 :type (integer 0)))
@@ -137,7 +137,7 @@ control C."
     octet))
 
 (defun add-octets (queue octets)
-  "Let OCTETS, a fresh list, come after those of QUEUE."
+  "Append OCTETS, a fresh list, to those of QUEUE."
   (when octets
     (if (empty-queue-p queue)
         (setf (octet-queue-octets queue) octets)

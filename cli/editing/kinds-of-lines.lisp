@@ -13,8 +13,7 @@ line."
       (#\# (and (blank-at-p (1- position)) (blank-at-p (1+ position)))))))
 
 (defun comment-p (text)
-  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or a # that stands
-alone."
+  "True if TEXT has nothing to run: it is blank, or a comment after ; or a # that stands alone."
   (let ((start (position-if-not #'blank-p text)))
     (or (null start) (comment-at-p text start))))
 
@@ -46,7 +45,7 @@ with Nisp's mark of a slot."
 ;;; The words of a line.
 
 (defun skip-blanks (text start)
-  "Return where, from START, TEXT goes on after blanks; its length if no more than a comment does."
+  "Return where, from START, TEXT continues after blanks; its length if only a comment follows."
   (let ((position (position-if-not #'blank-p text :start start)))
     (if (and position (not (comment-at-p text position)))
         position
@@ -58,8 +57,8 @@ with Nisp's mark of a slot."
       (length text)))
 
 (defun token-end (text start)
-  "Return where the token that begins in TEXT at START ends; one in double quotes may hold blanks,
-and goes on to the end of TEXT if there is no second one."
+  "Return where the token that begins in TEXT at START ends. A token in double quotes may have
+blanks, and extends to the end of TEXT if there is no second quote."
   (if (char= (char text start) #\")
       (let ((quote (position #\" text :start (1+ start))))
         (if quote (1+ quote) (length text)))
@@ -85,7 +84,7 @@ and goes on to the end of TEXT if there is no second one."
     (and end (< start (1- end)) (char= #\: (char text (1- end))))))
 
 (defun after-label (text)
-  "Return what stands after the prompt that TEXT, a line, begins with, or NIL if it has none."
+  "Return the text after the prompt at the beginning of TEXT, a line, or NIL if it has none."
   (let* ((text (subseq text (or (position-if-not #'blank-p text) 0)))
          (label (find-if (lambda (label) (starts-with-subseq label text)) *labels*)))
     (and label (subseq text (length label)))))
@@ -98,14 +97,14 @@ and goes on to the end of TEXT if there is no second one."
           (t (without-label (string-left-trim " " rest))))))
 
 (define-constant +going-on+ "     > " :test #'string=
-  :documentation "The prompt for what goes on from the line before.")
+  :documentation "The prompt for lines that continue the line before.")
 
 (defun going-on-p (text)
   (starts-with-subseq +going-on+ text))
 
 (defun line-pasted (text before)
-  "Return TEXT, a line as typed, without a prompt that was pasted with it. BEFORE is true if it goes
-on from another."
+  "Return TEXT, a line as typed, without a pasted prompt. BEFORE is true if it continues another
+line."
   (cond ((null before) (without-label text))
         ((going-on-p text) (subseq text (length +going-on+)))
         (t text)))
@@ -142,8 +141,8 @@ their prompts, and the LINES below them. What was typed at another prompt is not
       (values (nreverse taken) lines))))
 
 (defun typed-by-label (lines)
-  "Return what was typed of LINES, as pasted, the first of which has a prompt. What stands below a
-form that is not complete is the rest of it."
+  "Return the typed lines among LINES, as pasted, the first of which has a prompt. Lines below an
+incomplete form are the rest of it."
   (loop while lines
         for line = (pop lines)
         for typed = (typed-line-of line)
@@ -155,9 +154,9 @@ form that is not complete is the rest of it."
                          rest)))
 
 (defun typed-lines (lines)
-  "Return what was typed of LINES, as pasted: all up to the first with a prompt, which may be the
-rest of one, those with prompts, but for messages, and the rests of their forms; or LINES if none
-has any."
+  "Return the typed lines among LINES, as pasted: all up to the first prompt, which may be the rest
+of one; those with prompts, except messages; and the rests of their forms. Return LINES if none has
+a prompt."
   (let ((start (position-if #'after-label lines)))
     (if start
         (append (subseq lines 0 start) (typed-by-label (nthcdr start lines)))

@@ -35,8 +35,8 @@
       (change-ahead ahead line (length line)))))
 
 (defun show-neighbour (ahead entries step)
-  "Let what is STEP further in ENTRIES than what is being typed in AHEAD be typed instead. The empty
-line is before the first."
+  "Replace the text being typed in AHEAD by the one STEP further in ENTRIES. The empty line is
+before the first."
   (let* ((entries (cons "" (append (reverse (ahead-lines ahead)) entries)))
          (place (position (ahead-text ahead) entries :test #'string=))
          (next (and place (+ place step))))
@@ -90,7 +90,7 @@ first."
 ;;; A terminal without escape codes, such as a buffer of Emacs, edits lines itself.
 
 (defun obeying-terminal-p (stream)
-  "True if STREAM, of this process, is a terminal that moves its cursor when it is told to."
+  "True if STREAM, of this process, is a terminal that interprets escape codes."
   (and (interactive-stream-p stream)
        (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
 
@@ -99,12 +99,12 @@ first."
     (make-console stream (and (obeying-terminal-p stream) #'window-size))))
 
 (defun file-for-history ()
-  "Return the pathname of the file that the environment names for what was typed, or NIL."
+  "Return the pathname of the history file named in the environment, or NIL."
   (let ((name (environment-value "ARS_MAGNA_HISTORY")))
     (and name (string/= name "") (native-path name))))
 
 (defun standard-input (console plain)
-  "Return what is typed into this process. It is edited on CONSOLE if that is possible, unless PLAIN
+  "Return the typed input of this process. It is edited on CONSOLE if that is possible, unless PLAIN
 is true."
   (let ((octets (octet-input 0)))
     (if (and (not plain) (console-window console) (obeying-terminal-p octets))
@@ -126,14 +126,13 @@ is true."
         (tell-pastes-apart console nil)))))
 
 (defgeneric keep-lines (input)
-  (:documentation "Let no line that was typed into INPUT be lost, whatever becomes of this
-process.")
+  (:documentation "Save all lines that were typed into INPUT, however this process ends.")
   (:method (input))
   (:method ((input edited-text)) (save-entry (edited-history input))))
 
 (defgeneric remember-line (input line before)
-  (:documentation "Let whoever types into INPUT have LINE again, together with the text BEFORE, if
-that is not NIL.")
+  (:documentation "Put LINE into the history of INPUT, joined to the text BEFORE, if that is not
+NIL.")
   (:method (input line before)
     (declare (ignore input line before)))
   (:method ((input edited-text) line before)
@@ -201,8 +200,8 @@ there were."
   (:documentation "The text that somebody types in a window."))
 
 (defun make-handed-text (console)
-  "Return what is typed elsewhere, with its line shown on CONSOLE. It has the history that the
-prompt at the terminal has."
+  "Return input that is typed elsewhere, with its line shown on CONSOLE. It shares the history of
+the prompt at the terminal."
   (make-instance 'handed-text :console console :history (make-history (file-for-history))
                               :octets (make-instance 'handed-octets)))
 
@@ -217,7 +216,7 @@ prompt at the terminal has."
     (answered (edited-console stream))))
 
 (defun being-typed-p (stream)
-  "True if a line is being typed into STREAM: nothing is under way that would have to end first."
+  "True if a line is being typed into STREAM: no running line has to end first."
   (and (line-of stream) t))
 
 (defmethod keep-ahead ((stream handed-text))
@@ -228,22 +227,22 @@ prompt at the terminal has."
   (ahead-in octets (history-entries (edited-history stream))))
 
 (defun with-key (stream octets key)
-  "Return OCTETS, which STREAM has not read yet, with those of KEY. Until it reads, they are what is
-typed ahead."
+  "Return OCTETS, which STREAM has not read yet, followed by those of KEY. Until STREAM reads, they
+are type-ahead."
   (cond ((being-typed-p stream) (uiop:strcat octets (octets-of-key key)))
         (t (let ((ahead (ahead-of stream octets)))
              (press-ahead ahead key (history-entries (edited-history stream)))
              (octets-of-ahead ahead)))))
 
 (defun press-key (stream key)
-  "Let whoever reads STREAM read KEY, as in keys.lisp."
+  "Pass KEY, as in keys.lisp, to the reader of STREAM."
   (revise-octets (typed-octets stream) (lambda (octets) (with-key stream octets key))))
 
 ;;; What waits.
 
 (defun typed-ahead (stream)
-  "Return how many lines wait to be read of STREAM, and what is being typed after them: its text,
-and where in it the cursor is."
+  "Return how many lines of STREAM wait to be read, and the text being typed after them, with the
+position of the cursor in it."
   (let ((ahead (ahead-of stream (handed-left (typed-octets stream)))))
     (values (+ (length (edited-lines stream)) (length (ahead-lines ahead)))
             (ahead-text ahead)

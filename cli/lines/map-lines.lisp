@@ -17,7 +17,7 @@ terminal."
 ;;; What of it.
 
 (defun words-of-map ()
-  "Return the words that MAP understands: its own, and what PICTURE calls the same."
+  "Return the words that MAP accepts: its own, and PICTURE's names for the same layers."
   (mapcar #'symbol-name (append (text-layers) '(:legend) (mapcar #'layer-named (text-layers)))))
 
 (defun word-meant (text words line takes)
@@ -108,8 +108,7 @@ characters mean. PICTURE's names WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS work
        (not (paused-p simulation))))
 
 (defun idle-here-p (session simulation)
-  "True if no ticks of SIMULATION, in which SESSION is, pass by themselves until somebody asks for
-something."
+  "True if no ticks of SIMULATION, the run of SESSION, pass until a command or change is requested."
   (and (time-passes-p session simulation) (idle-p simulation)))
 
 (defun pass-tick (session simulation)
@@ -133,14 +132,14 @@ something."
 ;;; In place.
 
 (defun screen-p (session)
-  "True if SESSION is on a terminal that can be written over, and can hear keys."
+  "True if SESSION is on a terminal that can be written over, and can read keys."
   (and (watched-p session)
        (terminal-stream-p (session-input session))
        (not (session-batch-p session))
        (console-edited-p (session-console session))))
 
 (defun frame (session simulation options)
-  "Return what is to be seen now: the map, and below it the time and what was said last."
+  "Return the text for the screen: the map, and below it the time and the last message."
   (let ((columns (1- (terminal-size session)))
         (said (last-held-back (session-console session))))
     (format nil "~A~A A key ends this.~%~A" (map-text session options 2)

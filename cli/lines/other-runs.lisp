@@ -145,7 +145,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 ;;; Going there, and out again.
 
 (defun pause-soon (session visit restart)
-  "Let VISIT pause at its next tick, and what has been interrupted go on by RESTART."
+  "Let VISIT pause at its next tick, and continue by RESTART what was interrupted."
   (pause-visit visit)
   (setf (visit-interrupted-p visit) t)
   (write-fitted (session-console session)
@@ -154,8 +154,8 @@ command, such as that of GO-TO, receive :INTERRUPT."
   (invoke-restart restart))
 
 (defun call-pausable (session visit function)
-  "Call FUNCTION. If somebody sits at SESSION and presses control C while ticks pass in VISIT, it
-pauses at the next one; if that does not come, and he does so again, it is left."
+  "Call FUNCTION. Control-C at the terminal of SESSION, while ticks pass in VISIT, pauses the trial
+at the next tick. A second Control-C, if that does not come, leaves the trial."
   (flet ((heed (condition)
            (let ((restart (find-restart 'go-on condition)))
              (if (and restart (session-terminal-p session) (not (visit-interrupted-p visit)))
@@ -178,7 +178,7 @@ pauses at the next one; if that does not come, and he does so again, it is left.
                :then (lambda (result) (stay session visit result parts row)))))
 
 (defun call-with-others-paused (function)
-  "Call FUNCTION, while the live simulation that is current here, if any, stands still."
+  "Call FUNCTION, while the current live simulation, if any, is paused."
   (let ((simulation *simulation*))
     (if (and simulation (live-p simulation) (not (paused-p simulation)))
         (unwind-protect (progn (pause simulation) (funcall function))
@@ -186,7 +186,7 @@ pauses at the next one; if that does not come, and he does so again, it is left.
         (funcall function))))
 
 (defun enter-visit (session visit)
-  "Let SESSION be in VISIT until a line leads out. Return a function to call then."
+  "Run VISIT in SESSION until a line leads out. Return a function to call then."
   (let ((*prompt-robot* nil) (left-p nil))
     (setf (session-visit session) visit)
     (unwind-protect
@@ -271,8 +271,7 @@ opens one of them."
           (simulation-tick *simulation*) (mapcar #'task-label (plans))))
 
 (defun enter-fork (session fork)
-  "Let SESSION, which waits for nothing that it has asked for before, be in FORK until a line leads
-out."
+  "Run SESSION in FORK until a line leads out. Its earlier errands do not count there."
   (let ((errands (shiftf (session-errands session) '()))
         (depth (session-forks session)))
     (setf (session-forks session) (1+ depth))
@@ -285,7 +284,7 @@ out."
             (session-forks session) depth))))
 
 (defun go-to-fork (session seed)
-  "Let SESSION be in a fork of the current run until a line leads out; then forget it."
+  "Run SESSION in a fork of the current run until a line leads out; then discard the fork."
   (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
     (keep-forks t fork)
     (tell-others session run

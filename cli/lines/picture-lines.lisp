@@ -25,7 +25,7 @@ or PICTURE, or BARE, for no default layers."
                                              (unless (member :bare words) *picture-layers*))))))
 
 (defun layers-text (layers)
-  "Return LAYERS by name, each with what it shows where that is not the same in other words."
+  "Return LAYERS by name, each with its title unless that says the same."
   (format nil "~:{~A~@[ (~A)~]~:^, ~}"
           (loop for layer in layers
                 for name = (substitute #\Space #\- (symbol-name layer))
@@ -158,7 +158,7 @@ the window at any time. It closes by itself when the run is over."
 ;;;; Maps in files
 
 (defun free-middle (map)
-  "Return the point of MAP nearest its middle that a robot can stand at, a list, or NIL."
+  "Return the point of MAP nearest its middle at which a robot can stand, a list, or NIL."
   (let ((point (nearest-free-point map (list (/ (map-width map) 2) (/ (map-height map) 2)))))
     (and point (list (pt-x point) (pt-y point)))))
 

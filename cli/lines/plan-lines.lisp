@@ -102,7 +102,7 @@ at once, otherwise when the plan has ended."
 ;;; Those under way.
 
 (defun plan-package (name)
-  "Return the package in which the plan called NAME, or NIL, was written."
+  "Return the package of the plan called NAME, or NIL."
   (let ((plan (plan-called (string name))))
     (if plan (symbol-package (procedure-name plan)) (user-package))))
 
@@ -201,7 +201,7 @@ or in Lisp (setf *trace-plans* t), before the plan starts."
    (lambda (runner) (and runner (mapcar #'task-serial (all-tasks runner))))))
 
 (defun task-meant (text)
-  "Return the task under way whose number TEXT says. Signals BAD-LINE."
+  "Return the running task with the number TEXT. Signals BAD-LINE."
   (unless (plans) (reject-line "No plan is under way."))
   (let ((number (ignore-errors (parse-integer text))))
     (call-with-plans-in-use

@@ -34,7 +34,7 @@
     (format t "~A~%" (time-text session simulation))))
 
 (defun resume-here (session)
-  "Let time go on in the run of SESSION, also if its clock was stopped."
+  "Let time pass again in the run of SESSION, even if its clock was stopped."
   (check-run)
   (let ((simulation (current-simulation)))
     (cond ((or (live-p simulation) (headless-p simulation)) (resume (live-simulation)))
@@ -76,8 +76,7 @@ end."
             (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
 
 (defun later-rate-text (session simulation)
-  "Return in words at what rate ticks will pass in SIMULATION, in which SESSION is, if that is
-paused."
+  "Return in words at what rate ticks will pass in SIMULATION, the run of SESSION, if it is paused."
   (let ((visit (session-visit session)))
     (cond ((and visit (not (visit-running-p visit))) (rate-text (visit-rate visit)))
           ((and (null visit) (paused-p simulation)) (rate-text (simulation-rate simulation))))))

@@ -114,7 +114,7 @@
   (mapc #'write-designator (getf status :designators)))
 
 (defun write-standstill (session simulation)
-  "Say that SIMULATION, in which SESSION is, is live, but no ticks pass now, if that is so."
+  "Tell that SIMULATION, the run of SESSION, is live but passes no ticks now, if that is so."
   (when (and (live-p simulation)
              (or (paused-p simulation) (idle-p simulation))
              (null (session-visit session)))

@@ -16,7 +16,7 @@
     (end-simulation old "the prompt has gone elsewhere")))
 
 (defun come-from (session old robot)
-  "Let the run OLD, from which SESSION has come to ROBOT, be over, and who was there come along."
+  "End the run OLD, which SESSION has left for ROBOT, and let the other prompts there follow."
   (setf (gethash old *replacements*) (list (robot-simulation robot) (robot-name robot)))
   (end-left old)
   (dolist (other (remove-if #'session-place (remove session (sessions-hearing old))))
@@ -24,7 +24,7 @@
       (when simulation (tell-of-run other simulation name)))))
 
 (defun start-live (session robot-name)
-  "Let the world of ROBOT-NAME start anew, at the pace of the run that SESSION is in; that ends."
+  "Start the world of ROBOT-NAME again, at the rate of the run of SESSION, which ends."
   (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
     ;; In a run that has passed no tick, that world would just continue.

@@ -258,14 +258,14 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
     (sort found #'string<)))
 
 (defun users-symbols ()
-  "Return the symbols that users see: those that are marked, and what the packages of worlds and of
-checks for tests export."
+  "Return the names for users: marked ones, and the exports of the packages of worlds and of test
+checks."
   (remove-duplicates (append (public-symbols :ars) (public-symbols :nisp)
                              (exported-symbols :ars-worlds) (exported-symbols :ars-fiveam))
                      :from-end t))
 
 (defun named-elsewhere-p (symbol entries)
-  "True if SYMBOL is only a word that one of ENTRIES, of substances or place types, tells of."
+  "True if SYMBOL is only a word for one of ENTRIES, of substances or place types."
   (and (null (sorts-of-symbol symbol))
        (find (symbol-name symbol) entries :key #'entry-name :test #'string-equal)))
 

@@ -90,7 +90,7 @@ ended.")
             (mapcar #'unqualified-text (without-hidden lambda-list)))))
 
 (defun without-hidden (lambda-list)
-  "Return LAMBDA-LIST without what a macro is told besides its arguments."
+  "Return LAMBDA-LIST without the parameters that a macro gets besides its arguments."
   (loop with rest = lambda-list
         while (consp rest)
         for item = (pop rest)
@@ -186,7 +186,7 @@ ended.")
               :file (file-of-symbol (command-name command))))
 
 (defun own-commands ()
-  "Return the commands that users see, and not those that only this Lisp has."
+  "Return the commands for users, without those defined only in this Lisp."
   (remove-if-not (lambda (command) (packages-showing (command-name command))) (all-commands)))
 
 ;;; Error codes.

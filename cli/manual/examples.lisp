@@ -10,9 +10,9 @@
 ;;; such a block gets the shortest block that uses it.
 
 (defstruct (example (:copier nil))
-  "A block of code in the guide: of Lisp, or of what is typed at the prompt. NAMES, strings, are
-what its author says that it shows, WORDS what it has in it, CALLS those of them that are surely no
-variables of its own. ID is that of the heading that it is under."
+  "A block of code in the guide: of Lisp, or of lines at the prompt. NAMES, strings, are the names
+that it is an example of; WORDS are the names in it; CALLS are those of them that are certainly not
+its own variables. ID is that of the heading above it."
   (page nil :type page :read-only t)
   (id "" :type string :read-only t)
   (heading "" :type string :read-only t)
@@ -75,16 +75,16 @@ have none."
                         (setf i end)))))))
 
 (defun call-p (name text start)
-  "True if NAME in TEXT at START is surely no variable of that text's own: what is called, or
-quoted, or has a name as those of this simulator are."
+  "True if NAME in TEXT at START is certainly no variable of that text: it is called, or quoted, or
+looks like a name of the simulator."
   (or (find #\- name :start (min 1 (length name)))
       (find (char name (1- (length name))) "*:")
       (char= #\: (char text start))
       (and (plusp start) (find (char text (1- start)) "('"))))
 
 (defun lisp-names (text &optional (test (constantly t)))
-  "Return the names in TEXT, of Lisp, each once: those for which TEST, of the name, TEXT and where
-it starts, is true."
+  "Return the names of Lisp in TEXT, each once, for which TEST, of the name, TEXT and its start, is
+true."
   (let ((names '()))
     (map-names (lambda (name start end)
                  (declare (ignore end))
@@ -119,8 +119,8 @@ text), with NAMES; NIL if it is neither Lisp nor a session."
                     :calls (if lisp-p (lisp-names text #'call-p) '())))))
 
 (defstruct (walk (:copier nil))
-  "How far somebody who looks for examples has come on PAGE: below HEADING, a list (level id text),
-with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found, the last first."
+  "The state of a search for examples on PAGE: below HEADING, a list (level id text), with NAMES,
+which a block has shown if USED-P is true; EXAMPLES are those found, the last first."
   (page nil :type page :read-only t)
   (heading '() :type list)
   (names '() :type list)
@@ -128,7 +128,8 @@ with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found,
   (examples '() :type list))
 
 (defun take-names (walk names &key keep)
-  "Let NAMES be shown by what follows; with KEEP, beside those that nothing has shown yet."
+  "Make NAMES those that the following blocks show; with KEEP, beside those that no block has shown
+yet."
   (when names
     (setf (walk-names walk) (if (and keep (not (walk-used-p walk)))
                                 (append (walk-names walk) names)
@@ -176,15 +177,15 @@ with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found,
   "How many lines a block may have that is shown for a name that only occurs in it.")
 
 (defun words-of-kind (example kind)
-  "Return the words of EXAMPLE that can stand for what is of KIND: :TYPED, :CALLED or :WRITTEN."
+  "Return the words of EXAMPLE that count for KIND: :TYPED, :CALLED or :WRITTEN."
   (ecase kind
     (:typed (if (example-lisp-p example) '() (example-words example)))
     (:called (example-calls example))
     (:written (if (example-lisp-p example) (example-words example) '()))))
 
 (defun examples-for (name kind examples)
-  "Return those of EXAMPLES that show NAME, a string: those that name it, and true; or in a list the
-shortest that has it as a word of KIND, as WORDS-OF-KIND has it, and NIL."
+  "Return the EXAMPLES for NAME, a string. Either those that name it, and true; or a list of the
+shortest that has it among its WORDS-OF-KIND for KIND, and NIL."
   (flet ((having (reader)
            (remove-if-not (lambda (example)
                             (member name (funcall reader example) :test #'string=))

@@ -120,7 +120,8 @@ that follow it."
           finally (return (values element (rest rest))))))
 
 (defun parts-of (tokens whole-p)
-  "Return TOKENS in lists: the elements of whose first tag WHOLE-P is true, other tokens alone."
+  "Return TOKENS in lists: whole elements if WHOLE-P is true of their first tag, and other tokens
+alone."
   (loop with rest = tokens
         while rest
         collect (if (funcall whole-p (first rest))

@@ -74,7 +74,7 @@ first page."
 
 (defparameter *chapters-of-lisp*
   '(:commands :parameters :definers :constructs :plan-functions :fluents :conditions :names :plans)
-  "The chapters whose names are linked where they stand in Lisp.")
+  "The chapters whose names are linked in Lisp code.")
 
 (defun linked-lisp (text book)
   "Return the HTML of TEXT, of Lisp, its names leading to their entries."

@@ -91,8 +91,8 @@ DATUM.")
       datum))
 
 (defun read-datum (text start line)
-  "Return the Lisp datum in TEXT at START and where it ends (reading 196). It is not evaluated, so
-that a quote before it says nothing."
+  "Return the Lisp datum in TEXT at START and where it ends (reading 196). It is not evaluated, so a
+quote before it does not matter."
   (handler-case (multiple-value-bind (datum end) (read-data-from-string text start)
                   (values (unquoted datum) end))
     (end-of-file ()
@@ -148,8 +148,8 @@ that a quote before it says nothing."
            (values value end))))))
 
 (defun read-number-or-datum (slot text start line)
-  "Return what is typed in TEXT at START for SLOT of LINE, a number in the simulator's own units or
-another datum, and where that ends."
+  "Return the argument typed in TEXT at START for SLOT of LINE, a number in the simulator's own
+units or another datum, and where that ends."
   (multiple-value-bind (datum end) (read-datum text start line)
     (read-quantity datum text start end (slot-type slot)
                    (lambda (trouble) (reject-line "~A ~A" trouble (takes line))))))
@@ -189,9 +189,9 @@ units."
 ;;;; What can be typed for an argument
 
 (defgeneric choices (type session typed)
-  (:documentation "Return what can be typed in SESSION for an argument of TYPE, a keyword, of which
-TYPED is typed already: a list of strings, symbols and numbers, among them others. NIL if that
-cannot be told. May signal BAD-LINE, as when there is no robot.")
+  (:documentation "Return what can be typed in SESSION for an argument of TYPE, a keyword, after
+TYPED: a list of strings, symbols and numbers, which may include others. NIL if that is not known.
+May signal BAD-LINE, as when there is no robot.")
   (:method (type session typed)
     (declare (ignore session typed))
     (when (part-type-p type)
@@ -199,7 +199,7 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
             collect index))))
 
 (defmacro define-choices (type form)
-  "Let the value of FORM be what can be typed for an argument of TYPE, whatever is typed already."
+  "Make the value of FORM the choices for an argument of TYPE, whatever was typed so far."
   `(defmethod choices ((type (eql ,type)) session typed)
      (declare (ignore session typed))
      ,form))
@@ -232,7 +232,8 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
 ;;; Files.
 
 (defun entries-of (directory)
-  "Return the names of what is in DIRECTORY, as the system names it; directories end with a slash."
+  "Return the names of the files in DIRECTORY, as the system names it; directories end with a
+slash."
   (let ((path (path-called directory)))
     (flet ((without-directory (entry)
              (let ((name (native-name entry)))

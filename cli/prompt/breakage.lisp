@@ -36,7 +36,7 @@
                               (complaint-text (own-text restart))))))
 
 (defun tell-break (session breakage)
-  "Show what has happened, and let the prompt that stands be the debugger's."
+  "Show what has happened, and make the present prompt the debugger's."
   (let ((console (session-console session)))
     (setf (breakage-told-p breakage) t)
     (write-fitted console "~A" (break-text session breakage))
@@ -53,19 +53,19 @@
     (restore-prompt console)))
 
 (defun break-line (session breakage)
-  "Return on one line what has broken and where, if not in the thread of SESSION."
+  "Return on one line what has broken, and where if not in the thread of SESSION."
   (let ((words (break-words (breakage-condition breakage))))
     (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
             (whereabouts session breakage))))
 
 (defun awaited-answers (session)
-  "Return a list of what waits for the user of SESSION to say how it goes on, in words, what is
-asked about now first. Any thread may ask."
+  "Return in words, as a list, the breaks that wait for the user of SESSION, the one that is asked
+about first. Any thread may ask."
   (mapcar (lambda (breakage) (break-line session breakage)) (breaks-awaiting session)))
 
 (defun ways-awaited (session)
-  "Return in words the ways to go on that the user of SESSION can choose from now, or NIL if he is
-not asked. Any thread may ask."
+  "Return in words the restarts that the user of SESSION can choose now, or NIL if there is no
+question. Any thread may ask."
   (let ((breakage (first (breaks-awaiting session))))
     (and breakage
          (format nil "~{~A~^, ~}"
@@ -74,13 +74,14 @@ not asked. Any thread may ask."
                        collect (format nil "~D ~A" number (plain-name (restart-name restart))))))))
 
 (defun simulator-broken-p (session)
-  "True if the user of SESSION is asked how the simulator's thread goes on. Any thread may ask."
+  "True if the user of SESSION is asked about a break in the simulator's thread. Any thread may
+ask."
   (some (lambda (breakage) (simulator-p session (breakage-thread breakage)))
         (breaks-awaiting session)))
 
 (defun asker-of-break (simulation)
-  "Return in words, to follow others, that another debugger than that of the prompts asks how the
-thread of SIMULATION, which has broken, goes on; or NIL."
+  "Return in words, to follow others, that another debugger than the prompts' asks about a break in
+the thread of SIMULATION; or NIL."
   (let ((debugger (debugger-asking (simulation-thread simulation))))
     (and debugger
          (notany #'simulator-broken-p (sessions-hearing simulation))
@@ -163,8 +164,8 @@ gone."
       line)))
 
 (defun sessions-to-ask ()
-  "Return the sessions whose users can say how what has broken in this thread is to go on: the one
-of this thread, or all that listen to its simulation, or the newest."
+  "Return the sessions whose users can answer a break in this thread: the one of this thread, or all
+in its simulation, or the newest."
   (let ((own *session*))
     (cond ((and own (eq (session-thread own) (current-thread))) (list own))
           ((remove-if-not #'session-terminal-p (sessions-hearing *simulation*)))

@@ -57,8 +57,8 @@ still undefined at the end are reported as messages."
            (malformed-definition-place condition))))
 
 (defun tell-with-place (tell condition)
-  "Let TELL, ERROR-SET or WARNING-SET, say what CONDITION says, which came up in COMPILE-FILE, with
-file and line. Do nothing elsewhere."
+  "Report CONDITION, which came up in COMPILE-FILE, with file and line, by TELL, ERROR-SET or
+WARNING-SET. Do nothing elsewhere."
   (let ((text (one-line (condition-text condition))))
     (multiple-value-bind (file line) (if (typep condition 'reader-error)
                                          (reading-place condition)
@@ -75,8 +75,8 @@ file and line. Do nothing elsewhere."
         ((typep condition 'warning) (tell-with-place #'warning-set condition))))
 
 (defun call-telling-doubts (function)
-  "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
-together, and what is wrong in files that it compiles, are messages."
+  "Call FUNCTION and return its values. Warnings about the forms that it evaluates, taken together,
+and errors in files that it compiles, are messages."
   (let ((last nil))
     ;; Each nested EVAL signals the compiler's conditions once more.
     (handler-bind ((condition (lambda (condition)
@@ -97,7 +97,7 @@ together, and what is wrong in files that it compiles, are messages."
           (format *standard-output* "~&~A~%" line))))))
 
 (defun eval-placing (form)
-  "Evaluate FORM. What cannot be read in a file that it loads, by LOAD, is told with its place."
+  "Evaluate FORM. Errors in reading a file that it loads, by LOAD, are reported with their place."
   (handler-bind ((reader-error (lambda (condition)
                                  (multiple-value-bind (file line) (reading-place condition)
                                    (when file
@@ -145,7 +145,7 @@ together, and what is wrong in files that it compiles, are messages."
         (when after (error after))))))
 
 (defun note-clause-line (session text form clause)
-  "Note on which line CLAUSE of FORM stands, in TEXT, which ends with what SESSION has read last."
+  "Note the line on which CLAUSE of FORM is, in TEXT, which ends with what SESSION has read last."
   (let ((line (line-of-clause text form clause)))
     (when line
       (note-trouble-line (session-account session)
@@ -232,7 +232,7 @@ for, or 79."
       (evaluate-text session text)))
 
 (defun run-text (session text)
-  "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."
+  "Run TEXT, a line as typed; its requests are those of the prompt."
   (let* ((*asker* (asker-for (session-account session)))
          (*told-of* *asker*))
     (cond ((comment-p text))

@@ -32,7 +32,7 @@
   (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
 
 (defun get-by-quicklisp ()
-  "Let Quicklisp fetch McCLIM, if need be, and load it."
+  "Fetch McCLIM with Quicklisp, if necessary, and load it."
   (unless (find-package :quicklisp) (load (quicklisp-file)))
   (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
 

@@ -54,8 +54,8 @@ to complete begins, a list of all completions, and what follows a single complet
                 start))))
 
 (defun complete (stream start texts after)
-  "Let the part of the line from START to the cursor become as much as all of TEXTS have in common,
-and AFTER if it is one; list them if that is no more than there is."
+  "Replace the part of the line from START to the cursor by the longest common beginning of TEXTS,
+followed by AFTER if there is one text. List the texts if that adds nothing."
   (let ((typed (subseq (typed-text-of stream) start (drawn-line-point (line-of stream))))
         (common (common-start texts)))
     (cond ((null (rest texts))
@@ -156,7 +156,7 @@ and AFTER if it is one; list them if that is no more than there is."
     (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
 
 (defun merely-read-p (symbol)
-  "True if SYMBOL means nothing: somebody has once typed it."
+  "True if SYMBOL has no meaning and was only typed."
   (and (eq *package* (symbol-package symbol)) (not (defined-p symbol))))
 
 (defun symbols-here ()
@@ -206,13 +206,14 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
 ;;; Arguments.
 
 (defun unit-end (text position)
-  "Return where the unit ends that stands in TEXT from POSITION on, or POSITION if there is none, or
-it is being typed."
+  "Return where the unit ends that is in TEXT from POSITION on, or POSITION if there is none, or it
+is being typed."
   (let ((end (nth-value 1 (unit-after text position))))
     (if (and end (< end (length text))) end position)))
 
 (defun slot-end (slot text start)
-  "Return where what TEXT has for SLOT from START on ends, or NIL if that goes on at its end."
+  "Return where the argument for SLOT in TEXT from START on ends, or NIL if it may continue at the
+end of TEXT."
   (let ((end (typecase (slot-type slot)
                (rest-type nil)
                (keyword (token-end text start))
@@ -282,8 +283,8 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
           (t (argument-completions session (line-meant typed) text end)))))
 
 (defun completions-in (session text point)
-  "Return where what is to be completed begins in TEXT, typed in SESSION up to POINT, all that it
-could become, and what follows one that is the only one."
+  "Return where the part to complete begins in TEXT, typed in SESSION up to POINT, all its
+completions, and what follows a single completion."
   (let* ((text (subseq text 0 point))
          (breakage (first (session-breaks session))))
     (handler-case

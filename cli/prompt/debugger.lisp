@@ -28,7 +28,7 @@ package and syntax."
   (signal-semaphore (breakage-ordered breakage)))
 
 (defun order (session breakage function)
-  "Let the thread of BREAKAGE call FUNCTION, and wait until it has done so, or goes on."
+  "Let the thread of BREAKAGE call FUNCTION, and wait until it has done so or continues."
   (cond ((here-p breakage) (funcall function))
         (t (hand-order session breakage function)
            (wait-on-semaphore (breakage-done breakage)))))
@@ -46,8 +46,7 @@ package and syntax."
                      word (mapcar #'plain-name (mapcar #'restart-name restarts))))))
 
 (defun broken-calls ()
-  "Return the calls under way that led into the debugger, the newest first, as far as they are the
-user's."
+  "Return the user's calls that led into the debugger, the newest first."
   (let* ((calls (calls-under-way 100))
          (start (position 'invoke-debugger calls :key #'first))
          (user-calls (if start (nthcdr (1+ start) calls) calls)))
@@ -77,8 +76,8 @@ user's."
                (choose session breakage (restart-called word breakage) rest))))))
 
 (defun choose (session breakage restart rest)
-  "Let BREAKAGE go on by RESTART. What that asks for, if it does, is REST, the text after its name,
-or else what the user types next."
+  "Continue BREAKAGE by RESTART. If that needs a value, it is REST, the text after its name, or else
+what the user types next."
   (let* ((asks-p (and (asks-p restart) (not (here-p breakage))))
          (answer (cond ((not asks-p) nil)
                        ((every #'blank-p rest) (read-input session "Value> "))
@@ -110,7 +109,7 @@ comes after that."
         (tell-break session (first (session-breaks session)))))))
 
 (defun answer-those-before (session breakage)
-  "Read lines for what has broken in other threads before BREAKAGE, which has in this one."
+  "Read lines for breaks in other threads before BREAKAGE, which is in this one."
   (let ((breaks (copy-list (session-breaks session))))
     (when breaks (tell-waiting session breakage))
     (dolist (other breaks)
@@ -127,7 +126,7 @@ comes after that."
       (tell-break session breakage)))
 
 (defun forget-break (session breakage)
-  "Let BREAKAGE, which goes on, wait for SESSION no longer, whose prompt that was perhaps not."
+  "Release SESSION from BREAKAGE, which continues; another prompt may have answered it."
   (let* ((console (session-console session)) (state (session-break-state session))
          (first-p (eq breakage (first (break-state-others state))))
          (left (removef (break-state-others state) breakage)))
@@ -140,14 +139,14 @@ comes after that."
 (defvar *own-process-p* nil "True in a process that does nothing but this program.")
 
 (defun words-for-repl (sessions breakage)
-  "Return what to say on the error output if BREAKAGE is asked about in SESSIONS that are all in
-windows, as somebody may wait in Lisp's own REPL meanwhile; or NIL."
+  "Return a message for the error output if BREAKAGE is asked about in SESSIONS that are all in
+windows, as the user may wait in Lisp's own REPL; or NIL."
   (and (not *own-process-p*)
        (every #'session-place sessions)
        (format nil "~A: a window asks how it goes on." (break-line (first sessions) breakage))))
 
 (defun debug-elsewhere (sessions breakage)
-  "Do what the thread of one of SESSIONS orders for BREAKAGE, until that is to go on."
+  "Carry out the orders of the threads of SESSIONS for BREAKAGE, until one continues it."
   (dolist (state (mapcar #'session-break-state sessions))
     (setf (break-state-others state) (append (break-state-others state) (list breakage))))
   (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
@@ -161,8 +160,8 @@ windows, as somebody may wait in Lisp's own REPL meanwhile; or NIL."
 
 ;; A user's window may be lost although there is another, or the terminal.
 (defun heirs-of (session)
-  "Return the sessions whose users can answer what that of SESSION, which is over, cannot any more:
-those that listen to its run, or else all; NIL if its user has left it."
+  "Return the sessions whose users can answer for the user of SESSION, which is over: those in its
+run, or else all; NIL if its user has left it."
   (flet ((can-answer-p (other)
            (and (session-terminal-p other)
                 (not (eq other session))
@@ -194,8 +193,8 @@ those that listen to its run, or else all; NIL if its user has left it."
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
 (defmethod serve-while-waiting ((prompts prompts))
-  "If this thread has the prompt, and carries out a line, read lines for what has broken in other
-threads, until that goes on."
+  "If this thread has the prompt, and carries out a line, read lines for breaks in other threads,
+until that line continues."
   (let ((session *session*))
     (when (and session (eq (session-thread session) (current-thread)) (not *showing-p*))
       (loop for breakage = (first (session-breaks session))
@@ -211,8 +210,8 @@ threads, until that goes on."
                       'abort)))
 
 (define-event *break-hooks*
-  "Functions, or their names, of no arguments, that are called in a thread that has broken, before
-it asks how it goes on: for those who show what stands still then.")
+  "Functions of no arguments, or their names, that are called in a thread that has broken before it
+asks how to continue: to show the state in which it stands still.")
 
 (defun others-matter-p ()
   "True if what breaks in this thread is no matter of prompts: it is a user's own, in a Lisp that
@@ -222,7 +221,7 @@ does other things too, and no prompt runs in it."
            (and *session* (eq (session-thread *session*) (current-thread))))))
 
 (defun enter-debugger (condition hook)
-  "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
+  "Ask the user of the prompt how to continue after CONDITION. Called instead of Lisp's debugger."
   ;; The question needs stack that is not there.
   (when (typep condition 'storage-condition) (give-up condition))
   (let* ((*asking-p* t) (sessions (sessions-to-ask)))
@@ -237,7 +236,7 @@ does other things too, and no prompt runs in it."
           (*session* (debugger-disabled-hook condition hook)))))
 
 (defun make-process-own ()
-  "Let this Lisp, which is to be saved, do nothing but this program."
+  "Make this Lisp, which is to be saved, run only this program."
   (setf *own-process-p* t
         (debugger-hook) 'debugger-disabled-hook))
 
@@ -248,14 +247,14 @@ does other things too, and no prompt runs in it."
   (end-process 1))
 
 (defun users-thread-text (condition)
-  "Return what is said of CONDITION, which nothing handles in this thread of a program's."
+  "Return the message on CONDITION, which nothing handles in this thread of a program's."
   (let ((serious-p (typep condition 'serious-condition)))
     (format nil "~:[Break~;Error~] in a thread~@[, ~A,~] that a program has started: ~A. ~
                  ~:[It continues~;That thread ends; everything else continues~]."
             serious-p (thread-name (current-thread))
             (string-right-trim "." (complaint-text (condition-text condition))) serious-p)))
 
-(defconstant +most-told+ 100 "How many different errors in threads of programs are told.")
+(defconstant +most-told+ 100 "How many different errors in threads of programs are reported.")
 
 (defvar *told-of-threads* '() "What has been said of threads of programs; each is said once.")
 (defvar *told-lock* (make-lock "told of threads"))
@@ -270,12 +269,12 @@ does other things too, and no prompt runs in it."
     (when count
       (say-on-error-output (if (<= count +most-told+)
                                text
-                               "There are more errors in threads; they are told no more.")))))
+                               "There are more errors in threads; they are no longer reported.")))))
 
 ;; The rest of the program recognises by this name that there is no debugger.
 (defun debugger-disabled-hook (condition hook)
-  "Say what CONDITION is and go on, if it is no error, or give up what this thread is at. Called
-instead of Lisp's debugger where nobody sits, or a break is being answered."
+  "Report CONDITION and continue, if it is no error, or end what this thread does. Called instead of
+Lisp's debugger without a terminal or window, or while a break is being answered."
   (declare (ignore hook))
   (cond (*session* (complain *session* (format nil "Break: ~A" (condition-text condition))))
         ((and *own-process-p* (users-thread-p)) (tell-of-users-thread condition))
@@ -289,7 +288,7 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
   (when (sessions-to-ask) (enter-debugger condition nil)))
 
 (defun tell-of-inquiry (condition asker)
-  "Say, where prompts listen to the simulation, that ASKER asks how to go on after CONDITION."
+  "Tell the prompts in the simulation that ASKER asks how to continue after CONDITION."
   (unless (eq 'enter-debugger (common-debugger-hook))
     (dolist (session (remove-if-not #'session-terminal-p (sessions-hearing *simulation*)))
       (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
@@ -302,7 +301,7 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
 ;;; From when to when.
 
 (defun release (session breakage)
-  "Let BREAKAGE, which has waited for SESSION only, go on as it most likely should, and say so."
+  "Continue BREAKAGE, which has waited for SESSION only, by the likeliest restart, and report that."
   (let ((restart (first (breakage-restarts breakage))))
     (hand-order session breakage
                 (lambda ()
@@ -313,7 +312,7 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
                   (invoke-restart restart)))))
 
 (defun release-all (session)
-  "Let all that waits for SESSION, which is over, and for no other, go on."
+  "Continue all breaks that wait for SESSION, which is over, and for no other."
   (dolist (breakage (session-breaks session))
     (unless (removef (breakage-sessions breakage) session)
       (release session breakage))))

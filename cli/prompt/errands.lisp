@@ -31,7 +31,7 @@ reports the outcome itself. RESOURCE is what carries out a single command, or NI
   (and *simulation* (timeline-inbox (timeline-of *simulation*))))
 
 (defun errand-over-p (errand)
-  "True if ERRAND is done, or goes on until something happens, such as the loss of a grip."
+  "True if ERRAND is done, or lasts until something happens, such as the loss of a grip."
   (or (errand-done-p errand)
       (and (errand-resource errand)
            (null (requests-waiting))
@@ -65,8 +65,8 @@ reports the outcome itself. RESOURCE is what carries out a single command, or NI
   (funcall test))
 
 (defun await (test)
-  "Let time pass until TEST, a function of no arguments, returns true between two ticks. Return
-NIL if it does not in good time, when nothing but the waiting lets time pass."
+  "Let time pass until TEST, a function of no arguments, returns true between two ticks. Return NIL
+if it does not within the limit, when only the waiting lets time pass."
   (cond ((simulation-over *simulation*) (funcall test))
         ((simulation-gate *simulation*)
          (reject-line "In a trial time passes between lines only. STEP and RESUME let it pass."))

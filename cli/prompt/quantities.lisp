@@ -69,7 +69,7 @@
             end)))
 
 (defun pi-and-rest (text)
-  "If TEXT begins with PI, or PI/ and a number, return what that is, and what follows."
+  "If TEXT begins with PI, or PI/ and a number, return its value, and what follows."
   (if (starts-with-subseq "PI" text)
       (let* ((over-p (starts-with-subseq "PI/" text))
              (start (if over-p 3 2))
@@ -92,8 +92,8 @@
 ;;; As the next word.
 
 (defun unit-after (text position)
-  "Return the unit, a list, that stands in TEXT from POSITION on, after blanks, and where it ends;
-NIL if there is none."
+  "Return the unit, a list, in TEXT from POSITION on, after blanks, and where it ends; NIL if there
+is none."
   (let* ((start (or (position-if-not #'blank-p text :start position) (length text)))
          (end (word-end text start))
          (unit (find-unit (subseq text start end))))
@@ -108,8 +108,8 @@ NIL if there is none."
   (second (assoc dimension *units*)))
 
 (defun in-own-units (number unit dimension said reject)
-  "Return NUMBER UNITs in the simulator's units of DIMENSION. If they are of another, call REJECT, a
-function, with what is wrong with what was SAID, in words."
+  "Return NUMBER UNITs in the simulator's units of DIMENSION. If they have another dimension, call
+REJECT, a function, with a message on what was SAID, in words."
   (destructuring-bind (&optional (other dimension) (factor 1)) unit
     (unless (eq dimension other)
       (funcall reject (format nil "~A is ~A, and what is wanted is ~A.~@[ ~A~]"
@@ -121,9 +121,9 @@ function, with what is wrong with what was SAID, in words."
     (* number factor)))
 
 (defun read-quantity (datum text start end type reject)
-  "Return the number that DATUM, read in TEXT from START to END, and a unit that may follow it mean
-as an argument of TYPE, and where that ends. What is no quantity, or of no such type, stays as it
-is. REJECT is called with a text that says what is wrong with the unit."
+  "Return the value of DATUM, a number read in TEXT from START to END, and of a unit that may follow
+it, as an argument of TYPE, and where that ends. Return DATUM if it is no quantity, or TYPE has
+none. REJECT is called with a message if the unit is wrong."
   (let ((dimension (dimension-of type)))
     (multiple-value-bind (number unit)
         (cond ((null dimension) nil)

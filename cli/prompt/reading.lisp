@@ -28,8 +28,8 @@
   (and (breaks-awaiting session) (not (answers-break-p line))))
 
 (defun read-typed (session before)
-  "Return the next line that is typed in SESSION, or NIL at the end. Whoever edits it can complete
-it, and have it again; if BEFORE is a text, together with that, which it goes on from."
+  "Return the next line that is typed in SESSION, or NIL at the end. An editor completes it and puts
+it into the history, joined to BEFORE, if that is a text that it continues."
   (let* ((line (progn
                  ;; Forms that span lines are kept whole.
                  (unless before (keep-lines (session-input session)))
@@ -43,9 +43,9 @@ it, and have it again; if BEFORE is a text, together with that, which it goes on
     line))
 
 (defun read-input (session prompt &optional before)
-  "Return the next line of SESSION, or NIL at the end; it goes on from the text BEFORE, if there is
-one. Show PROMPT unless it is a batch, and what comes of earlier lines if the session waits for
-that."
+  "Return the next line of SESSION, or NIL at the end; it continues the text BEFORE, if there is
+one. Show PROMPT unless it is a batch, and messages of earlier lines if the session waits for
+those."
   (let ((console (session-console session)))
     (unless (or (session-batch-p session)
                 (and (unanswered-p console) (string= prompt (console-prompt console))))
@@ -99,8 +99,8 @@ that."
     char))
 
 (defun read-outline (session text)
-  "Return the next line of SESSION, which goes on from TEXT, or the outline of one that is too long
-and the condition that says so; NIL at the end."
+  "Return the next line of SESSION, which continues TEXT, or the outline of one that is too long and
+the condition that says so; NIL at the end."
   (handler-case (read-input session +going-on+ text)
     (line-too-long (condition) (values (line-outline condition) condition))))
 
@@ -140,7 +140,7 @@ and the condition that says so; NIL at the end."
 ;;; reading, after #., is evaluated as often.
 
 (defun read-growing (session text start)
-  "Return what READ-FORM does, of a form that goes on after TEXT."
+  "Return the values of READ-FORM for a form that continues after TEXT."
   (flet ((read-more (text)
            (or (read-input session +going-on+ text)
                (reject-line "The form is not complete: ~A" (one-line text)))))
@@ -163,8 +163,8 @@ and the condition that says so; NIL at the end."
 
 (defun read-form (session text &optional (start 0))
   "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;
-and TEXT with what was read. Where Lisp leaves out what is there, the form is one without values.
-One that cannot be read is read over to its end."
+and TEXT with what was read. If Lisp skips what is there, the form is one without values. An
+unreadable form is skipped to its end."
   (handler-case (skipping-rest (session text start)
                   (read-from-string text t nil :start start))
     (end-of-file ()
@@ -179,14 +179,14 @@ One that cannot be read is read over to its end."
 ;;; are removed here, and lines are read until they end.
 
 (defun block-at-p (text position)
-  "True if a comment begins in TEXT at POSITION that goes on until |#."
+  "True if a comment that continues until |# begins in TEXT at POSITION."
   (let ((end (+ 2 position)))
     (and (<= end (length text))
          (string= "#|" text :start2 position :end2 end))))
 
 (defun block-end (text start depth)
-  "Return where the comments end in which TEXT is at START, DEPTH of them one in the other; NIL, and
-in how many it is at its end, if they go on."
+  "Return where the comments end in which TEXT is at START, DEPTH nested ones; if they continue, NIL
+and their depth at its end."
   (loop with i = start
         for end = (+ 2 i)
         while (<= end (length text))
@@ -197,9 +197,9 @@ in how many it is at its end, if they go on."
         finally (return (values nil depth))))
 
 (defun rest-after-block (session text start trouble)
-  "Return what stands behind the comment that begins in TEXT at START, reading on in SESSION until
-it ends; and what TROUBLE is for TEXT: NIL, or the condition that says that this is but the outline
-of a line that is too long. Signals BAD-LINE if the comment does not end."
+  "Return the text after the comment that begins in TEXT at START, reading on in SESSION until it
+ends; and TROUBLE for that text: NIL, or the condition that says that it is only the outline of a
+line that is too long. Signals BAD-LINE if the comment does not end."
   (let ((line text) (position (+ 2 start)) (depth 1))
     (loop
       (multiple-value-bind (end deeper) (block-end line position depth)
@@ -241,8 +241,8 @@ that begins there is passed over."
     (error trouble)))
 
 (defun forms-after-block (session text start)
-  "Return what stands behind the comment that begins in TEXT, of forms, at START, reading on in
-SESSION until it ends. Signals LINE-TOO-LONG if there is more than comments in such a line."
+  "Return the text after the comment that begins in TEXT, of forms, at START, reading on in SESSION
+until it ends. Signals LINE-TOO-LONG if such a line has more than comments."
   (multiple-value-bind (rest trouble) (rest-after-block session text start nil)
     (cond (trouble (multiple-value-call #'check-outline
                      session (without-blocks session rest trouble))
@@ -250,8 +250,8 @@ SESSION until it ends. Signals LINE-TOO-LONG if there is more than comments in s
           (t rest))))
 
 (defun skip-comments (session text position)
-  "Return TEXT, of forms, or as much of it as stands behind comments, and where it goes on from
-POSITION behind blanks and comments; read on in SESSION until these end."
+  "Return TEXT, of forms, or the part of it after comments, and where it continues from POSITION
+after blanks and comments; read on in SESSION until these end."
   (loop
     (let ((start (or (position-if-not #'blank-p text :start position) (length text))))
       (unless (block-at-p text start)

@@ -97,8 +97,8 @@ nothing to do in it, is about to be done, and that there were ERRORS so far."
     (report-line account "done" (first waiting) (second waiting) :ok :false)))
 
 (defun note-line-ended (account errors end)
-  "Note, and report, that all that the line under way has asked for is done, and that there were
-ERRORS so far. If END is not NIL, that waits for time to pass: END returns NIL until it is done, and
+  "Note, and report, that everything requested by the running line is done, and that there were
+ERRORS so far. If END is not NIL, this waits for time to pass: END returns NIL until it is done, and
 then :OK or :FAILED."
   (when account (report-waiting-lines account))
   (when (and account (account-text account))
@@ -128,14 +128,14 @@ then :OK or :FAILED."
 
 ;; Equal to that, but another object: an error of the line's requests is the line's.
 (defparameter *line-asker* (copy-seq +asker+)
-  "Who asks for what lines that are no Lisp ask for, where no lines are counted.")
+  "The asker of lines that are not Lisp, if lines are not counted.")
 
 (defvar *askers* (make-hash-table :test 'eq :weakness :key :synchronized t)
   "For each text that asks for a line: its account, its number, and true if it is no Lisp, a list.")
 
 (defun asker-for (account &key typed-p (text +asker+))
-  "Return who asks for what the line under way of ACCOUNT, or NIL, asks for: a text that says TEXT.
-TYPED-P is true of a line that is no Lisp."
+  "Return the asker for the running line of ACCOUNT, or NIL: a text that says TEXT. TYPED-P is true
+of a line that is not Lisp."
   (cond ((and account (line-under-way account))
          (let ((asker (copy-seq text)))
            (setf (gethash asker *askers*) (list account (account-line account) typed-p))
@@ -148,7 +148,7 @@ TYPED-P is true of a line that is no Lisp."
   (or (eq *line-asker* asker) (third (gethash asker *askers*))))
 
 (defun of-line-p (message)
-  "True if MESSAGE tells of what a line that is counted has asked for, itself and not by a plan."
+  "True if MESSAGE is about a request of a counted line itself, not of a plan."
   (let ((asker (message-asker message)))
     (and (equal asker +asker+) (gethash asker *askers*) t)))
 
@@ -157,7 +157,7 @@ TYPED-P is true of a line that is no Lisp."
   (and (equal asker +asker+) (not (line-asker-p asker))))
 
 (defun of-lisp-in-line-p (asker account)
-  "True if ASKER, of a request, asks for what Lisp in the line under way of ACCOUNT asks for."
+  "True if ASKER, of a request, is for Lisp in the running line of ACCOUNT."
   (destructuring-bind (&optional whose line typed-p) (gethash asker *askers*)
     (and (eq whose account) (eql line (account-line account)) (not typed-p))))
 
@@ -165,8 +165,8 @@ TYPED-P is true of a line that is no Lisp."
   (when account (push (cons (asker-note plan) (line-under-way account)) (account-plans account))))
 
 (defun line-of-message (account message)
-  "Return the number of the line of ACCOUNT, or NIL, that has asked for what MESSAGE tells of; the
-line under way if that is not known."
+  "Return the number of the line of ACCOUNT, or NIL, that has caused MESSAGE; the running line if
+that is not known."
   (when account
     (let* ((asker (message-asker message))
            (plan (assoc asker (account-plans account) :test #'equal)))

@@ -94,7 +94,7 @@ it, or is NIL; OTHERS in other threads, the oldest first."
   (call-by-name (mapcar #'robot-name (simulation-robots (robot-simulation robot)))))
 
 (defstruct (session (:include listener) (:constructor %make-session) (:copier nil))
-  "A prompt at work: it does what the lines of READER say, and is shown what comes of it."
+  "A running prompt: it runs the lines of READER, and shows their messages."
   (reader (make-reader) :type reader :read-only t)
   (break-state (make-break-state) :type break-state :read-only t)
   ;; Each command completes before the next is read.
@@ -125,10 +125,10 @@ it, or is NIL; OTHERS in other threads, the oldest first."
   (print-unreadable-object (session stream :type t)))
 
 (setf (documentation 'session-errors 'function)
-      "Return how many errors there were so far: lines that made no sense, plans that failed, and
-error messages, but not those of a plan that goes on."
+      "Return the number of errors so far: invalid lines, failed plans, and error messages, except
+those of a plan that continues."
       (documentation 'session-quiet-p 'function)
-      "True if what comes of the commands that plans and programs give is not shown. Can be set.")
+      "True if messages from commands of plans and programs are hidden. Can be set.")
 
 (defun session-input (session)
   "Return the stream that lines are read from."
@@ -139,12 +139,12 @@ error messages, but not those of a plan that goes on."
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
                        (patient batch) echo files lines account stop (color :auto)
                        place package)
-  "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
-to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes
-before the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its
-lines. With STOP, it is over when one of them is an error. PLACE, if any, is called before each.
-They are read in PACKAGE, by default ARS-USER. COLOR, which is :AUTO, :ALWAYS or :NEVER, says
-whether it writes in colours: by default on a terminal, unless the environment has NO_COLOR."
+  "Return a session that loads FILES, runs the list LINES, then reads others from INPUT, and writes
+to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
+the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its lines.
+With STOP, it ends at the first error in them. PLACE, if any, is called before each line. Lines are
+read in PACKAGE, by default ARS-USER. COLOR is :AUTO, :ALWAYS or :NEVER; :AUTO writes in colours on
+a terminal, unless the environment has NO_COLOR."
   (let ((console (make-console output)))
     (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
     (%make-session :console console :terminal-p (typed-by-hand-p input)
@@ -157,11 +157,11 @@ whether it writes in colours: by default on a terminal, unless the environment h
   (break-state-thread (session-break-state session)))
 
 (defun session-breaks (session)
-  "Return what has broken in other threads and waits for SESSION, the oldest first."
+  "Return the breaks in other threads that wait for SESSION, the oldest first."
   (break-state-others (session-break-state session)))
 
 (defun breaks-awaiting (session)
-  "Return what waits for SESSION, what is asked about now first."
+  "Return the breaks that wait for SESSION, the one that is asked about first."
   (let ((own (break-state-own (session-break-state session))) (others (session-breaks session)))
     (cond ((null own) others)
           ((breakage-told-p own) (cons own others))
@@ -193,7 +193,7 @@ over."
   (funcall (or (console-window (session-console session)) #'window-size)))
 
 (defun watched-p (session)
-  "True if somebody sits at SESSION, and it can be found out whether he has typed something."
+  "True if SESSION has a user at a terminal or window, and can check for typed input."
   (and (session-terminal-p session)
        (typep (source-of (session-input session)) '(or descriptor-stream handed-octets))))
 

@@ -77,8 +77,8 @@ has none."
 ;;; unwinds it; nothing else needs to be ended.
 
 (defun leave-visit (session &optional (next #'values))
-  "Leave the trial that SESSION is in; then call NEXT, a function. Nobody hears what the trial has
-to say of that."
+  "Leave the trial of SESSION; then call NEXT, a function. Messages of the trial on this are not
+shown."
   (setf (visit-left-p (session-visit session)) t)
   (stop-listening session)
   (throw 'left-visit next))
@@ -92,7 +92,7 @@ to say of that."
 ;;; Has a line changed the run? Then it is no longer the experiment's.
 
 (defun visit-state ()
-  "Return what decides how the current simulation goes on: a digest, and what has been asked of it."
+  "Return what determines the course of the current simulation: a digest, and the pending requests."
   (list (state-digest *simulation* t) (timeline-inbox (timeline-of *simulation*))))
 
 (defun note-if-changed (session visit before)
@@ -110,7 +110,7 @@ to say of that."
   (answer-questions (timeline-custody (timeline-of *simulation*))))
 
 (defun await-typed-line (session seconds)
-  "Wait until somebody has typed a line for SESSION, for SECONDS at most. True if he has."
+  "Wait until a line is typed for SESSION, for SECONDS at most. True if there is one."
   (let ((console (session-console session)))
     (unless (or (session-batch-p session) (unanswered-p console))
       (with-lock ((session-lock session)) (show-prompt console "Robot> "))))
@@ -122,7 +122,7 @@ to say of that."
         while (plusp left)))
 
 (defun begin-visit (session visit)
-  "Let robots be called by their names, and be seen if there is a window to be had."
+  "Let users call robots by their names, and see them if there can be a window."
   (unless (shiftf (visit-begun-p visit) t)
     (call-by-name (mapcar #'robot-name (simulation-robots *simulation*)))
     (when (display-wanted-p session)
@@ -162,7 +162,7 @@ to say of that."
         (+ (max (visit-due visit) (- (seconds-now) 0.25d0)) (/ 1d0 rate)))))
 
 (defun wait-for-tick (session visit)
-  "Wait until the next tick is due in VISIT. NIL if somebody has typed a line before."
+  "Wait until the next tick is due in VISIT. NIL if a line was typed before."
   (let ((left (if (eq :free (visit-rate visit)) 0 (- (visit-due visit) (seconds-now)))))
     (if (watched-p session)
         (unless (call-aside (lambda () (await-typed-line session left)))

@@ -34,7 +34,7 @@
   (mapc #'call-by-its-name names))
 
 (defun with-own-name (form)
-  "Return FORM, with a name of ARS-USER's own if it would define another world's robot anew."
+  "Return FORM, with a name of ARS-USER's own if it would redefine another world's robot."
   (if (and (consp form)
            (eq 'defrobot (first form))
            (consp (rest form))
@@ -59,8 +59,8 @@ the simulator's."
       (user-package)))
 
 (defun call-with-syntax (float-format function &optional (package (user-package)))
-  "Call FUNCTION with PACKAGE and the syntax in which users write; numbers with a point are floats
-of FLOAT-FORMAT."
+  "Call FUNCTION with PACKAGE and the syntax for users; numbers with a point are floats of
+FLOAT-FORMAT."
   (let ((*package* package)
         (*readtable* *readtable*)
         (*read-default-float-format* float-format))

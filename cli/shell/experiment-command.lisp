@@ -61,7 +61,7 @@
 (defparameter *options-that-exclude-others*
   '((:shard :parallel :slurm :missing :save-executable) (:until :shard) (:until :parallel)
     (:until :slurm) (:until :missing) (:time-limit :missing))
-  "Lists of keys of options of which there may be one at most.")
+  "Lists of keys of options that exclude each other.")
 
 (defun option-called (key)
   (first (find key *experiment-options* :key #'second)))
@@ -104,8 +104,8 @@
     0))
 
 (defun tell-stopped (command arguments options under-way)
-  "Say what is there when COMMAND with ARGUMENTS has been interrupted, and how to go on; UNDER-WAY
-tells what trial took long, or is NIL."
+  "Report what has been kept when COMMAND with ARGUMENTS was interrupted, and how to continue;
+UNDER-WAY says which trial took long, or is NIL."
   (let* ((out (option-value :out options))
          (rows (and out (ignore-errors (count-rows out)))))
     (if out
@@ -114,8 +114,8 @@ tells what trial took long, or is NIL."
         (say "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
 
 (defun call-stoppable (function command arguments options)
-  "Call FUNCTION, which does COMMAND with ARGUMENTS, and return the status that it returns, or that
-of what has been interrupted."
+  "Call FUNCTION, which runs COMMAND with ARGUMENTS, and return its exit status, or that of an
+interruption."
   (let ((under-way nil))
     (flet ((look (condition)
              (declare (ignore condition))
@@ -137,7 +137,7 @@ of what has been interrupted."
   0)
 
 (defun conduct-experiment (experiment words options)
-  "Do with EXPERIMENT, which WORDS stand for, what OPTIONS want. Return the status to exit with."
+  "Run EXPERIMENT, which WORDS mean, as OPTIONS say. Return the exit status."
   (cond ((option-value :save-executable options)
          (save-program (option-value :save-executable options)))
         ((option-value :missing options) (print-missing experiment options))
@@ -148,7 +148,7 @@ of what has been interrupted."
         (t (run-here experiment options))))
 
 (defun known-experiment (words)
-  "Return the experiment that WORDS, a file or name and perhaps another name, stand for."
+  "Return the experiment that WORDS mean: a file or name, and perhaps another name."
   (prog1 (apply #'experiment-called words)
     ;; A shell has no prompt to show warnings about definitions.
     (dolist (message (take-messages))
@@ -204,7 +204,7 @@ of what has been interrupted."
         (t word)))
 
 (defun results-meant (words options)
-  "Return the results that WORDS stand for: a directory with them, or an experiment, which is run."
+  "Return the results that WORDS mean: a directory with them, or an experiment, which is run."
   (if (and (null (rest words))
            (uiop:directory-exists-p (native-path-of-directory (first words)))
            (directories-with-rows (first words)))

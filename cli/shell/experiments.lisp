@@ -45,8 +45,8 @@ none."
       (first experiments)))
 
 (defun experiments-called (word)
-  "Return the experiments that WORD stands for: those of a file, which is loaded, or one by its
-name. Signals BAD-LINE."
+  "Return the experiments that WORD means: those of a file, which is loaded, or one by its name.
+Signals BAD-LINE."
   (let* ((path (path-called word))
          (known (experiment-among word (all-experiments)))
          (file (or (and (pathname-name path) (existing-path path))

@@ -64,7 +64,7 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
                                (bad-line-text condition))))))))
 
 (defun run-headless (session robot-name seed)
-  "Run the lines of SESSION, a batch, in a fresh world. Return the robot to go on with, or NIL."
+  "Run the lines of SESSION, a batch, in a fresh world. Return the robot to continue with, or NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
   (call-by-name (robots-beside robot-name))
@@ -107,9 +107,9 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
   (loop for text in (option-values :plan options) collect (format nil "plan ~A" text)))
 
 (defun standard-session (options)
-  "Return a session that does what OPTIONS say and then the lines of the standard input. If nobody
-sits there, it shows what it reads and waits for each command, for a transcript like those of manual
-E. A batch that has plans to carry out does not wait for lines to be typed."
+  "Return a session that carries out OPTIONS and then reads lines of the standard input. Without a
+terminal, it shows what it reads and waits for each command, for a transcript like those of manual
+E. A batch with plans to run does not wait for lines."
   (let* ((script (option-value :script options))
          (objects (and (option-value :json options) (object-console)))
          (batch (or script objects (option-value :batch options)))
@@ -133,7 +133,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
         (run-live session robot-name options))))
 
 (defun write-all-as-objects (session)
-  "Let all that Lisp writes, also in threads of users', become objects of SESSION."
+  "Turn all output of Lisp, also in users' threads, into objects of SESSION."
   (let* ((console (session-console session))
          (both (make-two-way-stream (session-input session) console)))
     (setf *standard-output* console
@@ -186,7 +186,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
            (and (not (option-p argument)) (script-path argument)))))
 
 (defun script-last-p (arguments)
-  "True if the last of ARGUMENTS, of which the first is an option, is a script, and no option's
+  "True if the last of ARGUMENTS, of which the first is an option, is a script, and not an option's
 value."
   (and (option-p (or (first arguments) ""))
        (script-p (first (last arguments)))

@@ -41,8 +41,8 @@
     ("--batch" :batch nil) ("--json" :json nil) ("--stop" :stop nil)
     ("--time-limit" :time-limit parse-seconds)
     ("--color" :color parse-color) ("--list" :list nil))
-  "Lists (option key parser [:optional]); PARSER is NIL for an option without a value. If the value
-is optional, an empty one stands for none.")
+  "Lists (option key parser [:optional]); PARSER is NIL for an option without a value. An optional
+value that is empty counts as none.")
 
 ;;; Taking them apart.
 
@@ -57,8 +57,8 @@ is optional, an empty one stands for none.")
         (values argument nil))))
 
 (defun value-that-follows (option arguments table)
-  "Return the value that OPTION, an element of TABLE, has in ARGUMENTS, which follow it, and those
-that are left."
+  "Return the value of OPTION, an element of TABLE, from ARGUMENTS, which follow it, and the
+remaining ones."
   (destructuring-bind (name key parser &optional optional) option
     (declare (ignore key))
     (cond ((null parser) (values nil arguments))
@@ -83,8 +83,8 @@ that are left."
           (values (list key (if parser (funcall parser text) t)) left))))))
 
 (defun parse-options (arguments &key (table *options*) others)
-  "Return a list of (key value) for ARGUMENTS, a list of strings, whose options are those of TABLE.
-If OTHERS is true, those that are none count as (:other argument). Signals USAGE-ERROR."
+  "Return a list of (key value) for ARGUMENTS, a list of strings, with the options of TABLE. If
+OTHERS is true, arguments that are no options count as (:other argument). Signals USAGE-ERROR."
   (loop while arguments
         collect (let ((argument (pop arguments)))
                   (if (and others (not (option-p argument)))

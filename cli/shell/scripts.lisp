@@ -19,7 +19,7 @@
                                    :external-format :latin-1))))
 
 (defun object-console ()
-  "Return a console that turns what is written to it into objects on the standard output."
+  "Return a console that writes its output as objects to the standard output."
   (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
 
 (defun report-end (session status)
@@ -67,8 +67,8 @@ four times in a row, a third of *HOG-PATIENCE* apart, has run that long."
   (say-where session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
 
 (defun end-at-limit (session calls thread seconds ended)
-  "End SESSION, which THREAD is at, after SECONDS, unless the semaphore ENDED is signalled before.
-If it does not let itself be ended, end this process."
+  "End SESSION, which THREAD runs, after SECONDS, unless the semaphore ENDED is signalled before. If
+it cannot be ended, end this process."
   (unless (wait-on-semaphore ended seconds)
     (let ((whose (call-under-way session calls)) (said nil))
       (flet ((say ()
@@ -84,14 +84,14 @@ If it does not let itself be ended, end this process."
           (end-process +time-over+))))))
 
 (defun tell-at-once (session calls)
-  "Let control C say whose code SESSION is in, of which CALLS tells, before it ends that at once."
+  "Make Control-C report whose code runs in SESSION, by CALLS, before it ends that at once."
   (setf *before-ending-at-once*
         (lambda ()
           (say-stopped session (call-under-way session calls) "control C has come again"))))
 
 (defun call-with-watchers (session options function)
-  "Call FUNCTION, which runs SESSION. If nobody sits there, code that does not return is named. The
-time limit of OPTIONS, if any, ends FUNCTION."
+  "Call FUNCTION, which runs SESSION. Without a terminal, name code that does not return. The time
+limit of OPTIONS, if any, ends FUNCTION."
   (let* ((calls (make-user-calls)) (*user-calls* calls)
          (ended (make-semaphore "session ended"))
          (thread (current-thread)) (seconds (option-value :time-limit options)))

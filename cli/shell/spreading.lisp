@@ -27,8 +27,8 @@
         (reject-line "~A cannot be saved: ~A" name (one-line (own-text condition)))))))
 
 (defun save-program-with (words name)
-  "Save this program as the executable file NAME, with the experiments that WORDS, the file or name
-of one, stand for. Signals BAD-LINE."
+  "Save this program as the executable file NAME, with the experiments that WORDS mean, a file or
+the name of one. Signals BAD-LINE."
   ;; Saving ends the Lisp that does it; so another process does it.
   (let* ((new (format nil "~A.new" name))
          (arguments (append (rest (program-words)) (list "experiment") words
@@ -101,8 +101,8 @@ of one, stand for. Signals BAD-LINE."
     path))
 
 (defun spread (experiment words options script template settings)
-  "Run EXPERIMENT, which WORDS, arguments of this program, stand for, by SCRIPT, made of TEMPLATE
-and what SETTINGS, a function, returns. Return the status to exit with."
+  "Run EXPERIMENT, which WORDS mean, arguments of this program, by SCRIPT, made from TEMPLATE and
+the values of SETTINGS, a function. Return the exit status."
   (let ((directory (ensure-results-directory (option-value :out options))))
     ;; Rows must not be replaced by a program that cannot continue them.
     (check-same-code experiment directory)

@@ -32,15 +32,14 @@
    (held-back-p :initform nil :accessor console-held-back-p)
    (held-back :initform '() :accessor console-held-back))
   (:documentation "An output stream on top of another. WINDOW is a function that returns columns and
-rows of the terminal's window, or NIL if there is none. REST is what was written last, since a
-newline, as far as it is short; WRAPPED-P is true if that fills a row, and the cursor has gone on to
-the next. EDITED-P is true if the prompt edits what is typed, TYPED the drawn-line that is being
-typed, or NIL. QUESTION is what stands there for the user to answer, or NIL; OVERWRITTEN-P is true
-if something was written after it. ASKED-P is true while a program, not the prompt, reads what is
-typed, ASKING-TOLD-P if the user has been told so since the prompt stood last. TROUBLE is the
-condition that what was written could not be delivered, :OVER after LET-GO, or NIL. COLORED-P is
-true if its messages and prompts have colours. While HELD-BACK-P is true, what is written is kept
-in HELD-BACK, a list of strings, newest first."))
+rows of the terminal's window, or NIL if there is none. REST is the output since the last newline,
+if it is short; WRAPPED-P is true if that fills a row, and the cursor is in the next. EDITED-P is
+true if the prompt edits typed lines, TYPED the drawn-line that is being typed, or NIL. QUESTION is
+the question shown to the user, or NIL; OVERWRITTEN-P is true if something was written after it.
+ASKED-P is true while a program, not the prompt, reads typed input, ASKING-TOLD-P if the user has
+been told so since the last prompt. TROUBLE is the condition that output could not be delivered,
+:OVER after LET-GO, or NIL. COLORED-P is true if messages and prompts have colours. While
+HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest first."))
 
 (setf (documentation 'console-line 'function)
       "Return the drawn-line that is being typed on the console, or NIL. Can be set."
@@ -52,7 +51,7 @@ in HELD-BACK, a list of strings, newest first."))
   (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))
 
 (defvar *leave-unheard-p* nil
-  "True in the thread that ends this process, when there is nobody any more to write for.")
+  "True in the thread that ends this process, when no output is needed any more.")
 
 (defun try-to-write (function console)
   "Call FUNCTION with the stream below CONSOLE, unless that has failed before. True if it fails
@@ -63,8 +62,8 @@ now."
         (stream-error (trouble) (setf (console-trouble console) trouble))))))
 
 (defun let-go (console)
-  "Let what is written to CONSOLE from now on be lost: the stream below may be gone. What another
-thread is writing is written first."
+  "Discard further output to CONSOLE: the stream below may be gone. Output of another thread in
+progress is finished first."
   (with-lock ((console-lock console)) (setf (console-trouble console) :over)))
 
 (defun call-with-console (function console)
@@ -74,7 +73,7 @@ thread is writing is written first."
     (throw 'leave 1)))
 
 (defmacro with-console ((stream console) &body body)
-  "Run BODY with STREAM bound to the stream below CONSOLE, nobody else writing to it."
+  "Run BODY with STREAM bound to the stream below CONSOLE, while no other thread writes to it."
   `(call-with-console (lambda (,stream) ,@body) ,console))
 
 (defun painted (text ink console)
@@ -122,8 +121,8 @@ thread is writing is written first."
   (multiple-value-call function (console-line console) stream (funcall (console-window console))))
 
 (defgeneric wipe (console stream)
-  (:documentation "Take the line that is being typed off the screen, if it is there, so that what is
-written next goes on where the last has ended.")
+  (:documentation "Erase the line being typed, if it is shown, so that further output continues
+where the last has ended.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
       (when (and line (drawn-line-shown line))
@@ -132,8 +131,8 @@ written next goes on where the last has ended.")
           (format stream "~A~A" (cursor-up 1) (cursor-right (column-of-row console))))))))
 
 (defgeneric draw (console stream)
-  (:documentation "Draw the line that is being typed below what was written, if there is one and it
-is not there.")
+  (:documentation "Draw the line being typed below the output, if there is one and it is not
+shown.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
       (when (and line (null (drawn-line-shown line)))
@@ -143,8 +142,7 @@ is not there.")
         (call-in-window #'draw-line console stream)))))
 
 (defgeneric leave-line (console stream)
-  (:documentation "Let the line that is being typed stand as it is, and what is written next begin
-below.")
+  (:documentation "Leave the line being typed as it is; further output begins below.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
       (wipe console stream)
@@ -153,7 +151,7 @@ below.")
       (when (plusp (drawn-line-column line)) (terpri stream)))))
 
 (defun change-line (console function)
-  "Call FUNCTION with the line that is being typed, if any, and show what it has made of it."
+  "Call FUNCTION with the line being typed, if any, and show the result."
   (with-console (stream console)
     (when (console-line console)
       (wipe console stream)
@@ -162,7 +160,7 @@ below.")
       (finish-output stream))))
 
 (defun begin-line (console)
-  "Let a line be typed after what has been written last, unless one stands already."
+  "Begin a line to type after the last output, unless there is one already."
   (with-console (stream console)
     (unless (console-line console)
       (when (/= (console-column console) (length (console-rest console)))
@@ -196,7 +194,7 @@ below.")
     (write-string (window-cleared) stream)))
 
 (defun clear-window (console)
-  "Let nothing stand in the window but the line that is being typed."
+  "Clear the window except for the line being typed."
   (hide-line console)
   (with-console (stream console)
     (clear-screen console stream)
@@ -205,7 +203,7 @@ below.")
     (finish-output stream)))
 
 (defun end-line (console)
-  "Let what was typed stand as it is, and what is written next begin below."
+  "Leave what was typed as it is; further output begins below."
   (with-console (stream console)
     (leave-line console stream)
     (finish-output stream)
@@ -226,7 +224,7 @@ below.")
   (unless (console-line console) (setf (console-overwritten-p console) t)))
 
 (defun put-string (string console stream &optional (start 0) (end (length string)))
-  "Write STRING from START to END to STREAM, which is below CONSOLE, where nobody else writes now."
+  "Write STRING from START to END to STREAM, which is below CONSOLE and is locked."
   (cond ((= start end))
         ((console-held-back-p console) (hold-back (subseq string start end) console))
         (t (wipe console stream)
@@ -240,7 +238,7 @@ below.")
 (defgeneric mirrors-of (console)
   (:documentation "Return the other consoles that show what this thread writes to CONSOLE."))
 
-(defvar *in-mirrors-p* nil "True while what was written to a console is written to its mirrors.")
+(defvar *in-mirrors-p* nil "True while output to a console is written to its mirrors.")
 
 (defun call-with-mirrors (function console)
   "Call FUNCTION with each of the consoles that show what this thread writes to CONSOLE."
@@ -258,7 +256,7 @@ below.")
   (with-console (stream console) (put-fresh text console stream)))
 
 (defun write-after-prompt (text console)
-  "Write TEXT after the prompt that stands; above it, if something has been typed there."
+  "Write TEXT after the prompt; or above it, if something has been typed there."
   (with-console (stream console)
     (let ((line (console-line console)))
       (cond ((null line) (put-string text console stream))
@@ -274,7 +272,7 @@ broken between words.")
         text)))
 
 (defun write-fitted (console control &rest arguments)
-  "Write what is formatted from CONTROL and ARGUMENTS as WRITE-FRESH does, FITTED to CONSOLE."
+  "Write CONTROL formatted with ARGUMENTS as WRITE-FRESH does, FITTED to CONSOLE."
   (write-fresh (fitted (apply #'format nil control arguments) console) console))
 
 (defmethod stream-write-char ((console console) char)
@@ -315,15 +313,15 @@ broken between words.")
           (console-prompt console) prompt)))
 
 (defun unanswered-p (console)
-  "True if a prompt stands and nothing has been written after it."
+  "True if a prompt is shown and nothing has been written after it."
   (and (console-prompt console) (not (console-overwritten-p console))))
 
 (defun spoilt-p (console)
-  "True if a prompt stands and something has been written after it."
+  "True if a prompt is shown and something has been written after it."
   (and (console-prompt console) (console-overwritten-p console)))
 
 (defun restore-prompt (console)
-  "Show the prompt that stands again if something was written after it, and all that was written."
+  "Show the prompt again if something was written after it, and flush the output."
   (when (spoilt-p console)
     (show-prompt console (console-prompt console)))
   (finish-output console))

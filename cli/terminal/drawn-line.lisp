@@ -31,7 +31,7 @@ not on the screen" :writable :export)
         (t (string char))))
 
 (defun shown-chars (label text)
-  "Return a list of what is shown for each character of LABEL, as it is, and of TEXT, as texts."
+  "Return a list of the text to show for each character of LABEL, unchanged, and of TEXT."
   (append (map 'list #'string label) (map 'list #'shown-char text)))
 
 (defun rows-of (label text point columns)

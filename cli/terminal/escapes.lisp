@@ -64,8 +64,8 @@ NIL where nothing was painted."
   :documentation "What --color takes.")
 
 (defun color-wanted-p (setting stream)
-  "True if what is written to STREAM is to be in colours: SETTING is :ALWAYS, :NEVER or :AUTO, on a
-terminal unless the environment has NO_COLOR."
+  "True if output to STREAM is to have colours. SETTING is :ALWAYS, :NEVER or :AUTO, which means on
+a terminal unless the environment has NO_COLOR."
   (ecase setting
     (:always t)
     (:never nil)
@@ -97,21 +97,21 @@ terminal unless the environment has NO_COLOR."
 ;;; What is pasted.
 
 (defun paste-in-brackets (on)
-  "Return what lets a terminal say where what is pasted begins and ends, if ON is true."
+  "Return the code that makes a terminal mark pasted text, if ON is true."
   (escape "?2004~:[l~;h~]" on))
 
 (defun paste-ended ()
-  "Return what a terminal hands over after what was pasted."
+  "Return the code that a terminal sends after pasted text."
   (escape "201~~"))
 
 ;;; A separate screen, for output that is updated in place.
 
 (defun screen-begun ()
-  "Return what lets a terminal show an empty screen, and no cursor; what was there is kept."
+  "Return the code for an empty screen without cursor; the terminal keeps what it showed."
   (format nil "~A~A~A" (escape "?1049h") (escape "?25l") (escape "2J")))
 
 (defun screen-ended ()
-  "Return what lets a terminal show again what it did before SCREEN-BEGUN."
+  "Return the code that shows again what the terminal showed before SCREEN-BEGUN."
   (format nil "~A~A" (escape "?25h") (escape "?1049l")))
 
 (defun over-screen (text)
@@ -151,8 +151,8 @@ terminal unless the environment has NO_COLOR."
 ;;; Long lines are broken between words.
 
 (defun breaking-point (line columns)
-  "Return where LINE is to be broken so that what comes before takes no more than COLUMNS: at the
-last blank in time, or else the first; NIL if it need not be broken or has no blank."
+  "Return where to break LINE so that its first part has at most COLUMNS: at the last blank in time,
+or else the first; NIL if it need not be broken or has no blank."
   (loop with start = (position #\Space line :test #'char/=)
         with best = nil and taken = 0
         for char across line
@@ -175,7 +175,7 @@ map has, but for one behind a label, such as STATUS has: \"Time:    Tick 0\"."
 
 (defun pieces-of-line (line first columns)
   "Return LINE as a list of lines of at most COLUMNS, the first of FIRST, as far as blanks allow.
-What goes on is indented as far as LINE is."
+Further lines are indented like LINE."
   (let ((place (breaking-point line first))
         (indent (or (position #\Space line :test #'char/=) 0)))
     (if (and place (not (table-line-p line indent)))
@@ -186,8 +186,8 @@ What goes on is indented as far as LINE is."
         (list line))))
 
 (defun broken-text (text columns &optional (used 0))
-  "Return TEXT with its lines broken so that each takes at most COLUMNS, if blanks allow it. Its
-first line begins after USED columns."
+  "Return TEXT with its lines broken to at most COLUMNS, if blanks allow it. Its first line begins
+after USED columns."
   (loop with lines = (uiop:split-string text :separator '(#\Newline))
         for line in lines
         for first = (- columns used) then columns

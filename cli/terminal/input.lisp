@@ -30,9 +30,9 @@ prompt reads.")
    (position :initform 0 :accessor typed-position)
    (count :initform 0 :accessor typed-count)
    (followed-p :initform nil :accessor typed-followed-p))
-  (:documentation "The text in UTF-8 that the characters of the stream OCTETS stand for. BY-HAND-P
-is true if somebody types it, COUNT how many lines of it have been read; FOLLOWED-P is true if there
-was more when the last of them was."))
+  (:documentation "The UTF-8 text of the octets of the stream OCTETS. BY-HAND-P is true if it is
+typed, COUNT is the number of lines read; FOLLOWED-P is true if there was more when the last was
+read."))
 
 (defun more-at-once-p (stream)
   "True if STREAM, of octets, has more without waiting."
@@ -53,7 +53,7 @@ was more when the last of them was."))
   (interactive-stream-p stream))
 
 (defun outlining-p (char last)
-  "True if CHAR, which stands after LAST, shows how forms of Lisp go on, or begins a word."
+  "True if CHAR, which follows LAST, shows how forms of Lisp continue, or begins a word."
   (flet ((mark-p (char) (find char "()\"\\|;#")))
     (or (mark-p char) (mark-p last) (char= char #\Newline)
         (and (blank-p last) (not (blank-p char))))))
@@ -76,7 +76,7 @@ than a line has at most, and no more than its outline behind those; and whether 
     (values line (< (1+ +longest-line-typed+) count))))
 
 (defun reject-length (octets)
-  "Signal LINE-TOO-LONG of a line whose outline is OCTETS."
+  "Signal LINE-TOO-LONG for a line with the outline OCTETS."
   (let ((outline (string-right-trim '(#\Newline) (decoded octets))))
     (error 'line-too-long
            :beginning (cut outline 60) :outline outline
@@ -182,13 +182,13 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
   (subseq (handed-string stream) (handed-start stream)))
 
 (defun leave-octets (stream octets)
-  "Let OCTETS, a string, be all that is left to be read of STREAM, whose lock is held."
+  "Make OCTETS, a string, all that is left to be read of STREAM, whose lock is held."
   (setf (handed-string stream) octets
         (handed-start stream) 0))
 
 (defun revise-octets (stream function)
-  "Let what FUNCTION makes of the octets that are left of STREAM, a string, take their place. Nobody
-reads any meanwhile."
+  "Replace the octets left in STREAM, a string, by what FUNCTION returns for them. No other thread
+reads meanwhile."
   (with-lock ((handed-lock stream))
     (leave-octets stream (funcall function (handed-left stream))))
   (signal-semaphore (handed-ready stream))

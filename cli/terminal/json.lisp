@@ -45,8 +45,8 @@
   ((stream :initarg :stream :reader object-stream-target)
    (words :initform (make-string-output-stream) :reader object-stream-words)
    (column :initform 0 :accessor object-stream-column))
-  (:documentation "A stream that writes objects of JSON to STREAM; WORDS is what has been written of
-a line of text, COLUMN how long that is."))
+  (:documentation "A stream that writes JSON objects to STREAM. WORDS is the text written of a line
+so far, COLUMN its length."))
 
 (defun write-object (object stream)
   (end-text-line stream)

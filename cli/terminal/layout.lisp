@@ -28,7 +28,7 @@
   (if (string= "" (own-text condition)) +unprintable+ (condition-text condition)))
 
 (defun condition-text (condition)
-  "Return what CONDITION says, or what it is if it cannot say that."
+  "Return the text of CONDITION, or its type if that fails."
   (if (typep condition 'lock-violation)
       (let ((symbol (locked-symbol condition)))
         (if symbol
@@ -51,7 +51,7 @@
 ;;; Yes and No; symbols are capitalised; four attributes go on a line.
 
 (defun amount-text (number)
-  "Return NUMBER, a size or weight that somebody specified, as he would write it."
+  "Return NUMBER, a size or weight that was specified, as a person would write it."
   (if (= number (round number))
       (format nil "~D" (round number))
       (string-right-trim "0" (format nil "~,4F" number))))
@@ -79,11 +79,11 @@
                          collect (list key (value-text value number-text))))))
 
 (defun kind-text (designator)
-  "Return what DESIGNATOR, as STATUS tells of it, is for, such as Local Object."
+  "Return the kind of DESIGNATOR, an element of STATUS, such as Local Object."
   (format nil "~:(~A ~A~)" (getf designator :type) (getf designator :of)))
 
 (defun bearing-text (designator)
-  "Return the distance and the angle of DESIGNATOR, as STATUS tells of it."
+  "Return the distance and the angle of DESIGNATOR, an element of STATUS."
   (format nil "~,2F, ~,2F" (hundredths (getf designator :distance))
           (hundredths (getf designator :angle))))
 
@@ -142,7 +142,7 @@ has a line of its own if it is too long."
 ;;; A live world is read between two ticks.
 
 (defun call-still (function)
-  "Write what FUNCTION writes to standard output while the world stands still."
+  "Call FUNCTION, which writes to the standard output, while the world stands still."
   (let ((simulation (current-simulation)))
     (write-string (asking (simulation)
                     (with-output-to-string (*standard-output*) (funcall function))))))

@@ -13,8 +13,8 @@
 ;;; Streams.
 
 (defgeneric octets-within-p (stream seconds)
-  (:documentation "Wait until STREAM can be read or is at its end, for SECONDS at most. True if it
-can, or is.")
+  (:documentation "Wait until STREAM can be read or is at its end, for SECONDS at most. True if
+so.")
   (:method ((stream stream) seconds)
     (input-within-p stream seconds)))
 
@@ -41,7 +41,7 @@ can, or is.")
   (end-process 130))
 
 (defun heed-interrupt ()
-  "Let the handlers of this thread end what it is at, or let it go on, by the restart GO-ON."
+  "Let the handlers of this thread end what it does, or continue by the restart GO-ON."
   (allowing-interrupts
     (with-simple-restart (go-on "Go on.")
       (signal-user-interrupt))))
@@ -53,11 +53,11 @@ can, or is.")
         ((< (incf *interrupts-while-ending*) +patience-of-users+))
         (t (end-interrupted))))
 
-(defvar *hearer* nil "The stream that hears this thread's error output until it begins to end.")
+(defvar *hearer* nil "The stream that has this thread's error output until it begins to end.")
 
 (defun begin-to-end (condition)
-  "Let nothing come between what CONDITION, an interrupt, leaves and what is said of it: the
-compiler would say that it has been left."
+  "Suppress other output between CONDITION, an interrupt, and the message on it: the compiler would
+report that it has been left."
   (declare (ignore condition))
   (setf *interrupts-while-ending* 0
         *hearer* (make-broadcast-stream)))
@@ -76,8 +76,8 @@ values of THEN, another function, which is not interrupted."
 ;; counts how often Control-C comes runs in any thread and calls no users' code.
 
 (defvar *before-ending-at-once* nil
-  "A function of no arguments to call before control C ends this process at once; NIL where somebody
-sits, who may press it as often as he likes.")
+  "A function of no arguments to call before Control-C ends this process at once; NIL at a terminal
+or window, where the user may press it any number of times.")
 
 (defvar *interrupt-times* '() "When control C came, in seconds, newest first.")
 
@@ -101,7 +101,7 @@ third time, or, unless it came twice for once, the second if the first has had n
       (end-process 130))))
 
 (defun mind-interrupts ()
-  "Let control C interrupt this thread, which is the process's first."
+  "Let Control-C interrupt this thread, the process's first."
   (let ((thread (current-thread)))
     (call-on-interrupt (lambda ()
                          (note-interrupt)

@@ -52,8 +52,8 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
   (setf (progress-line-width progress) (length text)))
 
 (defun note-progress (progress control &rest arguments)
-  "Let the line of PROGRESS, unless that is NIL, say what is formatted from CONTROL and ARGUMENTS,
-if it is time to."
+  "Show in the line of PROGRESS, unless that is NIL, CONTROL formatted with ARGUMENTS, if it is time
+to."
   (when (and progress (>= (seconds-now) (progress-line-due progress)))
     (setf (progress-line-due progress) (+ (seconds-now) 0.2d0))
     (write-over progress (apply #'format nil control arguments))))
@@ -64,7 +64,7 @@ if it is time to."
 ;;; Beside it.
 
 (defun say (control &rest arguments)
-  "Tell the user something beside what he has asked for."
+  "Give the user a message beside the requested output."
   ;; A line that shows progress may be there.
   (when (interactive-stream-p *error-output*)
     (format *error-output* "~C~A" #\Return (row-cleared)))

@@ -57,8 +57,8 @@ screen."
   (if (plan-column-p wishes width) (remove 'plan +sections+) +sections+))
 
 (defun usual-details-width (wishes width)
-  "Return how wide the column of sections is, unless the user wants another width, in a window WIDTH
-pixels wide: wider where plans are shown in it, whose lines are long."
+  "Return the width of the column of sections, unless the user has set one, in a window WIDTH pixels
+wide: wider if it shows plans, which have long lines."
   (if (or (member 'plan (wishes-folded wishes)) (plan-column-p wishes width))
       (clamp (floor width 3) 200 360)
       (clamp (floor (* 9 width) 20) 200 400)))
@@ -85,15 +85,15 @@ pixels wide: wider where plans are shown in it, whose lines are long."
 ;;; Sections.
 
 (defun share-height (needs height)
-  "Return how much of HEIGHT each of NEEDS gets, which are (section pixels): what it needs, and what
-is left over goes to the designators, or the plan; or else what is fair."
+  "Return how much of HEIGHT each of NEEDS, (section pixels), gets: what it needs, and the rest goes
+to the designators, or the plan; or, if there is not enough, a fair share."
   (cond ((null needs) '())
         ((<= (reduce #'+ needs :key #'second) height) (give-rest needs height))
         (t (share-with-plan needs height))))
 
 (defun share-with-plan (needs height)
-  "Return shares of HEIGHT, which is not enough for NEEDS: the plan, if it is among them, gets half
-of it at least, if it needs that, since a tree of few lines tells nothing; the others what is fair."
+  "Return shares of HEIGHT, which is not enough for NEEDS. The plan, if it is among them, gets up to
+half if it needs that, since a tree of few lines is useless; the others get fair shares."
   (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
     (if (and plan others)
         (let ((share (min (second plan)
@@ -107,8 +107,8 @@ of it at least, if it needs that, since a tree of few lines tells nothing; the o
   (+ +edge+ (* +line-height+ (max 1 (floor (- height +edge+) +line-height+)))))
 
 (defun share-fairly (needs height)
-  "Return shares of HEIGHT, which is not enough for NEEDS: those who need less than others get it,
-the others as many whole lines."
+  "Return shares of HEIGHT, which is not enough for NEEDS: sections that need less than the others
+get it, the others equally many whole lines."
   (let* ((fair (floor height (max 1 (length needs))))
          (modest (remove-if (lambda (need) (> (second need) fair)) needs))
          (greedy (remove-if (lambda (need) (member need modest)) needs)))

@@ -7,9 +7,9 @@
 
 (defstruct (button (:constructor make-button (label key command help &optional lit-p))
                    (:copier nil))
-  "COMMAND, a function of no arguments, is what a click on the button called LABEL, or the character
-KEY, does; HELP says what that is. LABEL may be a function of the window, and LIT-P one that says
-whether the button is on."
+  "A button. A click on LABEL, or the character KEY, calls COMMAND, a function of no arguments; HELP
+describes that. LABEL may be a function of the window; LIT-P, a function of it, says whether the
+button is on."
   (label "" :read-only t)
   (key #\Space :type character :read-only t)
   (command nil :type symbol :read-only t)

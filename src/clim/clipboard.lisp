@@ -18,7 +18,7 @@
     (xlib:open-display host :display display-id :protocol protocol)))
 
 (defun make-mailbox (display)
-  "Return an X window that is never seen, for what is handed over on DISPLAY."
+  "Return an invisible X window, for transfers on DISPLAY."
   (xlib:create-window :parent (xlib:screen-root (xlib:display-default-screen display))
                       :x 0 :y 0 :width 1 :height 1 :event-mask '(:property-change)))
 
@@ -28,7 +28,7 @@
   (reject-use "~A. Save it in a file, and type (load \"FILE\")." reason))
 
 (defun octets-in (mailbox)
-  "Return, as a string of octets, what lies in MAILBOX."
+  "Return, as a string of octets, the contents of MAILBOX."
   (with-output-to-string (out)
     ;; The X server hands it over in parts; it counts in fours.
     (loop for start from 0 by (floor +piece+ 4)
@@ -40,8 +40,8 @@
                (when (zerop left) (return))))))
 
 (defun take-piece (mailbox)
-  "Return, as a string of octets, what lies in MAILBOX, which is empty then; and its type, or NIL if
-there is nothing, and :INCR if pieces of it will come."
+  "Return, as a string of octets, the contents of MAILBOX, and empty it; and their type, or NIL if
+there is nothing, and :INCR if pieces will come."
   (let ((type (nth-value 1 (xlib:get-property mailbox :mcclim :end 0))))
     (multiple-value-prog1
         (values (if (member type '(nil :incr)) "" (octets-in mailbox))
@@ -99,8 +99,8 @@ PORT, or NIL if there is none. Signals MISUSE if it does not come.")
 ;;; Holding.
 
 (defstruct (held (:constructor make-held (octets)) (:copier nil))
-  "A text that is held for others, as a string of OCTETS. TRANSFERS are lists (window property
-start): what is handed over in pieces, and from where on the next is."
+  "A text that is offered to others, as a string of OCTETS. TRANSFERS are lists (window property
+start) of texts that go in pieces: START is where the next piece begins."
   (octets "" :type string :read-only t)
   (selections '() :type list)
   (transfers '() :type list))
@@ -150,8 +150,8 @@ end."
                      :time time)))
 
 (defun serve (held display)
-  "Answer programs that ask on DISPLAY for what HELD has, until others hold what it has held, and
-those that still fetch it are content, or have given up."
+  "Answer programs that ask on DISPLAY for HELD, until another program offers its selections, and
+all transfers are complete or given up."
   (loop while (or (held-selections held) (held-transfers held))
         always
            (xlib:event-case (display :timeout (if (held-selections held)
@@ -182,7 +182,7 @@ those that still fetch it are content, or have given up."
         (push selection (held-selections held))))))
 
 (defgeneric hold-text (port text selections)
-  (:documentation "Let other programs on the X server of PORT have TEXT, by each of SELECTIONS,
+  (:documentation "Offer TEXT to other programs on the X server of PORT, by each of SELECTIONS,
 :PRIMARY or :CLIPBOARD, until one of them copies something.")
   (:method (port text selections) (declare (ignore port text selections)))
   (:method ((port clim-clx:clx-port) text selections)

@@ -43,7 +43,7 @@ are shown in the window."
       (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
 
 (defun let-rate-be (window rate)
-  "Let ticks pass at RATE in what WINDOW shows, if they pass by themselves there."
+  "Set the rate of the run of WINDOW to RATE, if its ticks pass by themselves."
   (let ((simulation (window-simulation window)))
     (cond ((live-p simulation)
            (set-rate rate simulation)

@@ -14,11 +14,11 @@
 ;;; What is to be seen.
 
 (defun line-text (control line)
-  "Return in words, by CONTROL, what the LINE under way does, and how it is ended."
+  "Return in words, by CONTROL, what the running LINE does, and how to end it."
   (format nil "~@? -- control-C, or Interrupt in the menu Run, ends it." control (cut line 40)))
 
 (defun waiting-label (count)
-  "Return what stands before what is typed while COUNT lines wait."
+  "Return the text before the line being typed while COUNT lines wait."
   (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; backspace takes the last one ~
                back. ~]Next> "
           count))
@@ -29,13 +29,13 @@
     (and line (ars-magna.cli:drawn-line-shown line))))
 
 (defun asked-text (answers)
-  "Return what is said above the line that is typed while ANSWERS, texts, are awaited; or NIL."
+  "Return the text above the line being typed while ANSWERS, texts, are awaited; or NIL."
   (when answers
     (format nil "~@[~D more wait~:*~[~;s~:;~]. ~]How does it go on? ~A"
             (and (rest answers) (length (rest answers))) (first answers))))
 
 (defun row-above (conversation text)
-  "Return what is said above TEXT, which is being typed, and its ink."
+  "Return the text above TEXT, which is being typed, and its ink."
   (let ((reading (asked-by conversation))
         (asked (asked-text (ars-magna.cli:awaited-answers (conversation-session conversation))))
         (lines (1+ (count #\Newline text))))
@@ -58,7 +58,7 @@
                         (line-text "At work on ~A" busy) :red))))))
 
 (defun rows-wanted (pane)
-  "Return how many rows PANE needs for all that is typed in it, and what is said above that."
+  "Return how many rows PANE needs for the line being typed, and the text above it."
   (destructuring-bind (&optional label (text "") (point 0) note &rest ink) (what-is-shown pane)
     (declare (ignore ink))
     (+ (if note 1 0)
@@ -127,14 +127,14 @@
 ;;; The window handles copy, paste and scrolling back itself.
 
 (defun copy-text (window)
-  "Let other programs have what is selected in the transcript of WINDOW, or else all of it."
+  "Offer the selection in the transcript of WINDOW, or else all of it, to other programs."
   (let ((pane (pane-named window 'transcript)))
     (hold-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
     (unless (selection pane)
-      (hint window "Nothing is selected: all that stands among the commands was copied."))))
+      (hint window "Nothing is selected: everything in the commands was copied."))))
 
 (defun paste-text (window selection)
-  "Let what SELECTION, :PRIMARY or :CLIPBOARD, holds be typed in WINDOW."
+  "Type the contents of SELECTION, :PRIMARY or :CLIPBOARD, in WINDOW."
   (let ((text (fetch-text (clim:port (pane-named window 'interactor)) selection)))
     (unless (member text '(nil "") :test #'equal)
       (give-key (window-conversation window) (list :paste text)))))
@@ -155,13 +155,13 @@
             ((eq name :next) (lambda (window) (scroll-page (pane-named window 'transcript) 1)))))))
 
 (defun take-key (window key)
-  "Let the prompt of WINDOW have KEY. Control C ends what is under way, too."
+  "Pass KEY to the prompt of WINDOW. Control-C ends the running line, too."
   (if (eq key :control-c)
       (interrupt-conversation (window-conversation window))
       (give-key (window-conversation window) key)))
 
 (defun press-in-window (window event)
-  "Do what the key of EVENT does where one types. True if it does anything."
+  "Do what the key of EVENT does in the line being typed. True if it does anything."
   (let ((action (own-action event)) (key (key-of event)))
     (cond ((press-in-popup window (clim:keyboard-event-key-name event)) t)
           (action (funcall action window) t)
@@ -182,7 +182,7 @@
     (and sheet (robot-window-of sheet))))
 
 (defun give-keys-by (port event)
-  "Let keys of PORT go to the window that EVENT is of, if it is one."
+  "Send keys of PORT to the window of EVENT, if it is one."
   (let ((window (robot-window-of (clim:event-sheet event))) (before (window-with-keys port)))
     (unless (member window (list before nil))
       (setf (clim:port-keyboard-input-focus port)

@@ -137,8 +137,8 @@ STATE."
     (:dead-cedilla #\, "cçsşCÇSŞ")
     (:dead-caron #\^ "cčeěnňrřsšzžCČEĚNŇRŘSŠZŽ")
     (:dead-abovering #\* "aåuůAÅUŮ"))
-  "Lists (name character pairs): McCLIM's name of a dead key, what it types before a space, and the
-letters that it changes, each before what it becomes.")
+  "Lists (name character pairs): McCLIM's name of a dead key, its character before a space, and
+pairs of a letter and what the key makes of it.")
 
 (defun composed (dead character)
   "Return, as a string, what CHARACTER, typed after the dead key of the list DEAD, gives."

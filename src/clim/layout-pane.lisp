@@ -68,7 +68,7 @@ pixels)."
     (rows-typed layout)))
 
 (defun rows-typed (layout)
-  "Return how many rows the window of LAYOUT needs for what is typed in it."
+  "Return how many rows the window of LAYOUT needs for the line being typed."
   (let ((interactor (pane-named (clim:pane-frame layout) 'interactor)))
     (if (and interactor (window-conversation (clim:pane-frame layout)))
         (rows-wanted interactor)
@@ -156,7 +156,7 @@ pixels wide.")
   (repaint-all window))
 
 (defun settle (window)
-  "Give each display of WINDOW the room that it needs for what it shows."
+  "Give each display of WINDOW the room that its contents need."
   (let* ((layout (window-layout window)) (places (places layout)))
     (unless (equal places (pane-places layout))
       (put-parts layout places)

@@ -151,8 +151,8 @@ and NIL for a gap."
     (scroll-to popup (clamp offset (- (+ top 6 +row-height+) height) top))))
 
 (defun point-further (popup step)
-  "Let the row of POPUP be pointed at that is STEP further than the one which is, or the first or
-last. True if there is one."
+  "Point at the row of POPUP that is STEP further than the present one, or at the first or last.
+True if there is one."
   (let* ((rows (remove nil (pane-rows popup) :key #'row-action))
          (place (position (pane-pointed popup) rows))
          (row (nth (cond (place (mod (+ place step) (length rows)))

@@ -51,7 +51,7 @@ if there is one."
     (if color (format nil "((:color ~A))" (text-as-typed (second color))) "()")))
 
 (defun next-to-robot-p (image window)
-  "True if the thing of IMAGE lies where it is local to the robot of WINDOW, as what a hand grasps."
+  "True if the thing of IMAGE is local to the robot of WINDOW, so that a hand can grasp it."
   (let ((robot (find (shown-robot window) (simulation-robots (window-simulation window))
                      :key #'robot-name)))
     (and robot
@@ -92,8 +92,8 @@ it that do not yet."
                               (format nil "hand-grasp ~D ~D" index camera)))))
 
 (defun tracked-offers (numbers window &key held-p)
-  "Return what can be done with what a camera tracks by a designator with one of NUMBERS. Of what is
-HELD-P by the robot itself that is less."
+  "Return the offers for what a camera tracks by a designator with one of NUMBERS. There are fewer
+if the robot itself holds it (HELD-P)."
   (loop for camera in (cameras-tracking numbers window)
         unless held-p append (reaching-offers camera window)
         collect (list (format nil "Let camera ~D no longer track it" camera)
@@ -141,7 +141,7 @@ bin."
                                       (list bin) "Put hand ~D into storage bin ~D"))))))
 
 (defun on-floor-p (image window)
-  "True if the thing of IMAGE lies on the floor, and not in a hand, bin or other thing."
+  "True if the thing of IMAGE is on the floor, and not in a hand, bin or other thing."
   (find (thing-image-thing image) (snapshot-things (window-snapshot window))
         :key #'thing-image-thing))
 

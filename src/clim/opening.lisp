@@ -43,7 +43,7 @@ messages from commands of plans."
         (setf *said* (acons name legacy (remove name *said* :key #'first)))))))
 
 (defun take-habits (window)
-  "Let WINDOW, which is new, be as the user has chosen before, and go on from what was said."
+  "Apply the user's earlier choices to WINDOW, which is new, and continue the earlier transcript."
   (destructuring-bind (habits legacy)
       (with-lock (*habits-lock*)
         (list *habits* (rest (assoc (shown-robot window) *said*))))
@@ -190,8 +190,8 @@ all its robots."
           (t (stay-when-over window reason)))))
 
 (defun agree-on-robot (window)
-  "See to it that the prompt of WINDOW, in whose thread this is, commands the robot shown there; or
-else, if its user has chosen another one of the same run, that that is shown."
+  "Make the prompt of WINDOW, in whose thread this is, command the robot shown there; or, if its
+user has chosen another one of the same run, show that one."
   (when (window-simulation window)
     (let ((reason (simulation-over (window-simulation window))))
       (when reason (leave-run window reason)))
@@ -212,7 +212,7 @@ else, if its user has chosen another one of the same run, that that is shown."
     (remove port *windows* :key #'clim:port :test-not #'eq)))
 
 (defun lose-windows (port)
-  "Let all windows on PORT, whose X server has gone, close, and say so."
+  "Close all windows on PORT, whose X server has gone, and report that."
   ;; None of them can answer for another.
   (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
   (dolist (window (windows-on port))
@@ -274,8 +274,8 @@ else, if its user has chosen another one of the same run, that that is shown."
         :key (lambda (window) (conversation-thread (window-conversation window)))))
 
 (defun windows-to-lead ()
-  "Return the open windows that this thread may lead elsewhere, its own first: no other whose prompt
-is in a trial or fork."
+  "Return the open windows that this thread may switch to another run, its own first; no other
+windows whose prompts are in a trial or fork."
   (let ((own (own-window)))
     (append (and own (list own))
             (remove-if (lambda (window)
@@ -296,7 +296,7 @@ is in a trial or fork."
         (find-if #'over-p windows))))
 
 (defun lead-window (window robot)
-  "Let WINDOW show ROBOT, and its prompt say so unless that has been asked for there."
+  "Show ROBOT in WINDOW; its prompt says so unless it was the one that asked."
   (let ((simulation (robot-simulation robot)) (name (robot-name robot)))
     (show-robot-called window name simulation)
     (unless (eq window (own-window))
@@ -305,7 +305,7 @@ is in a trial or fork."
 (defun open-window (robot)
   "Show ROBOT in a window: in the one that it has, or that shows the trial or fork that it is in, in
 one whose run is over, or else in a new one. It comes to the front. Return the window. Signals
-MISUSE where there is no X server."
+MISUSE if there is no X server."
   (let ((window (window-for robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (shows-p window (robot-name robot) (robot-simulation robot))

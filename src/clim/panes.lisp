@@ -77,8 +77,8 @@ once."
     (clim:draw-rectangle* pane 0 0 width height :ink (clim:pane-background pane))))
 
 (defun call-painting (function pane)
-  "Clear PANE, and call FUNCTION with a canvas on which it paints PANE, but for lines of text that
-would be cut; remember what was painted where."
+  "Clear PANE, and call FUNCTION with a canvas that paints PANE, except lines of text that would be
+cut; record what was painted where."
   (clear pane)
   (let ((canvas (make-instance 'clim-canvas :medium pane :bottom (nth-value 1 (pane-size pane))
                                             :magnification (magnification pane)
@@ -159,7 +159,7 @@ would be cut; remember what was painted where."
     (scroll pane (* steps +scroll-step+))))
 
 (defgeneric hover-text (pane x y)
-  (:documentation "Return in one line what lies at X, Y of PANE.")
+  (:documentation "Describe in one line what is at X, Y of PANE.")
   (:method (pane x y) (subject-text (subject-at (pane-subjects pane) x y))))
 
 ;;; Details of the robot.
@@ -205,13 +205,13 @@ would be cut; remember what was painted where."
 (defconstant +scroll-bar+ 10 "How wide scroll bars are, in pixels.")
 
 (defgeneric scroll-state (pane)
-  (:documentation "Return how far down PANE begins in what it shows, how much is in view, and how
-much there is, all in the same unit.")
+  (:documentation "Return how far down PANE begins in its picture, how much is in view, and how much
+there is, all in the same unit.")
   (:method (pane)
     (values (pane-offset pane) (nth-value 1 (pane-size pane)) (pane-extent pane))))
 
 (defgeneric scroll-to (pane position)
-  (:documentation "Let PANE begin at POSITION, in the unit of SCROLL-STATE.")
+  (:documentation "Scroll PANE to begin at POSITION, in the unit of SCROLL-STATE.")
   (:method (pane position)
     (setf (pane-offset pane) (max 0 (round position)))
     (limit-offset pane)
@@ -228,7 +228,7 @@ much there is, all in the same unit.")
 
 (defgeneric limit-offset (pane)
   (:documentation
-   "Let PANE begin no further down than there is something. True if that was mended.")
+   "Scroll PANE back if it begins below the end of its picture. True if it did.")
   (:method (pane)
     (let ((room (max 0 (- (pane-extent pane) (nth-value 1 (pane-size pane))))))
       (when (> (pane-offset pane) room)
@@ -236,7 +236,7 @@ much there is, all in the same unit.")
         t))))
 
 (defun scroll (pane pixels)
-  "Show what is PIXELS further down in the picture in PANE, but not more than there is."
+  "Scroll PANE down by PIXELS, but not beyond its picture."
   (scroll-to pane (+ (scroll-state pane) pixels)))
 
 ;;; The bar.
@@ -286,7 +286,7 @@ of what cannot be picked.")
       (let ((key (subject-key one))) (and key (equal key (subject-key other))))))
 
 (defgeneric subjects-under (pane x y)
-  (:documentation "Return what lies at X, Y of PANE, what is meant most likely first.")
+  (:documentation "Return the subjects at X, Y of PANE, the likeliest first.")
   (:method (pane x y)
     (remove-duplicates (subjects-at (pane-subjects pane) x y)
                        :test #'same-subject-p :from-end t)))
@@ -298,7 +298,7 @@ of what cannot be picked.")
     (append picked (ldiff subjects picked))))
 
 (defun selected-boxes (pane)
-  "Return the boxes, (left top right bottom), in which what is picked was painted in PANE."
+  "Return the boxes, (left top right bottom), in which the selection was painted in PANE."
   (let ((key (window-selection (window-of pane))))
     (and key
          (loop for (subject . box) in (pane-subjects pane)

@@ -36,14 +36,15 @@ in words how the last plan ended."
   (and simulation (find-if #'interface-p (simulation-participants simulation))))
 
 (defun traced-p (interface)
-  "True if a trace is kept of the plans of INTERFACE, or, where none is under way, will be."
+  "True if the plans of INTERFACE are traced, or, if none is running, will be."
   (let ((runner (and interface (interface-runner interface))))
     (and (or (and runner (runner-trace runner))
              (and *trace-plans* (not (and runner (plan-runner-tasks runner)))))
          t)))
 
 (defun plans-mark (look interface)
-  "Return what is EQUAL to before if LOOK, at the plans of INTERFACE, would see the same."
+  "Return a value that is EQUAL to the last one if LOOK, at the plans of INTERFACE, would show the
+same."
   (let ((runner (and interface (interface-runner interface)))
         (timeline-p (eq :timeline (plan-look-view look))))
     (list (plan-look-simulation look) interface (plan-look-view look) (plan-look-folded look)
@@ -134,7 +135,7 @@ changed."
 (defvar *plan-looks-lock* (make-lock "looks at plans"))
 
 (defun direct-look (look simulation)
-  "Let LOOK be at the plans of SIMULATION, from now on; NIL: at none."
+  "Make LOOK look at the plans of SIMULATION from now on; NIL: at none."
   (with-lock (*plan-looks-lock*)
     (setf (plan-look-simulation look) simulation
           (plan-look-ended look) nil
@@ -151,8 +152,8 @@ changed."
                (cut (one-line (failure-text (task-result task))) 300))))
 
 (defun note-ending (task)
-  "Let the windows that show the plans of which TASK is one know how it ended. Return NIL: its
-failure is reported elsewhere."
+  "Tell the windows that show the plans with TASK how it ended. Return NIL: its failure is reported
+elsewhere."
   (let ((interface (runner-client (task-runner task))))
     (when (and *plan-looks* (interface-p interface))
       (dolist (look (with-lock (*plan-looks-lock*) (copy-list *plan-looks*)))

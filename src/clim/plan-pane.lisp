@@ -15,7 +15,7 @@
 ;;; Switches.
 
 (defstruct (switch (:constructor make-switch (label help action &optional lit-p)) (:copier nil))
-  "A click on what is called LABEL calls ACTION, a function; HELP says what that does."
+  "A switch: a click on LABEL calls ACTION, a function; HELP describes that."
   (label "" :type string :read-only t)
   (help "" :type string :read-only t)
   (action nil :type function :read-only t)
@@ -24,7 +24,7 @@
 (defmethod subject-title ((switch switch)) (switch-help switch))
 
 (defun look-again (pane)
-  "Let the plans be looked at soon, as PANE is to show something else of them."
+  "Request a look at the plans soon, as PANE is to show something else of them."
   (painted (window-watcher (window-of pane)))
   (repaint-if-changed pane))
 
@@ -218,7 +218,7 @@
          (tick-at x (scale-for page (content-width pane))))))
 
 (defun plan-subject-at (pane x y)
-  "Return what is drawn at X, Y of PANE: a switch, the mark or image of a task, a moment; or NIL."
+  "Return the subject at X, Y of PANE: a switch, the mark or image of a task, a moment; or NIL."
   (let* ((subjects (pane-subjects pane))
          (subject (subject-at (if (< y +plan-head+)
                                   (remove-if-not #'switch-p subjects :key #'first)
@@ -230,7 +230,7 @@
 (defmethod hover-text ((pane plan-pane) x y) (subject-text (plan-subject-at pane x y)))
 
 (defun go-back-to (pane tick)
-  "Let the prompt take the run that PANE shows back to TICK."
+  "Make the prompt rewind the run that PANE shows to TICK."
   (if (< tick (snapshot-tick (window-snapshot (window-of pane))))
       (give-line (window-conversation (window-of pane)) (rewind-line tick))
       (hint (window-of pane) "That is now.")))

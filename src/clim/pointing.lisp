@@ -44,15 +44,15 @@
                               (floor y (magnification pane)))))))))))
 
 (defun point-at-mouse (window)
-  "Let the strip of WINDOW tell of what the mouse is on, which has not moved, as what was over it,
-or was being dragged, has gone."
+  "Describe in the strip of WINDOW what the mouse is on; it has not moved, but something over it, or
+dragged, has gone."
   (multiple-value-bind (pane x y) (pane-at-mouse window)
     (when pane (hover pane x y))))
 
 (defmethod describe-subject (subject stream) (format stream "~A~%" (subject-title subject)))
 
 (defun subject-text (subject)
-  "Return in one line what is known of SUBJECT; nothing of NIL."
+  "Return a description of SUBJECT on one line; nothing for NIL."
   (if subject
       (one-line (with-output-to-string (stream) (describe-subject subject stream)))
       ""))
@@ -75,7 +75,7 @@ or was being dragged, has gone."
   (> (max (abs (- x from-x)) (abs (- y from-y))) +shake+))
 
 (defun pick-next (pane x y)
-  "Pick what lies at X, Y of PANE; if it was clicked there before, what lies there, too."
+  "Select what is at X, Y of PANE; after an earlier click there, the next of what overlaps."
   (let* ((window (window-of pane)) (subjects (subjects-under pane x y))
          (before (shiftf (pane-clicked pane) (list x y)))
          (picked (and before

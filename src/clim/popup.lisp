@@ -63,7 +63,7 @@ unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cann
     (clim:draw-rectangle* pane 0 0 (1- width) (1- height) :filled nil :ink clim:+gray30+)))
 
 (defun paint-popup-over (pane)
-  "Paint the popup that lies over PANE, if there is one and the X server does not keep it there."
+  "Paint the popup over PANE, if there is one and the X server does not keep it there."
   (unless (or (typep pane 'popup-pane)
               (clim:sheet-direct-mirror pane)
               (not (popup-open-p (window-of pane))))
@@ -103,7 +103,7 @@ so, a symbol, or the menu, or T."
   (and (popup-open-p window) (pane-opener (window-popup window))))
 
 (defun close-popup (window)
-  "Let the popup of WINDOW go away. Return what has opened it, or NIL if it was not there."
+  "Close the popup of WINDOW. Return what has opened it, or NIL if there was none."
   (let ((opener (open-opener window)))
     (when opener
       (setf (clim:sheet-enabled-p (window-popup window)) nil)
@@ -181,7 +181,7 @@ so, a symbol, or the menu, or T."
     (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
 
 (defun layer-rows (window)
-  "Return the rows of the panel of layers. A window has a title, and the mouse is told what things
+  "Return the rows of the panel of layers. A window has a title, and the mouse shows what things
 are, so there are none for these."
   (flet ((layer-row (layer)
            (make-row (layer-text layer)

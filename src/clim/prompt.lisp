@@ -82,7 +82,7 @@ this thread."
                        console over)))
 
 (defun converse (conversation simulation robot-name)
-  "Let the prompt read lines until its user leaves it. Notice if something else ends its thread."
+  "Let the prompt read lines until its user leaves it. Note if something else ends its thread."
   (let ((lost-p t))
     (unwind-protect
          (progn (ars-magna.cli:run-session-apart (conversation-session conversation)
@@ -100,14 +100,14 @@ this thread."
 
 ;; The window does this, not the thread that ends: when Lisp ends all threads, no new one may begin.
 (defun restart-if-lost (conversation simulation robot-name)
-  "If the thread of the prompt was ended, as a line or a program may do to any, begin anew."
+  "If the thread of the prompt was ended, as a line or a program may do to any, start it again."
   (when (conversation-lost-p conversation)
     (say-in conversation "The thread of this prompt was ended, and with it the line under way. ~
                           It begins anew.~%")
     (start-conversation conversation simulation robot-name)))
 
 (defun being-typed (conversation)
-  "Return what has been typed at the prompt of CONVERSATION, and not entered; NIL if nothing has."
+  "Return what has been typed at the prompt of CONVERSATION, and not entered; NIL if nothing."
   (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
     (and line
          (not (busy-with conversation))
@@ -130,7 +130,7 @@ this thread."
     t))
 
 (defun give-line (conversation line)
-  "Let the prompt do what LINE, a string, says, as if it had been typed; what is being typed stays."
+  "Make the prompt run LINE, a string, as if it had been typed; the line being typed stays."
   (unless (answered-first-p conversation line)
     (ars-magna.cli:enter-line (conversation-session conversation) line)
     (tell-news (conversation-console conversation))))
@@ -141,27 +141,27 @@ this thread."
   (tell-news (conversation-console conversation)))
 
 (defun begin-line-with (conversation text)
-  "Let TEXT stand where the user types, who is to add what it lacks."
+  "Put TEXT into the line being typed, for the user to complete."
   (unless (answered-first-p conversation text)
     (mapc (lambda (key) (give-key conversation key))
           (list :control-e :control-u text))))
 
 (defun interrupt-conversation (conversation)
-  "End the line that is under way, or clear the one that is being typed."
+  "End the running line, or clear the one being typed."
   (ars-magna.cli:interrupt-session (conversation-session conversation)))
 
 (defun busy-with (conversation)
-  "Return the line that is under way, or NIL if the prompt waits for one."
+  "Return the running line, or NIL if the prompt waits for one."
   (and (conversation-thread conversation)
        (ars-magna.cli:at-work-on (conversation-session conversation))
        (console-entered (conversation-console conversation))))
 
 (defun asked-by (conversation)
-  "Return the line that is under way, if a program that it runs waits for what is typed; or NIL."
+  "Return the running line, if a program in it waits for typed input; or NIL."
   (let ((console (conversation-console conversation)))
     (and (ars-magna.cli:console-asked-p console) (console-entered console))))
 
 (defun waiting-in (conversation)
-  "Return how many lines wait for the one that is under way to end, and what is being typed after
-them: its text, and where in it the cursor is."
+  "Return how many lines wait for the running one to end, and the text being typed after them, with
+the position of the cursor in it."
   (ars-magna.cli:typed-ahead (ars-magna.cli:session-input (conversation-session conversation))))

@@ -127,7 +127,7 @@ newest: no line that is no longer kept, and a whole page of them."
           (t (values point mark)))))
 
 (defun selected-columns (row from to)
-  "Return from where to where ROW is selected, if what is between the places FROM and TO is."
+  "Return from where to where ROW is selected, if the text between the places FROM and TO is."
   (let ((number (text-row-number row)) (start (text-row-start row)) (stop (text-row-stop row)))
     (values (cond ((< number (first from)) stop)
                   ((= number (first from)) (max start (second from)))
@@ -158,7 +158,7 @@ newest: no line that is no longer kept, and a whole page of them."
 ;;; Scrolling.
 
 (defun scroll-lines (pane count)
-  "Show what is COUNT lines further down in PANE, but not more than there is."
+  "Scroll PANE down by COUNT lines, but not beyond its end."
   (let ((transcript (pane-transcript pane)))
     (setf (pane-scrolled pane)
           (kept-in-view pane (+ (or (pane-last pane) (transcript-newest transcript)) count))
@@ -198,7 +198,7 @@ newest: no line that is no longer kept, and a whole page of them."
                       (text-row-start row) (text-row-stop row))))))
 
 (defun selected-text (pane)
-  "Return what is selected in PANE, or all that its transcript says."
+  "Return the selection in PANE, or all of its transcript."
   (let ((transcript (pane-transcript pane)))
     (multiple-value-bind (from to) (selection pane)
       (if from

@@ -13,7 +13,7 @@
               (one-line-text condition)))
 
 (defmacro without-debugger (&body body)
-  "Run BODY, in which what calls for a debugger is an error."
+  "Run BODY; anything in it that would call a debugger is an error."
   `(let ((*break-on-user-error* nil) (*debugger-refused-p* t))
      (with-debugger-hook (#'refuse-debugger) ,@body)))
 
@@ -32,7 +32,7 @@
 ;;; number, counted from the first there was. Lines have colours in them as at a terminal.
 
 (defconstant +transcript-length+ 2000 "How many lines of a transcript are kept.")
-(defconstant +longest-line+ 4000 "How many characters a line has at most; what goes on is another.")
+(defconstant +longest-line+ 4000 "Most characters in a line; a longer one continues as another.")
 
 (defstruct (transcript (:constructor make-transcript (news)) (:copier nil))
   "Lines of text, newest first. NEWS is called, with no arguments, when there is more."
@@ -77,7 +77,7 @@ where something is counted."
           (transcript-count transcript) +transcript-length+)))
 
 (defun call-changing-transcript (transcript function)
-  "Call FUNCTION, which changes TRANSCRIPT, and tell of that."
+  "Call FUNCTION, which changes TRANSCRIPT, and report that change."
   (with-lock ((transcript-lock transcript))
     (funcall function)
     (incf (transcript-total transcript))
@@ -105,7 +105,7 @@ where something is counted."
        (setf (first (transcript-lines transcript)) "")))))
 
 (defun go-on-from (transcript lines)
-  "Let TRANSCRIPT, of which nobody has seen anything, begin with LINES, newest first."
+  "Make TRANSCRIPT, which has not been shown yet, begin with LINES, newest first."
   (call-changing-transcript
    transcript
    (lambda ()
@@ -137,8 +137,8 @@ which comes first; each as a list of its number and its text."
   (reverse (mapcar #'second (numbered-lines transcript count))))
 
 (defun text-between (transcript from to)
-  "Return what is said in TRANSCRIPT between the places FROM and TO, each a list of the number of a
-line and a column, without colours."
+  "Return the text of TRANSCRIPT between the places FROM and TO, each a list of the number of a line
+and a column, without colours."
   (with-output-to-string (out)
     (loop for ((number text) . more) on (reverse (numbered-lines transcript (transcript-count
                                                                              transcript)
@@ -154,7 +154,7 @@ line and a column, without colours."
 
 (defclass transcript-stream (fundamental-character-output-stream)
   ((transcript :initarg :transcript :reader stream-transcript))
-  (:documentation "An output stream that adds what is written to a transcript."))
+  (:documentation "An output stream that adds its output to a transcript."))
 
 (defmethod stream-write-string ((stream transcript-stream) string &optional (start 0) end)
   (say (stream-transcript stream) (subseq string start end))

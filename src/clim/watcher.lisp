@@ -51,7 +51,7 @@ at which measuring the rate began, and that rate."
 ;;; Looking.
 
 (defun busy-p (simulation pulse)
-  "Return in words what users' code has kept SIMULATION waiting since the last look, or NIL."
+  "Return in words which code of users has kept SIMULATION waiting since the last look, or NIL."
   (multiple-value-bind (text calls) (users-code-under-way simulation)
     (and (eql calls (shiftf (pulse-calls pulse) calls))
          (= (simulation-tick simulation) (pulse-last-tick pulse))
@@ -64,13 +64,13 @@ at which measuring the rate began, and that rate."
       (nth-value 1 (ars-magna.cli:pace-of simulation))))
 
 (defun paused-here-p (simulation)
-  "True if time stands still in SIMULATION until RESUME: it is paused, or a trial that is."
+  "True if time stands still in SIMULATION until RESUME: it is paused, or a paused trial."
   (if (live-p simulation)
       (paused-p simulation)
       (eq :paused (ars-magna.cli:pace-of simulation))))
 
 (defun state-of (simulation pulse)
-  "Return the state of SIMULATION, and NIL or a text that goes on from what that is called."
+  "Return the state of SIMULATION, and NIL or a text that continues its name."
   (let ((busy (busy-p simulation pulse)))
     (cond ((and (simulation-over simulation)
                 (not (eq :ended (ars-magna.cli:pace-of simulation))))
@@ -105,7 +105,7 @@ at which measuring the rate began, and that rate."
     (pulse-reached pulse)))
 
 (defun progress-of (simulation pulse)
-  "Return how time goes in SIMULATION, of which PULSE knows what was seen before."
+  "Return the state of time in SIMULATION; PULSE has the last look."
   (multiple-value-bind (state more) (state-of simulation pulse)
     (let ((tick (simulation-tick simulation)) (seconds (seconds-now)))
       (setf (pulse-last-tick pulse) tick)
@@ -167,7 +167,7 @@ is watched has been over for a while."
     (if journal (journal-length journal) 0)))
 
 (defun publish (watcher simulation)
-  "Make a snapshot of SIMULATION, which stands still, and tell of it."
+  "Make a snapshot of SIMULATION, which stands still, and report it."
   (setf (watcher-wanted-p watcher) nil
         (watcher-stale-p watcher) nil
         (watcher-traces watcher) (traces-of-change simulation)
@@ -209,7 +209,7 @@ itself: it will come with the next tick."
     (setf (watcher-over-before-p watcher) (and reason t))))
 
 (defun look-at-progress (watcher)
-  "Find out how time goes in what WATCHER watches; tell if that has changed."
+  "Find out the state of time in the run of WATCHER; report it if it has changed."
   (let ((simulation (watcher-simulation watcher)))
     (when simulation
       ;; The run continues meanwhile, and a look may come when something is half done.
@@ -257,7 +257,7 @@ itself: it will come with the next tick."
 
 ;; Other threads read the watched run of WATCHER: between two runs there must always be one.
 (defun watch-simulation (watcher simulation)
-  "Let WATCHER watch SIMULATION, from now on and instead of what it watches. Return WATCHER."
+  "Make WATCHER watch SIMULATION from now on, instead of its present run. Return WATCHER."
   (let ((old (watcher-simulation watcher)) (observer (watcher-observer watcher)))
     (unless (eq simulation old)
       (keep-history simulation)
@@ -275,7 +275,7 @@ itself: it will come with the next tick."
   watcher)
 
 (defun pace-pictures (watcher)
-  "Be the pacer of WATCHER until its work is over; tell if something else ends this thread."
+  "Run the pacer of WATCHER until its work is over; report if something else ends this thread."
   (unwind-protect (run-pacer watcher)
     (unless (watcher-over-p watcher)
       (setf (watcher-unpaced-p watcher) t)

@@ -103,8 +103,8 @@
     (and snapshot (snapshot-robot snapshot (shown-robot window)))))
 
 (defun shown-robot-p (window image)
-  "True if IMAGE is of the robot whose details WINDOW shows, then or now: images are made anew for
-each snapshot."
+  "True if IMAGE is of the robot whose details WINDOW shows, then or now: each snapshot has new
+images."
   (let ((shown (window-robot window)))
     (and shown (eq (robot-image-name image) (robot-image-name shown)))))
 
@@ -129,7 +129,7 @@ each snapshot."
   (funcall (function-to-call event) (clim:pane-frame sheet)))
 
 (defun call-in-window (function window)
-  "Let WINDOW's thread call FUNCTION with it, if it is on the screen. Any thread may ask. Return
+  "Make WINDOW's thread call FUNCTION with it, if it is on the screen. Any thread may ask. Return
 nothing."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (when sheet
@@ -137,7 +137,7 @@ nothing."
     (values)))
 
 (defun request-refresh (window)
-  "Let WINDOW be refreshed soon. Any thread may ask."
+  "Request a refresh of WINDOW soon. Any thread may ask."
   (when (and (clim:frame-top-level-sheet window)
              (swap-if (car (window-queued window)) nil t))
     (call-in-window #'refresh-as-requested window)))
@@ -164,7 +164,7 @@ nothing."
       (painted (window-watcher window)))))
 
 (defun request-repaint (window)
-  "Let all of WINDOW be painted soon. Any thread may ask."
+  "Request painting all of WINDOW soon. Any thread may ask."
   (setf (window-torn-p window) t)
   (request-refresh window))
 

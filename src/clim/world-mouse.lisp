@@ -55,8 +55,8 @@
                  :key (lambda (image) (shown-robot-p (window-of pane) image)))))
 
 (defun grip-at (pane x y)
-  "Return the thing or robot that a drag from X, Y of PANE takes along, or NIL: what is picked, or a
-robot at its middle, whatever it stands on, or what is smallest there."
+  "Return the thing or robot that a drag from X, Y of PANE moves, or NIL: the selection, or a robot
+at its middle, whatever it stands on, or the smallest subject there."
   (let ((subjects (remove-if-not (lambda (subject) (typep subject '(or thing-image robot-image)))
                                  (subjects-under pane x y)))
         (key (window-selection (window-of pane))))

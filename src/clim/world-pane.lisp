@@ -42,7 +42,7 @@
     (and (<= left x) (< x right) (<= top y) (< y bottom))))
 
 (defun place-view (pane left top)
-  "Let the view of PANE begin at LEFT, TOP, but not off the map."
+  "Make the view of PANE begin at LEFT, TOP, but not off the map."
   (destructuring-bind (from-x from-y to-x to-y) (view-box pane)
     (let ((map (view-map pane)) (scale (pane-scale pane)))
       (flet ((within (value cells from to)
@@ -68,7 +68,7 @@
   (repaint-if-changed pane))
 
 (defun zoom (pane factor &optional (x 0) (y 0))
-  "Make the view of PANE FACTOR times larger, so that what is at X, Y stays there."
+  "Make the view of PANE FACTOR times larger; the point at X, Y stays there."
   (let ((old (pane-scale pane)))
     (setf (pane-scale pane) (clamp (* old factor) +least-scale+ 128))
     (let ((ratio (/ (pane-scale pane) old)))
@@ -93,7 +93,7 @@
               (pane-top pane) (- (+ top (rest-of height (map-height map)))))))))
 
 (defun fit (pane)
-  "Let the whole map be in view in PANE, also when its size changes."
+  "Show the whole map in PANE, also when its size changes."
   (setf (pane-fitting-p pane) t
         (pane-fitted pane) nil)
   (repaint-if-changed pane))
@@ -138,7 +138,7 @@
       (centre-robot pane))))
 
 (defun prepare-view (pane)
-  "Let the view of PANE be where it should be for its next picture."
+  "Move the view of PANE to where it should be for its next picture."
   (multiple-value-bind (width height) (pane-size pane)
     (let ((key (list width height (view-map pane) (pane-edges pane))))
       (obey-scale pane)

@@ -28,8 +28,8 @@ for, or NIL.")
                          "")))))
 
 (defun lose-port (port)
-  "Close the windows on PORT, whose X server has gone, if any had come to it; end the thread that
-reads its events."
+  "Close the windows on PORT, whose X server has gone, if there were any; end the thread that reads
+its events."
   (when (with-lock (*windows-lock*) (member port (shiftf *ports* (remove port *ports*))))
     (lose-windows port)
     (ignore-errors (clim:destroy-port port))
@@ -90,7 +90,7 @@ reads its events."
 ;;; starts another. (The thread that ends cannot do it: Lisp may be ending all.)
 
 (defvar *unread-ports* '()
-  "The ports whose events nobody reads any more, though windows are there.")
+  "The ports with windows whose events no thread reads any more.")
 
 (defun note-unread (port)
   "Note that the thread which reads the events of PORT ends, and wake the windows there, if any."
@@ -116,7 +116,7 @@ reads its events."
 ;;; library fails then, only another library does.
 
 (deftype program-fault ()
-  "Errors of a program, not of what it is connected to."
+  "Errors of a program, not of its connection."
   '(or type-error cell-error program-error control-error arithmetic-error))
 
 (defun clx-fails-p ()
@@ -130,8 +130,8 @@ bytes, and CLX reads 32 of them first."
     (error () nil)))
 
 (defun words-for-fault (condition clx-fails-p)
-  "Return what is said of CONDITION, with which McCLIM fails on an X server that answers: that CLX
-is at fault if CLX-FAILS-P."
+  "Return the message on CONDITION, with which McCLIM fails on an X server that answers: CLX is at
+fault if CLX-FAILS-P."
   (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
           (ars-magna.clx:library-text (if clx-fails-p "CLX" "McCLIM"))
           (lisp-implementation-version)
@@ -140,7 +140,7 @@ is at fault if CLX-FAILS-P."
           (and clx-fails-p ars-magna.clx:*clx-remedy*)))
 
 (defun words-for-no-port (condition)
-  "Return what is said if CONDITION came up when CLIM's port was opened."
+  "Return the message on CONDITION, which came up when CLIM's port was opened."
   (typecase condition
     (program-fault (words-for-fault condition (clx-fails-p)))
     (xlib:connection-failure
