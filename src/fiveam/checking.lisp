@@ -107,33 +107,34 @@ it is none, or OPTIONS are given that the experiment decides."
     (form &rest options
           &key robots (at-least .95) trials (level .05) (seed 0) parameters clean
           (limit +usual-limit+) (workers 1))
-  "Check, in a test of FiveAM, that FORM succeeds in a share AT-LEAST of trials, .95 unless given.
-Each trial evaluates FORM in a fresh headless simulation with ROBOTS, the name of a robot or a list
-of names, which are bound to the robots. As in an experiment's :run, the values of RUN-PLAN, or else
-the first value, say whether it succeeded; errors, and trials that take more than LIMIT ticks, did
-not. So a LIMIT of 300 with :at-least 1/2 holds the median of ticks to 300. Trial T has the seed
-SEED + T, and the manual's parameters but for PARAMETERS, lists (name form) as in DEFEXPERIMENT or
-a form that returns lists (name value), and is without noise if CLEAN is true:
+  "Check, in a test of FiveAM, that FORM succeeds in at least AT-LEAST of trials, .95 by default.
+Return true if the check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME.
 
   (is-success-rate (run-plan 'fetch-thing '((:color blue)) '((109 24)))
     :robots marvin :at-least .9 :trials 60 :parameters ((motion-noise* .2) (max-speed* 2)))
 
-FORM may instead be (:experiment NAME) or (:experiment NAME :condition C): then trials are those of
-that experiment, which says the rest.
+Each trial evaluates FORM in a fresh headless simulation with ROBOTS, the name of a robot or a list
+of names, which are bound to the robots. As in :run of an experiment, the values of RUN-PLAN, or
+else the first value, decide whether it succeeded. Errors, and trials of more than LIMIT ticks, did
+not succeed: so :limit 300 :at-least 1/2 checks that the median of ticks is at most 300. Trial T has
+the seed SEED + T. Parameters are the manual's, except PARAMETERS: lists (name form) as in
+DEFEXPERIMENT, or a form that returns lists (name value). CLEAN runs trials without noise.
 
-At most TRIALS are run, 200 unless given, or as many as the experiment says, and no more than are
-needed: the check fails as soon as it is plain that the rate is lower than AT-LEAST, and passes as
-soon as it is plain that it is higher. After the last trial it fails if the rate is below AT-LEAST
-as far as that can be told, and else passes. (On the way RATE-VERDICT is asked after each trial, at
-the end EXACT-INTERVAL, each with half of LEVEL.) So what succeeds AT-LEAST so often fails with a
-probability of at most LEVEL; how likely it is that a loss is noticed, PASS-PROBABILITY says, and
-more trials make it likelier. With an AT-LEAST of 1 all trials must succeed.
+FORM may also be (:experiment NAME) or (:experiment NAME :condition C): trials of that experiment,
+which decides the rest.
 
-Seeds are fixed, so the same code has the same answer each time, by however many WORKERS, threads;
-with several of them FORM does not see what the test has bound. The reason of a failure gives the
-numbers, the first trials that did not succeed and why, and a form that repeats one, by
-REPEAT-TRIAL or REPLAY-TRIAL, in any Lisp that has the same code. Return true if the
-check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME."
+At most TRIALS are run: by default 200, or as many as the experiment says. The check fails as soon
+as the rate is clearly lower than AT-LEAST, and passes as soon as it is clearly higher. After the
+last trial it fails if the rate is significantly below AT-LEAST, else it passes. (RATE-VERDICT
+decides after each trial, EXACT-INTERVAL at the end, each with half of LEVEL.) So a form that
+succeeds AT-LEAST so often fails the check with a probability of at most LEVEL. PASS-PROBABILITY
+tells how likely a loss is noticed; more trials make it likelier. If AT-LEAST is 1, all trials must
+succeed.
+
+Seeds are fixed, so the same code gives the same answer, with any number of WORKERS, threads. With
+several of them FORM does not see bindings of the test. The reason of a failure gives the numbers,
+the first trials that did not succeed and why, and a form that repeats one, by REPEAT-TRIAL or
+REPLAY-TRIAL, in any Lisp with the same code."
   (if (and (consp form) (eq :experiment (first form)))
       (destructuring-bind (name condition)
           (experiment-clause form (intersection '(:robots :seed :parameters :clean :limit) options))

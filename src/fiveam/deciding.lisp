@@ -4,10 +4,10 @@
 
 (export '(pass-probability))
 
-;;; A suite that cries wolf is soon ignored. So what is tested is whether the rate is below what it
-;;; should be, and a LEVEL bounds how often that is said where it is not so. Half of LEVEL is for
-;;; looks on the way: after each trial, by evidence that may be looked at that often. The other half
-;;; is for the end: by the exact interval. In between the trials can end early with either answer.
+;;; A suite with false alarms is soon ignored. So the test is whether the rate is below what it
+;;; should be, and LEVEL bounds the probability of a false alarm. Half of LEVEL is for the looks
+;;; after each trial, by evidence that allows so many looks. The other half is for the end, by the
+;;; exact interval. So trials can end early with either answer.
 
 (defun exact-rate (rate)
   "Return RATE as a double-float; a single-float as the decimals that are written."
@@ -54,12 +54,11 @@ trial that succeeds with the probability RATE."
     next))
 
 (defun pass-probability (rate &key (at-least .95) (trials 200) (level .05))
-  "Return with which probability IS-SUCCESS-RATE passes, with these arguments, if trials succeed
-with the probability RATE; and how many trials are run on average. Both are exact but for
-rounding: all ways that the trials can go are added up, which takes a second for 5,000 trials. So
-one finds out which loss of success a check will notice: with these arguments, what
-succeeds in 95 % of trials passes with a probability of .97, in 90 % with .20, and in 85 % with
-.003. Signals WRONG-ARGUMENT."
+  "Return the probability that IS-SUCCESS-RATE passes, with these arguments, if trials succeed with
+the probability RATE; and the average number of trials. Use it to see which loss of success a check
+notices: with the defaults, a rate of 95 % passes with a probability of .97, 90 % with .20, and 85 %
+with .003. Both values are exact except for rounding: they add up all courses that the trials can
+take, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."
   (check-argument pass-probability rate (probability-p rate) "a number from 0 to 1")
   (check-rates 'pass-probability at-least trials level)
   (let ((rate (exact-rate rate)) (at-least (exact-rate at-least)) (level (exact-rate level))

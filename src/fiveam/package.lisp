@@ -1,9 +1,9 @@
-;;;; package.lisp -- checks for FiveAM that hold plans to their rates: the one door to FiveAM.
+;;;; package.lisp -- checks of success rates for FiveAM; the only folder that uses FiveAM.
 
 (ars-magna.host:define-package :ars-magna.fiveam
   (:nicknames :ars-fiveam)
-  (:documentation "Checks for suites of tests written with FiveAM, which hold plans, programs and
-experiments to their rates of success. Use it beside FIVEAM.")
+  (:documentation "Checks of success rates of plans, programs and experiments,
+for test suites written with FiveAM. Use it beside FIVEAM.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :fiveam #:pass #:fail)
   (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval)

@@ -31,7 +31,7 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
         collect (list (list symbol value) value)))
 
 (defun experiment-of (subject operator seed)
-  "Return an experiment of SUBJECT's trials from SEED on. OPERATOR is who wants it."
+  "Return an experiment of SUBJECT's trials from SEED on. OPERATOR is named in errors."
   (let ((limit (subject-limit subject)))
     (unless (integerp seed) (reject-argument operator 'seed seed "an integer"))
     (unless (whole-p limit 1)
@@ -142,8 +142,8 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
 
 ;;;; Many trials
 
-;;; A check ends in a log that is read elsewhere, perhaps long after. So what it says repeats a
-;;; trial in any Lisp that has the same code, whatever has been set there.
+;;; The log of a check is read elsewhere, perhaps much later. So the form that it prints repeats a
+;;; trial in any Lisp with the same code, whatever is set there.
 
 (defun replay-subject (subject seed options)
   (unless (integerp seed) (reject-argument 'repeat-trial 'seed seed "an integer"))
@@ -153,15 +153,15 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
     (form &rest options
           &key robots (seed 1) parameters clean (limit +usual-limit+)
           until then rate step journal trace)
-  "Run the trial with SEED of a check of FORM by IS-SUCCESS-RATE again, the other arguments being
-those of the check: the very run that it was, but in the open. It is what a check that fails prints:
+  "Run the trial with SEED of a check of FORM by IS-SUCCESS-RATE again: the same run, in this
+thread. A check that fails prints such a form; the other arguments are those of the check.
 
   (repeat-trial (run-plan 'fetch-thing '((:color blue)) '((109 24)))
     :robots marvin :seed 7 :parameters ((motion-noise* 0.2)))
 
-UNTIL, THEN, RATE, STEP, JOURNAL and TRACE are as for REPLAY-TRIAL: to see it at a pace, to stop it
-in the middle, and so on. Return a plist, and signal errors, as that does; MALFORMED-DEFINITION,
-too."
+UNTIL, THEN, RATE, STEP, JOURNAL and TRACE are as for REPLAY-TRIAL, for example to watch it at a
+pace or to stop it in the middle. Return a plist, and signal errors, as REPLAY-TRIAL does;
+MALFORMED-DEFINITION, too."
   (declare (ignore until then rate step journal trace))
   `(replay-subject ,(subject-maker "repeat-trial" form robots parameters clean limit) ,seed
                    (list ,@(loop for (key value) on options by #'cddr

@@ -74,12 +74,12 @@ cosine CORRELATION."
 
 (addition paired-proportion-interval)
 (defun paired-proportion-interval (both first second neither &key (confidence .95d0))
-  "Return the bounds, low and high, of the interval for how much more probable success is one way
-than another, if in the same trials BOTH ways succeeded so often, only the FIRST, only the SECOND,
-and NEITHER (Newcombe 1998, \"Improved confidence intervals for the difference between binomial
-proportions based on paired data\", method 10). Below 0 the second way is better. Of no trials the
-bounds are -1 and 1. Signals WRONG-ARGUMENT unless the counts are integers from 0 to 1e9, which
-together are no more, and CONFIDENCE is between 0 and 1."
+  "Return the bounds, low and high, of the interval for the difference of two probabilities of
+success, first less second. In the same trials both succeeded BOTH times, only the first FIRST
+times, only the second SECOND times, and neither NEITHER times (Newcombe 1998, \"Improved confidence
+intervals for the difference between binomial proportions based on paired data\", method 10). Below
+0 the second is better. Without trials the bounds are -1 and 1. Signals WRONG-ARGUMENT unless the
+counts are integers from 0 to 1e9, which together are no more, and CONFIDENCE is between 0 and 1."
   (check-count paired-proportion-interval both)
   (check-count paired-proportion-interval first (- +largest+ both))
   (check-count paired-proportion-interval second (- +largest+ both first))
@@ -106,12 +106,12 @@ together are no more, and CONFIDENCE is between 0 and 1."
 
 (addition student-interval)
 (defun student-interval (numbers &key (confidence .95d0))
-  "Return the bounds, low and high, of the interval for the mean of what NUMBERS, a list or vector,
-are a sample of (Student 1908). It holds the true mean as often as CONFIDENCE says if that is
-normal. Of skewed numbers it holds it less often: of exponential ones, with .95, in 89 of 100
-samples of 5, 93 of 30, and 94 of 50. BOOTSTRAP-INTERVAL is no better there. Of numbers that are all
-equal, both bounds are that number; of fewer than two, both are NIL. Signals WRONG-ARGUMENT unless
-NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
+  "Return the bounds, low and high, of the interval for the mean of the distribution from which
+NUMBERS, a list or vector, are a sample (Student 1908). For normal numbers its coverage is
+CONFIDENCE. For skewed numbers it is less: for exponential ones, with .95, 89 of 100
+samples of 5, 93 of 30, and 94 of 50. BOOTSTRAP-INTERVAL is no better there. If all numbers are
+equal, both bounds are that number; of fewer than two numbers, both are NIL. Signals WRONG-ARGUMENT
+unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
   (let ((confidence (check-share student-interval confidence)))
     (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
 
@@ -146,11 +146,12 @@ probability of TAIL at most, or 0."
 
 (addition median-interval)
 (defun median-interval (numbers &key (confidence .95d0))
-  "Return the bounds, low and high, of the interval for the median of what NUMBERS, a list or
-vector, are a sample of, whatever its distribution, and how often such an interval holds it,
-CONFIDENCE or more: the two of NUMBERS that are so far in from the ends as that allows (David and
-Nagaraja 2003, Order Statistics, 7.1). All three are NIL if NUMBERS are too few, for .95 fewer than
-six. Signals WRONG-ARGUMENT unless they are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
+  "Return the bounds, low and high, of the interval for the median of the distribution from which
+NUMBERS, a list or vector, are a sample, and its coverage, which is CONFIDENCE or more. It holds for
+any distribution. The bounds are two of NUMBERS, as far from the ends as CONFIDENCE allows (David
+and Nagaraja 2003, Order Statistics, 7.1). All three are NIL if NUMBERS are too few, for .95 fewer
+than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and
+1."
   (let* ((confidence (check-share median-interval confidence))
          (sample (sorted (sample 'median-interval 'numbers numbers)))
          (size (length sample))
@@ -237,17 +238,20 @@ and Tibshirani 1993, formula 14.10)."
 (addition bootstrap-interval)
 (defun bootstrap-interval (numbers &key (statistic :mean) (resamples 2000) (seed 0)
                                      (confidence .95d0))
-  "Return the bounds, low and high, of the interval for a STATISTIC of what NUMBERS, a list or
-vector, are a sample of: the bias-corrected and accelerated bootstrap (Efron 1987; Efron and
-Tibshirani 1993, chapter 14). STATISTIC is :MEAN, :MEDIAN or a function of a vector of
-double-floats, which may sort but must not keep it, to a number. It is asked of RESAMPLES samples,
-drawn from NUMBERS by the dice for SEED, an integer: the same bounds each time. Of few numbers it
-is too narrow: the .95 interval for the mean of 5 normal ones holds it in 85 of 100 samples, of 10
-in 90, of 30 in 94; there STUDENT-INTERVAL is better. No bound lies beyond what was found in the
-samples drawn: with fewer of them than 20 / (1 - CONFIDENCE), bounds vary with SEED or are too
-near. Of numbers that are all equal, both bounds are what is found in them; of fewer than two,
-both are NIL. Signals WRONG-ARGUMENT unless NUMBERS and what STATISTIC returns are from -1e15 to
-1e15, RESAMPLES from 100 to 1e7, and CONFIDENCE between 0 and 1."
+  "Return the bounds, low and high, of the interval for a STATISTIC of the distribution from which
+NUMBERS, a list or vector, are a sample, by the bias-corrected and accelerated bootstrap (Efron
+1987; Efron and Tibshirani 1993, chapter 14). STATISTIC is :MEAN, :MEDIAN or a function of a vector
+of double-floats to a number; it may sort the vector but must not keep it. It is called on RESAMPLES
+samples drawn from NUMBERS with the dice for SEED, an integer, so the bounds are the same each time.
+
+  Few numbers: it is too narrow. With .95, the interval for the mean of normal numbers is
+    right in 85 of 100 samples of 5 numbers, 90 of 10, 94 of 30; STUDENT-INTERVAL is better there.
+  Few samples: no bound lies beyond the values found in the samples. With fewer samples than
+    20 / (1 - CONFIDENCE), bounds vary with SEED or are too near.
+  Equal numbers: both bounds are the value found. Of fewer than two numbers both are NIL.
+
+Signals WRONG-ARGUMENT unless NUMBERS and the values of STATISTIC are from -1e15 to 1e15, RESAMPLES
+from 100 to 1e7, and CONFIDENCE between 0 and 1."
   (let ((z (normal-reach (check-share bootstrap-interval confidence)))
         (sample (sample 'bootstrap-interval 'numbers numbers))
         (function (case statistic

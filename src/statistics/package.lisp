@@ -1,6 +1,6 @@
-;;;; package.lisp -- the statistics layer: numbers in, numbers out; it knows no experiment.
+;;;; package.lisp -- the statistics layer: functions of numbers, independent of experiments.
 
 (ars-magna.host:define-package :ars-magna.statistics
-  (:documentation "Intervals, tests and survival curves. What a user would call is marked; averages
-and the like are for other layers only, since users have their own by those names.")
+  (:documentation "Intervals, tests and survival curves. Functions for users are marked.
+Averages and the like are for other layers only, as users often define functions of those names.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying))

@@ -19,7 +19,7 @@ WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
     (reject-argument operator name numbers "a list or vector of numbers from -1e15 to 1e15"))
   (map 'doubles #'double numbers))
 
-;;; A single-float .95 is 0.949999988 as a double-float. Whoever writes a share means the decimals.
+;;; A single-float .95 is 0.949999988 as a double-float. The decimals as written are meant.
 
 (defun meant (share)
   "Return SHARE as a double-float; a single-float as the number that is written so."
@@ -140,7 +140,7 @@ more."
 (defun median-of (sample)
   (sorted-quantile (sorted (copy-seq (the doubles sample))) .5d0))
 
-;;; The door.
+;;; For other layers.
 
 (defun mean (numbers)
   "Return the mean of NUMBERS, a list or vector, as a double-float; NIL of none. Signals

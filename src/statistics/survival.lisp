@@ -49,14 +49,16 @@ the high one, as that was so before."
 
 (addition survival-curve)
 (defun survival-curve (times events &key (confidence .95d0))
-  "Return which share takes longer than each time, the product-limit estimate (Kaplan and Meier
-1958): a list of steps (time at-risk done survival low high), one for each time at which something
-was done. TIMES and EVENTS are lists or vectors; where the event is T (or 1), it was done at that
-time; where it is NIL (or 0), it was cut short then, and might have taken longer, as at a limit of
-ticks. LOW and HIGH bound the survival at that time, by Greenwood's formula on the scale of
-log(-log) (Kalbfleisch and Prentice 2002, chapter 1), which gives no bounds once nothing is left:
-LOW is 0 then, and HIGH that of the step before, or 1. No steps if nothing was done. Signals
-WRONG-ARGUMENT unless TIMES are from 0 to 1e15, EVENTS as many, and CONFIDENCE between 0 and 1."
+  "Return the share that takes longer than each time, by the product-limit estimate (Kaplan and
+Meier 1958): a list of steps (time at-risk done survival low high), one for each time at which
+something was done. TIMES and EVENTS are lists or vectors. An event is T (or 1) if it was done at
+that time, NIL (or 0) if it was cut short then, as at a limit of ticks, and might have taken longer.
+No steps if nothing was done.
+
+LOW and HIGH bound the survival at that time, by Greenwood's formula on the scale of log(-log)
+(Kalbfleisch and Prentice 2002, chapter 1). That gives no bounds once nothing is left: LOW is 0
+then, and HIGH that of the step before, or 1. Signals WRONG-ARGUMENT unless TIMES are from 0 to
+1e15, EVENTS as many, and CONFIDENCE between 0 and 1."
   (check-survival 'survival-curve 'times times 'events events)
   (let* ((z (normal-reach (check-share survival-curve confidence)))
          (dated (dated times events)) (size (length dated))
@@ -117,11 +119,11 @@ variance of that."
 
 (addition log-rank-test)
 (defun log-rank-test (first-times first-events second-times second-events)
-  "Return how likely it is that two groups that take equally long differ as much as these: the
-log-rank test (Mantel 1966; Peto and Peto 1972). Times and events are as for SURVIVAL-CURVE. The
-other values: chi-square, of one degree of freedom; how many of the first group were done, and how
-many were to be expected. The first is 1, the second 0, if nothing can be said, as of an empty
-group. Signals WRONG-ARGUMENT as SURVIVAL-CURVE does."
+  "Return the p value of the log-rank test that two groups take equally long (Mantel 1966; Peto and
+Peto 1972). Times and events are as for SURVIVAL-CURVE. Further values: chi-square, of one degree of
+freedom; how many of the first group were done; how many were expected. The first value is 1 and the
+second 0 if nothing can be said, as for an empty group. Signals WRONG-ARGUMENT as SURVIVAL-CURVE
+does."
   (check-survival 'log-rank-test 'first-times first-times 'first-events first-events)
   (check-survival 'log-rank-test 'second-times second-times 'second-events second-events)
   (multiple-value-bind (observed expected variance)

@@ -4,12 +4,12 @@
 
 (addition mcnemar-test)
 (defun mcnemar-test (first second)
-  "Return how likely it is that two equally good ways differ as much as these: of the same trials,
-FIRST succeeded one way only, SECOND the other way only; those with the same outcome both ways say
-nothing. The test is exact, and its size never above what it says (McNemar 1947; Fagerland,
-Lydersen and Laake 2013, \"The McNemar test for binary matched-pairs data\"). The second value is
-the mid-p of the same paper, less careful and as a rule nearer to the truth. Both are 1 of no
-trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
+  "Return the p value of McNemar's exact test that two ways are equally good: of the same trials,
+FIRST succeeded one way only, SECOND the other way only. Trials with the same outcome both ways do
+not count. Its size is never above the level (McNemar 1947; Fagerland, Lydersen and Laake 2013,
+\"The McNemar test for binary matched-pairs data\"). The second value is the mid-p of the same
+paper, less conservative and usually nearer to the truth. Both are 1 without trials. Signals
+WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
   (check-count mcnemar-test first)
   (check-count mcnemar-test second)
   (let* ((trials (+ first second)) (fewer (min first second))
@@ -156,16 +156,19 @@ one of them, so that it is never 0 (Phipson and Smyth 2010)."
 
 (addition permutation-test)
 (defun permutation-test (differences &key (resamples 10000) (seed 0) rare-too)
-  "Return how likely it is that DIFFERENCES, a list or vector of numbers, have a mean as far from 0
-as this if each might as well have had the other sign: the paired permutation test (Fisher 1935,
-The Design of Experiments, 21). The second value is true if it is exact, by going through all signs
-(Pagano and Tritchler 1983), which is so for up to 19 numbers, and for more if many are equal or
-whole; else it is by RESAMPLES draws with the dice for SEED, an integer, the same each time. Draws
-never say less than 1/(RESAMPLES + 1). With RARE-TOO, what they find in 1 of 20 at most is drawn
-again so that rare sums come often, and counts by its weight (importance sampling, Harrison 2012):
-give this if the test is one of many. Sums that differ by rounding only are equal. It is 1 of none,
-and if all are 0; of N numbers it is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are
-from -1e15 to 1e15, and RESAMPLES from 100 to 1e7."
+  "Return the p value of the paired permutation test (Fisher 1935, The Design of Experiments, 21):
+the probability that the mean of DIFFERENCES, a list or vector of numbers, is as far from 0 as it
+is, if each could as well have had the other sign.
+
+The second value is true if p is exact, by going through all signs (Pagano and Tritchler 1983). It
+is exact for up to 19 numbers, and for more if many are equal or whole. Else p comes from RESAMPLES
+draws with the dice for SEED, an integer, the same each time, and is never below 1/(RESAMPLES + 1).
+With RARE-TOO, a p of at most 1/20 is drawn again by importance sampling (Harrison 2012), which can
+find smaller ones: give this if the test is one of many.
+
+Sums that differ by rounding only are equal. p is 1 without numbers and if all are 0; of N numbers
+it is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are from -1e15 to 1e15, and
+RESAMPLES from 100 to 1e7."
   (check-resampling permutation-test resamples seed)
   (let* ((sample (sample 'permutation-test 'differences differences))
          (sum (abs (sum sample)))
@@ -180,10 +183,10 @@ from -1e15 to 1e15, and RESAMPLES from 100 to 1e7."
 
 (addition holm-adjusted)
 (defun holm-adjusted (p-values)
-  "Return a list of P-VALUES, a list or vector, each as it counts among so many tests: if all whose
-result is at most .05 are called real, one or more of them are not so with a probability of at most
-.05 (Holm 1979; Wright 1992 for the adjustment). They are in the order given; of equal ones the
-result is equal. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
+  "Return a list of P-VALUES, a list or vector, corrected for their number (Holm 1979; Wright 1992
+for the adjustment): if you call all results of at most .05 real, any of them is wrong with a
+probability of at most .05. The order is kept, and equal p values have equal results. Signals
+WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
   (check-argument holm-adjusted p-values (elements-p p-values #'probability-p)
                   "a list or vector of numbers from 0 to 1")
   (let ((shares (map 'doubles #'meant p-values)))
@@ -199,11 +202,11 @@ result is equal. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1.
 
 (addition sequential-level)
 (defun sequential-level (look &key (level .05d0))
-  "Return the share of LEVEL that may be spent at LOOK, 1, 2, 3 ...: LEVEL / (LOOK (LOOK + 1)). As
-these add up to LEVEL, whoever looks at growing results again and again, and takes an interval with
-a confidence of 1 less that share each time, errs in any of them with a probability of at most
-LEVEL (Bonferroni's inequality, spent as in Lan and DeMets 1983). Signals WRONG-ARGUMENT unless
-LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
+  "Return the share of LEVEL that may be spent at LOOK, 1, 2, 3 ...: LEVEL / (LOOK (LOOK + 1)).
+These shares add up to LEVEL. So you may look at growing results again and again: if each time you
+take an interval with a confidence of 1 less that share, any of them is wrong with a probability of
+at most LEVEL (Bonferroni's inequality, spent as in Lan and DeMets 1983). Signals WRONG-ARGUMENT
+unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
   (check-argument sequential-level look (whole-p look 1 100000) "an integer from 1 to 100000")
   (/ (check-share sequential-level level) (* look (1+ look))))
 
@@ -214,22 +217,21 @@ LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
 
 (addition rate-evidence)
 (defun rate-evidence (successes trials rate)
-  "Return how much SUCCESSES of TRIALS speak against success having the probability RATE: the
-logarithm of how much more likely they are on average over all probabilities, each as likely as
-another. If the probability is RATE, it ever exceeds log(1/LEVEL), at whatever number of trials,
-with a probability of at most LEVEL (Ville 1939; Robbins 1970, the mixture of binomials; Howard,
-Ramdas, McAuliffe and Sekhon 2021). 0 of no trials; below 0 it speaks for RATE. Signals
-WRONG-ARGUMENT unless TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE
-between 0 and 1."
+  "Return the evidence of SUCCESSES of TRIALS against a probability of success of RATE: the
+logarithm of how much more likely they are on average over all probabilities, each weighted equally.
+If the probability is RATE, this ever exceeds log(1/LEVEL), after any number of trials, with a
+probability of at most LEVEL (Ville 1939; Robbins 1970, the mixture of binomials; Howard, Ramdas,
+McAuliffe and Sekhon 2021). It is 0 without trials; below 0 it supports RATE. Signals WRONG-ARGUMENT
+unless TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE between 0 and 1."
   (check-trials rate-evidence successes trials)
   (log-evidence successes trials (check-share rate-evidence rate)))
 
 (addition rate-verdict)
 (defun rate-verdict (successes trials rate &key (level .05d0))
   "Return :ABOVE or :BELOW if SUCCESSES of TRIALS show that success is more, or less, probable than
-RATE, and NIL if they do not say yet. It may be asked after each trial, and the trials stopped when
-it answers: whoever does so is told of a difference where there is none with a probability of at
-most LEVEL. See RATE-EVIDENCE, also for errors; LEVEL is between 0 and 1."
+RATE; NIL if they do not show it yet. You may call it after each trial and stop when it answers: the
+probability of an answer where there is no difference is at most LEVEL, between 0 and 1. See
+RATE-EVIDENCE, also for errors."
   (check-trials rate-verdict successes trials)
   (let ((rate (check-share rate-verdict rate)))
     (when (>= (log-evidence successes trials rate) (- (logarithm (check-share rate-verdict level))))

@@ -74,13 +74,13 @@ KIND says what those are that are several."
             ((null (rest firsts)) (format nil "~A against each other ~A" (first firsts) kind))))))
 
 (defun end-comparison (comparison stream control &rest arguments)
-  "Let COMPARISON know what its tests are worth, print it to STREAM, if any, and return it. Signals
-MISUSE, as CONTROL and ARGUMENTS say, if nothing in it could be compared."
+  "Correct the tests of COMPARISON, print it to STREAM, if any, and return it. Signals
+MISUSE, with the text of CONTROL and ARGUMENTS, if nothing in it could be compared."
   (when (every (lambda (contrast) (zerop (contrast-trials contrast)))
                (comparison-contrasts comparison))
     (reject-use "~?" control arguments))
-  ;; What is so over all is one question, and where it is so another: who asks in twelve conditions
-  ;; as well need not be less sure of the whole.
+  ;; The comparison over all is one question, that of each condition another. So comparing in twelve
+  ;; conditions as well does not weaken the result over all.
   (dolist (contrasts (list (comparison-contrasts comparison) (comparison-overall comparison)))
     (adjust-for-all (loop for contrast in contrasts append (contrast-differences contrast))))
   (when stream (print-comparison comparison stream))
@@ -107,19 +107,18 @@ MISUSE, as CONTROL and ARGUMENTS say, if nothing in it could be compared."
 
 (addition compare-conditions)
 (defun compare-conditions (results first second &key measure (stream *standard-output*))
-  "Compare the conditions FIRST and SECOND of RESULTS, as RUN-EXPERIMENT and READ-RESULTS return
-them, seed by seed: how often they succeed, the ticks of trials that succeed in both, and all that
-is measured in numbers or as true or false; or, with MEASURE, a name or list of names, only that. A
-condition is given by its number, from 1, or by its name or a part of that, such as one value of
-what varies, as far as it is unambiguous; :ALL as SECOND compares FIRST with each of the others. If
-FIRST and SECOND are values of one thing that varies, and several conditions have them, then each of
-these is compared with the one that differs in nothing else, and all together, as COMPARE-LEVELS
-does.
+  "Compare the conditions FIRST and SECOND of RESULTS (see RUN-EXPERIMENT, READ-RESULTS) seed by
+seed. Return a comparison, and write it to STREAM, if any, as PRINT-COMPARISON does.
 
-Only trials with seeds that both have are counted; a trial that broke off with an error, or came to
-its limit, did not succeed. Return a comparison, and write it to STREAM, if there is one, as
-PRINT-COMPARISON does. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous, and
-where there is nothing to be compared."
+Compared are success, the ticks of trials that succeed in both, and all measures that are numbers or
+true or false; with MEASURE, a name or list of names, only these. Only seeds that both have count. A
+trial that ended in an error or at its limit did not succeed.
+
+A condition is a number from 1, its name, or an unambiguous part of its name, such as one value of a
+factor. :ALL as SECOND compares FIRST with each other condition. If FIRST and SECOND are values of
+one factor that several conditions have, each of these is compared with the one that is otherwise
+equal, and all together, as by COMPARE-LEVELS. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a
+word is ambiguous or nothing can be compared."
   (check-argument compare-conditions results (results-p results) "results")
   (check-stream 'compare-conditions stream)
   (let ((names (compared-names 'compare-conditions (list results) measure)))
@@ -128,11 +127,11 @@ where there is nothing to be compared."
 
 (addition compare-levels)
 (defun compare-levels (results factor &key against measure (stream *standard-output*))
-  "Compare, all else equal, each value of FACTOR, the name of what varies in RESULTS, or CASE for
-named conditions, with the value AGAINST, the first in the table unless given; and, where that makes
-several comparisons of the same two values, these over all, each seed counting once, with its mean
-over the conditions. MEASURE, STREAM, the value and the errors are those of COMPARE-CONDITIONS; p is
-corrected for all tests together, those over all apart."
+  "Compare each value of FACTOR with the value AGAINST, all else equal. FACTOR is the name of what
+varies in RESULTS, or CASE for named conditions; AGAINST is the first in the table by default. If
+that makes several comparisons of the same two values, compare these over all, too: each seed counts
+once, by its mean over the conditions. MEASURE, STREAM, the value and the errors are those of
+COMPARE-CONDITIONS. p is corrected for all tests together, separately for those over all."
   (check-argument compare-levels results (results-p results) "results")
   (check-stream 'compare-levels stream)
   (let* ((names (compared-names 'compare-levels (list results) measure))
@@ -147,10 +146,9 @@ corrected for all tests together, those over all apart."
 
 ;;;; What has changed between two versions
 
-;;; The texts beside two tables say of what parts the fingerprints of their conditions are made. If
-;;; the text of the experiment itself is another, success may mean another thing in each: then the
-;;; ruler has changed, and not only what is measured with it. PAIRS are lists of a sample of the
-;;; newer table and one of the older.
+;;; The texts beside two tables list the parts of their conditions' fingerprints. If the experiment
+;;; itself has changed, success may mean something else in each table. PAIRS are lists of a sample
+;;; of the newer table and one of the older.
 
 (defun changes-of-pair (pair after before)
   "Return which parts differ between the conditions of PAIR, by the texts in the directories AFTER
@@ -200,7 +198,7 @@ and BEFORE; :UNKNOWN if these do not say."
                          on." count)))))
 
 (defun changes-between (pairs after before)
-  "Return lines on what decides the trials of PAIRS in one table but not in the other, by the texts
+  "Return lines on what affects the trials of PAIRS in one table but not in the other, by the texts
 in the directories AFTER and BEFORE, which may be NIL."
   (let* ((changed (changed-pairs pairs))
          (changes (loop for pair in changed
@@ -289,14 +287,16 @@ of conditions that one of them lacks."
 
 (addition compare-results)
 (defun compare-results (before after &key measure (stream *standard-output*))
-  "Compare two tables of one experiment that two versions of the code have made: BEFORE and AFTER
-are directories, or results. Trials of equal condition and seed are compared, per condition and over
-all conditions, where each seed counts once. Differences are AFTER less BEFORE. It is said which
-conditions got better or worse, and how many trials are the same to the last bit: rows with equal
-digest, outcome and measures; and, by the texts beside the tables, what has changed in between, with
-a warning if that is the experiment itself. The other arguments, the value and the errors are those
-of COMPARE-CONDITIONS; DAMAGED-TABLE and MISUSE, too, as READ-RESULTS, and if the tables are of
-different experiments."
+  "Compare two tables that two versions of the code have made of one experiment. BEFORE and AFTER
+are directories or results. Trials of equal condition and seed are compared, per condition and over
+all conditions, where each seed counts once. Differences are AFTER less BEFORE.
+
+The comparison tells:
+  which conditions got better or worse;
+  how many trials are identical: rows with equal digest, outcome and measures;
+  what has changed, by the texts beside the tables, with a warning if it is the experiment itself.
+MEASURE, STREAM, the value and the errors are those of COMPARE-CONDITIONS. Signals DAMAGED-TABLE and
+MISUSE, too, as READ-RESULTS does, and if the tables are of different experiments."
   (check-stream 'compare-results stream)
   (multiple-value-bind (old old-name) (results-given 'compare-results 'before before)
     (multiple-value-bind (new new-name) (results-given 'compare-results 'after after)

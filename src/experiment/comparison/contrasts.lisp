@@ -80,8 +80,8 @@ indexes."
           collect a into firsts and collect b into seconds
         finally (return (values firsts seconds))))
 
-;;; What was measured is a rate if it is always true or false, and a mean if there are numbers;
-;;; words cannot be subtracted.
+;;; A measure is compared as a rate if it is always true or false, and as a mean if it has numbers.
+;;; Words are not compared.
 
 (defun only-numbers (firsts seconds)
   (loop for a in firsts
@@ -112,7 +112,7 @@ indexes."
             ((or firsts (string-equal name "success"))
              (noting-left-out (difference-of-values (string-downcase name) firsts seconds)
                               (length pairs)))
-            ;; Never measured in both: that there is nothing to compare is to be said.
+            ;; Never measured in both: reported as not comparable.
             ((or (some #'finite-value-p column) (some #'finite-value-p other))
              (noting-left-out (mean-difference (string-downcase name) '() '())
                               (length pairs)))))))
@@ -132,7 +132,7 @@ indexes."
 (defun count-errors (sample places)
   (count-if (lambda (i) (string= "error" (aref (sample-outcomes sample) i))) places))
 
-;; What is the same to the last bit needs no test, and is none among several.
+;; Identical trials need no test, and do not count as one of several.
 (defun same-runs-p (contrast)
   (and (plusp (contrast-trials contrast))
        (= (contrast-same contrast) (contrast-trials contrast))))
@@ -168,10 +168,10 @@ say. Return CONTRAST."
 
 ;;;; Over several conditions
 
-;;; The trials of a seed under several conditions share their chance, so they are no more than one
-;;; observation: for each seed the means over all conditions are compared. Both means of a seed are
-;;; of the same conditions, as only pairs count in which both have been measured; and only seeds
-;;; count that both have under all conditions. PAIRS are lists of two samples.
+;;; The trials of one seed under several conditions are not independent, so they count as one
+;;; observation: for each seed the means over all conditions are compared. Only pairs count in which
+;;; both were measured, so both means of a seed are of the same conditions. Only seeds count that
+;;; both have under all conditions. PAIRS are lists of two samples.
 
 (defun complete-seeds (pairs)
   "Return a table of the seeds of which both samples of all PAIRS have a trial."

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
-;;; Trials of one seed have the same chance in them, so the difference between two conditions is
-;;; taken seed by seed: what is easy for both, or hard, falls out of it. Rates are compared by
+;;; Trials of one seed share their random numbers, so the difference between two conditions is taken
+;;; seed by seed: what is easy or hard for both cancels. Rates are compared by
 ;;; Newcombe's interval and the exact McNemar test, means by Student's and a permutation test.
 
 (addition paired-difference-p)
@@ -39,8 +39,8 @@ all pairs are equal; or NIL")
        (number-less (paired-first difference) (paired-second difference))))
 
 (setf (documentation 'paired-adjusted-p 'function)
-      "Return PAIRED-P as it counts among all tests of the comparison (Holm), or NIL. Those over
-several conditions, and those of single ones, count apart.")
+      "Return PAIRED-P corrected for all tests of the comparison (Holm), or NIL. Tests over several
+conditions are corrected separately from those of single ones.")
 
 (defmethod print-object ((difference paired-difference) stream)
   (print-unreadable-object (difference stream)
@@ -72,8 +72,8 @@ of booleans, are true."
 
 ;;; Means.
 
-;; Who adds the same floats in another order gets other last digits. That is told as what it is, and
-;; not tested. Whole numbers have no rounding.
+;; The same floats added in another order differ in the last digits. Such a difference is reported
+;; as rounding and not tested. Whole numbers have no rounding.
 (defconstant +grain+ (* 4 double-float-epsilon)
   "What two floats differ in by this share of them at most, may be rounding.")
 
@@ -96,8 +96,8 @@ equal; or NIL."
     (if (some #'floatp numbers) (nearest-float mean) mean)))
 
 (defun test-mean (numbers)
-  "Return how likely so large a mean of the differences NUMBERS is by chance. With many, fewer draws
-will do; how small this can be does not depend on these."
+  "Return the p value of the mean of the differences NUMBERS. Fewer draws are made for many numbers;
+the smallest possible p does not depend on the draws."
   (let ((draws (clamp (floor 200000000 (length numbers)) 1000 10000)))
     (values (permutation-test numbers :resamples draws :rare-too t))))
 
@@ -117,12 +117,12 @@ will do; how small this can be does not depend on these."
 
 ;;; Several.
 
-;; What is the same in all pairs could not be told to differ, whatever chance did: it is no test.
+;; A measure that is the same in all pairs cannot show a difference, so it does not count as a test.
 (defun tested-p (difference)
   (and (paired-p difference) (not (paired-rounding difference))))
 
 (defun adjust-for-all (differences)
-  "Let each of DIFFERENCES know what its test is worth among them."
+  "Set the adjusted p of each of DIFFERENCES, by Holm's correction."
   (let* ((with-p (remove nil differences :key #'paired-p))
          (tested (remove-if-not #'tested-p with-p)))
     (dolist (difference with-p)
@@ -137,5 +137,5 @@ will do; how small this can be does not depend on these."
   (expt 2 (- 1 (max 1 seeds))))
 
 (defun told-difference-p (difference)
-  "True if DIFFERENCE is more than chance, as far as that can be told with 95 % confidence."
+  "True if DIFFERENCE is significant at the 5 % level."
   (and (paired-adjusted-p difference) (<= (paired-adjusted-p difference) .05d0)))

@@ -207,7 +207,7 @@ and its place; NIL if these are none. Signals MISUSE if they could be those of s
     (unless others (reject-use "There is only one condition, ~A." (sample-condition sample)))
     (loop for other in others collect (list sample other))))
 
-;; Whoever says 4 and 8 may mean what he has varied, or the fourth and the eighth condition.
+;; 4 and 8 may mean values of a factor, or the fourth and the eighth condition.
 (defun contest-of-values (results first second)
   "Return the contest, see LEVEL-CONTESTS, of FIRST and SECOND if these are integers and both values
 of one factor; NIL if not."

@@ -210,14 +210,15 @@ the same runs, else NIL."
 
 (addition comparison-verdicts)
 (defun comparison-verdicts (comparison)
-  "Return what COMPARISON tells, a list of sentences: of two versions first how many conditions got
-better or worse and how many trials are the same to the last bit; and then, over all where there are
-several conditions, and for each pair of these, which succeeds more often, takes more ticks and so
-on, with p, both rates or means, and the difference with its 95 % interval. A difference is called
-one if p, as it counts among all tests of COMPARISON (Holm), is at most .05. Else it is said how
-large it can be, as surely as the interval holds; or, if that leaves out 0, why p decides, and how
-many seeds so many tests need. What is said over all counts apart. Intervals are of one difference
-alone."
+  "Return what COMPARISON tells, a list of sentences. For two versions they begin with how many
+conditions got better or worse, and how many trials are identical. Then follow, over all if there
+are several conditions, and for each pair of conditions: which succeeds more often, takes more ticks
+and so on, with p, both rates or means, and the difference with its 95 % interval.
+
+A difference is reported if p, corrected for all tests of COMPARISON (Holm), is at most .05.
+Otherwise the sentence says how large it can be, with the confidence of the interval. If the
+interval leaves out 0, it says why p decides, and how many seeds so many tests need. Tests over all
+are corrected separately. Each interval is for one difference alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
   (let ((all (loop for contrast in (append (comparison-overall comparison)
                                            (comparison-contrasts comparison))
@@ -304,12 +305,15 @@ alone."
 
 (addition print-comparison)
 (defun print-comparison (comparison &optional (stream *standard-output*))
-  "Write COMPARISON to STREAM: a line that says what is compared, and what the experiment asks, if
-that is known; of versions what has changed between them; the verdicts (see COMPARISON-VERDICTS), a
-line each; what was left out, if anything; and a table, with a line for each pair of conditions, how
-many trials succeeded in both, one and neither of them, and below it a row for each measure: over
-how many seeds, both rates or means, the difference (of rates in points) with its 95 % interval, and
-p after and before Holm's correction for all tests. Return COMPARISON."
+  "Write COMPARISON to STREAM and return it:
+  what is compared, and what the experiment asks, if known;
+  of versions, what has changed between them;
+  the verdicts (see COMPARISON-VERDICTS), a line each;
+  what was left out, if anything;
+  a table, with a line for each pair of conditions: how many trials succeeded in both, one and
+    neither; and below it a row for each measure: the number of seeds, both rates or means, the
+    difference (of rates in points) with its 95 % interval, and p before and after Holm's
+    correction for all tests."
   (check-argument print-comparison comparison (comparison-p comparison) "a comparison")
   (write-wrapped (format nil "The experiment ~A, seed by seed~@[: ~A~]."
                          (comparison-experiment comparison) (comparison-sides comparison))

@@ -37,17 +37,18 @@
 (addition save-result-pictures)
 (define-with-keywords save-result-pictures
     (results directory &key (kind :svg) (which (mapcar #'first *pictures*)))
-  "Save pictures of RESULTS in DIRECTORY, made if there is none, as KIND says, :SVG or, where the
-program rsvg-convert is installed, :PNG. WHICH says of what, a list of some of these:
-  :SUCCESS      how often trials succeed, against what varies, with 95 % intervals
-  :TICKS        how many ticks those take that succeed, likewise: medians
-  :MEASURES     what was measured: rates, or means, and how all numbers lie
-  :SURVIVAL     which share of trials is not yet done after so many ticks
-  :DIFFERENCES  in success and ticks, between the values of what varies, seed by seed
-The first of what varies whose values are numbers runs along the picture; the rest makes series of
-it, and where that were more than six, pictures. What there is no data for is left out. The title is
-what the experiment asks, if it is loaded. Return a list of the files, which are called by what they
-show. Signals WRONG-ARGUMENT, and MISUSE without that program or if there is no such directory."
+  "Save pictures of RESULTS in DIRECTORY, created if necessary. Return a list of the files, which
+are named after what they show. KIND is :SVG or, if the program rsvg-convert is installed, :PNG.
+WHICH is a list of some of these:
+  :SUCCESS      how often trials succeed, for each condition, with 95 % intervals
+  :TICKS        the ticks of trials that succeed: medians, with 95 % intervals
+  :MEASURES     measures: rates, or means and all numbers
+  :SURVIVAL     the share of trials not yet done after so many ticks
+  :DIFFERENCES  in success and ticks, between the values of a factor, seed by seed
+The first factor whose values are numbers is the x axis. The others make series, and if these are
+more than six, several pictures. What has no data is left out. The title is what the experiment
+asks, if it is loaded. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is missing or the
+directory cannot be made."
   (check-argument save-result-pictures results (results-p results) "results")
   (check-argument save-result-pictures directory (typep directory '(or string pathname))
                   "the name of a directory")
@@ -114,13 +115,12 @@ show. Signals WRONG-ARGUMENT, and MISUSE without that program or if there is no 
 (addition save-ways-picture)
 (define-with-keywords save-ways-picture
     (experiment condition file &rest options &key (trials 50) part title layers in-color scale)
-  "Save in FILE, replacing it, a map of the world of CONDITION of EXPERIMENT with the ways that its
-robots went in TRIALS, the first so many or a list of their numbers: in colours that say what became
-of each trial, with a marker where it ended. The trials are run again for that. CONDITION is as for
-FIND-CONDITION. PART (left top right bottom), in cells, is what is wanted of the map, by default
-all. TITLE stands above instead of what the experiment asks. FILE and the other arguments are those
-of SAVE-PICTURE. Return the file's truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE
-without the program that PNG needs."
+  "Save in FILE, replacing it, a map of the world of CONDITION of EXPERIMENT with the paths of its
+robots in TRIALS: the first so many, or a list of their numbers. Colours show the outcome of each
+trial, a marker where it ended. This runs the trials again. CONDITION is as for FIND-CONDITION. PART
+(left top right bottom), in cells, is the part of the map, by default all. TITLE replaces what the
+experiment asks. FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
+Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG needs."
   (declare (ignore part title layers in-color scale))
   (picture-kind 'save-ways-picture file)
   (let* ((experiment (find-experiment experiment))
@@ -218,10 +218,10 @@ document, below what the experiment asks."
 (addition save-comparison-picture)
 (define-with-keywords save-comparison-picture
     (comparison file &key (measure "success"))
-  "Save a picture of COMPARISON in FILE, replacing it: SVG or, where the program rsvg-convert is
-installed, PNG, as its name ends. It shows for each pair of conditions the difference in MEASURE,
-first less second, of rates in points of 100, with its 95 % interval and p as it counts among all
-tests of COMPARISON, as in its verdicts; what stands above says how many these are. Return the
+  "Save a picture of COMPARISON in FILE, replacing it: SVG or, if the program rsvg-convert is
+installed, PNG, by the ending of its name. It shows the difference in MEASURE for each pair of
+conditions: first less second (rates in points), with the 95 % interval and p corrected for all
+tests of COMPARISON, as in its verdicts; the heading says how many tests these are. Return the
 file's truename. Signals UNKNOWN-NAME if MEASURE was not compared, WRONG-ARGUMENT, and MISUSE
 without that program."
   (check-argument save-comparison-picture comparison (comparison-p comparison) "a comparison")

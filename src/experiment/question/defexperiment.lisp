@@ -83,41 +83,42 @@ none."
 
 (addition defexperiment)
 (define-user-macro defexperiment (&whole form name &body clauses &environment environment)
-  "Define the experiment NAME, for RUN-EXPERIMENT. A string may come first that says what it asks.
-The CLAUSES are:
-  (:robots name...)          the robots in each trial's world, of one map
+  "Define the experiment NAME, which RUN-EXPERIMENT runs. A string may come first, with the question
+that it asks. Return NAME. Signals MALFORMED-DEFINITION. The CLAUSES are:
+  (:robots name...)          the robots in the world of each trial, all of one map
   (:run form...)             what a trial does, in a fresh headless simulation
-  (:vary (what form...)...)  what varies, and its values: all combinations are tried. WHAT is a
+  (:vary (what form...)...)  the factors and their values; all combinations are run. WHAT is a
                              parameter, :ROBOTS (values are names or lists of names), :THINKING
                              (values are thinking modes), or a variable of the other forms; a
                              special variable is bound. (what :in form) takes the values from a
-                             list. Values are numbers, symbols, strings, or lists of such.
-                             In place of all combinations (:sobol n (what low high)...) takes N
-                             points from ranges; so do :latin-hypercube and :random. Behind n may
-                             stand :seed and an integer, behind a range :integer or :log
-  (:conditions (name (what form)...)...)  named conditions instead, or combined with :vary
-  (:trials n)                how many of each condition, 100 unless given here or there
-  (:seed n)                  0 unless given; trial T has the seed N + T, under all conditions
-  (:limit n)                 for how many ticks a trial may go on, 100000 unless given
-  (:time-limit n)            for how many seconds by the clock, any unless given here or there
-  (:parameters (p form)...)  parameters other than the manual's; what is set outside is not seen
-  (:clean)                   no noise, but where :parameters and what varies say so. (With noise in
-                             perception give NO-SENSOR-ERROR* the value NIL.)
-  (:thinking mode)           how much time thinking costs, see SET-THINKING; :FREE unless given
-  (:until form)              ticks pass after :run until FORM is true, for what continuations do
-  (:success form)            whether the trial succeeded, asked at its end; see TRIAL-VALUES. If
-                             only :run says so, it is a failure with the reason only-believed
-  (:measure (name form)...)  what is measured at its end: numbers, T or NIL, symbols, strings, or
-                             :NONE where there is nothing to be measured
-  (:each-tick (name form)...)  what is recorded before the first tick and after each one, plans
-                             included: such values, in a table of their own, series.csv; see
-                             TRIAL-SERIES. The forms must only look: they roll dice of their own,
-                             but whatever else they change, they change in the trial
-Without :success and :until, the values of :run say how the trial went: those of RUN-PLAN what
-became of the plan; the task that BEGIN-PLAN returns what has become of it (unfinished: it is not
-over); else the first one whether it succeeded, and the second, a symbol or string, why not. It is a
-failure, deadlock, if a plan that was begun waits for what can never come. See RUN-EXPERIMENT for
-what is kept. Signals MALFORMED-DEFINITION. Return NAME."
+                             list. Values are numbers, symbols, strings, or lists of these.
+                             (:sobol n (what low high)...) samples N points from ranges instead of
+                             all combinations; so do :latin-hypercube and :random. N may be followed
+                             by :seed and an integer, a range by :integer or :log
+  (:conditions (name (what form)...)...)  named conditions, alone or combined with :vary
+  (:trials n)                trials of each condition; 100 by default; RUN-EXPERIMENT overrides it
+  (:seed n)                  0 by default; trial T has the seed N + T under all conditions
+  (:limit n)                 the most ticks of a trial, 100000 by default
+  (:time-limit n)            the most seconds of real time of a trial, none by default;
+                             RUN-EXPERIMENT overrides it
+  (:parameters (p form)...)  parameters, where not the manual's; your own settings do not count
+  (:clean)                   no noise, except where :parameters and :vary set it. (With noise in
+                             perception set NO-SENSOR-ERROR* to NIL.)
+  (:thinking mode)           the cost of thinking, see SET-THINKING; :FREE by default
+  (:until form)              after :run, ticks pass until FORM is true; for continuations
+  (:success form)            whether the trial succeeded, evaluated at its end; see TRIAL-VALUES.
+                             If only :run reports success, the trial failed: only-believed
+  (:measure (name form)...)  values at its end: numbers, T or NIL, symbols, strings, or :NONE for
+                             no value
+  (:each-tick (name form)...)  such values before the first tick and after each tick, once plans
+                             have run; kept in series.csv, see TRIAL-SERIES. The forms must only
+                             read. They have their own random numbers; any other change that they
+                             make affects the trial
+Without :success and :until the values of :run decide: those of RUN-PLAN by the plan's outcome; the
+task that BEGIN-PLAN returns by its outcome (unfinished: it has not ended); otherwise the first
+value is true for success, and the second, a symbol or string, is the reason. If a plan started by
+BEGIN-PLAN waits for something that can never happen, the trial failed: deadlock. RUN-EXPERIMENT
+tells what is kept."
   (let ((definition (title "defexperiment" name)))
     (multiple-value-bind (clauses documentation)
         (if (stringp (first clauses))

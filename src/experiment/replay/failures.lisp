@@ -65,11 +65,12 @@ names; all if it is NIL. Signals UNKNOWN-NAME."
 
 (addition trial-failures)
 (defun trial-failures (results &optional condition)
-  "Return what went wrong in RESULTS (results, an experiment that has been run here, or the name of
-a directory), or in those of CONDITION, a string or symbol that is a part of its name: a list of
-plists :condition :outcome :reason :error :count :share (of the condition's trials) :trials (their
-numbers), in the order of conditions and then of counts. Errors in code that let its trial go on
-count, too. REPLAY-TRIAL opens one. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
+  "Return what went wrong in RESULTS: results, an experiment that was run here, or the name of a
+directory. CONDITION, a string or symbol, limits it to conditions with that in their names. The
+value is a list of plists :condition :outcome :reason :error :count :share (of the condition's
+trials) :trials (their numbers), ordered by condition, then by count. Errors in code that let its
+trial continue count, too. REPLAY-TRIAL opens a trial. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT,
+DAMAGED-TABLE."
   (check-argument trial-failures condition (typep condition '(or string symbol))
                   "a string or symbol, or NIL")
   (loop for sample in (samples-meant (existing-results results) condition)
@@ -157,10 +158,10 @@ if not all of them are there."
 (addition trial-series)
 (defun trial-series (results condition trial)
   "Return what the clause :each-tick has recorded of TRIAL, a number, of CONDITION in RESULTS: a
-list of lists (tick value...), the values in the order of the clause: numbers, T, NIL, strings, and
-:NONE where there was nothing; () if the trial's time was up. RESULTS are results that are in a
+list of lists (tick value...), the values in the order of the clause. Values are numbers, T, NIL,
+strings, and :NONE for no value. Return () if the trial timed out. RESULTS are results kept in a
 directory, an experiment that was run with one, or the directory's name. CONDITION is its number,
-from 1, its name, or a part of that. The whole of series.csv is read each time. Signals MISUSE (no
+from 1, its name, or a part of that. Each call reads all of series.csv. Signals MISUSE (no
 directory, no such file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
   (check-argument trial-series trial (and (integerp trial) (<= 0 trial +largest+))
                   "the number of a trial; they count from 1")

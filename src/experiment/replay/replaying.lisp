@@ -5,17 +5,17 @@
 (export '(run-again call-aside trial-words *trial-replayed* await-time row-of-trial
           row-differences measured))
 
-;;; Workers run trials unseen, in threads of their own. Here a trial is run where people see what it
-;;; says and can stop it between two ticks. It goes the same way, as it finds what it would find in
-;;; a worker: values as they are at top level, where this thread has others bound. Whoever looks at
-;;; it does so aside: with the reader, printer and dice that he had outside, and the debugger.
+;;; Workers run trials in threads of their own, without output. Here a trial runs where you see its
+;;; output and can stop it between two ticks. It takes the same course, as variables have their
+;;; top-level values as in a worker, whatever this thread has bound. Functions that look at the
+;;; trial are called aside: with the reader, printer and dice from outside, and the debugger.
 
 (defparameter *surroundings*
   (list *lisps-dice*
         '*package* '*readtable* '*read-default-float-format* '*read-base* '*print-base*
         '*print-radix* '*print-case* '*print-pretty* '*print-readably* '*print-escape*
         '*print-circle* '*print-length* '*print-level* '*print-array* '*print-gensym* '*asker*)
-  "Variables that are one thing for a trial and another for who looks at it.")
+  "Variables with one value for a trial and another for functions that look at it.")
 
 (defstruct (outside (:constructor make-outside (values hook)) (:copier nil))
   "What *SURROUNDINGS* and the debugger's hook are outside of a trial."
@@ -25,8 +25,8 @@
 (defvar *outside* nil "That of the trial that is run again here, or NIL.")
 
 (defun call-aside (function)
-  "Call FUNCTION, of who looks at the trial that is run again here. What it sets of *SURROUNDINGS*
-stays so for him. What goes wrong in it is no error of the trial's."
+  "Call FUNCTION, which looks at the trial that is run again here, aside: it sees its own values of
+*SURROUNDINGS* and keeps what it sets of them. Its errors are no errors of the trial."
   (let ((outside *outside*))
     (progv *surroundings* (outside-values outside)
       (let ((*aside-p* t))
@@ -42,8 +42,8 @@ stays so for him. What goes wrong in it is no error of the trial's."
       (mapc #'set *surroundings* (outside-values *outside*)))))
 
 (defun call-as-in-worker (function)
-  "Call FUNCTION with the variables of simulations as threads find them. What enters a debugger
-where nobody is to answer it is an error of the trial."
+  "Call FUNCTION with the variables of simulations as threads find them. Entering a
+debugger without a user is an error of the trial."
   (progv *simulation-variables* (mapcar #'global-value *simulation-variables*)
     (let ((*asker* nil))
       (answering-debugger ((lambda (condition somebody-p)
@@ -100,7 +100,7 @@ result where the trial has ended, before its simulation is gone. Return the resu
       (error (condition) (warning-set (text-of-condition condition))))))
 
 (defun paced-gate (rate)
-  "Return a gate by which RATE ticks a second pass, for somebody to see."
+  "Return a gate by which RATE ticks a second pass."
   (let ((due nil))
     (lambda (simulation)
       (unless due
@@ -240,23 +240,23 @@ result, whether it was stopped, and its journal, if JOURNAL is true."
 (addition replay-trial)
 (defun replay-trial (experiment condition trial
                      &key until (then (constantly nil)) rate step journal trace directory)
-  "Run TRIAL, a number, of CONDITION of EXPERIMENT again: the very run that its row is of, its plans
-included. CONDITION is a number from 1, or what it is called as far as that is unambiguous. It runs
-in this thread and in the open: what it writes is seen, PRINT-PLANS, WHY and *BREAK-ON-USER-ERROR*
-do what they do elsewhere. THEN, a function of no arguments, is called where the trial has ended, or
-is stopped, before its simulation is gone: to look around, as by SAVE-PICTURE.
+  "Run TRIAL, a number, of CONDITION of EXPERIMENT again: the same run as that of its row, plans
+included. CONDITION is a number from 1, or an unambiguous part of its name. The trial runs in this
+thread: you see what it writes, and PRINT-PLANS, WHY and *BREAK-ON-USER-ERROR* work as usual. THEN,
+a function of no arguments, is called when the trial has ended or is stopped, while its simulation
+still exists, for example to call SAVE-PICTURE.
 
   :until TICK   stops it there, in the middle of what it does
   :rate R       passes R ticks a second, or :FREE, and opens a display if there is one
-  :step T       asks before each tick whether it may pass; a function is called there instead, with
-                the simulation, and stops the trial if it returns :STOP
-  :trace T      lets plans keep a trace, for WHY and SAVE-PLAN-TIMELINE
+  :step T       asks before each tick whether it may pass; a function is called instead, with the
+                simulation, and stops the trial if it returns :STOP
+  :trace T      keeps a trace of plans, for WHY and SAVE-PLAN-TIMELINE
   :journal T    keeps a journal, for REPLAY and SAVE-ANIMATION; a name of a file saves it there
-  :directory D  compares what comes of it with its row in D
+  :directory D  compares the result with its row in D
 
 Return a plist: :outcome (\"success\", \"failure\", \"limit\", \"error\"; NIL if it was stopped),
 :reason, :ticks, :digest (as in the row), :measures (lists (name value)), :series (what :each-tick
-says, lists (tick value...)), :error, :journal, and :differences, in words, from the row. Signals
+recorded, lists (tick value...)), :error, :journal, and :differences from the row, in words. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."
   (check-replay trial until then step journal directory)
   (when rate (check-rate rate))

@@ -90,8 +90,8 @@ ticks, :TEXTS of all else, and :NOTHING of what was never measured, under any co
 (defvar *statistics* '() "Lists (kind function . options), in order of definition.")
 
 (defmacro define-statistic (kind (values confidence) (&rest options) &body body)
-  "Let BODY return, as three values, what estimates of KIND say of VALUES, a vector that is not
-empty: a value and the bounds of its interval at CONFIDENCE; any may be NIL. OPTIONS are
+  "Define estimates of KIND: BODY returns three values for VALUES, a vector that is not empty: the
+value and the bounds of its interval at CONFIDENCE; any may be NIL. OPTIONS are
   :heading text   what tables of results add to the name of what was measured;
   :interval text  what pictures call its intervals;
   :beside kind    each estimate of that kind has one of this, too, in a column beside its own.
@@ -213,16 +213,19 @@ TEST."
 
 (addition summarize-results)
 (defun summarize-results (results)
-  "Return what came of an experiment, of which RUN-EXPERIMENT, READ-RESULTS or MERGE-RESULTS has
-returned RESULTS: a list of summaries, one for each condition, in the table's order. Success is a
-rate of all trials, with Wilson's interval; what broke off with an error did not succeed. Ticks are
-the median of the trials that succeeded, with its interval by ranks. What was measured is a rate if
-it was always true or false; the mean, with Student's interval, if there are numbers in it, without
-what else there is besides; else texts, with how often there are such. What was :NONE, or not
-measured as an error came before, does not count. Intervals have a confidence of 95 %; if trials
-were added until they were narrow, that of the look at which a condition stopped, so that the
-intervals of a condition at all its looks together err in 5 of 100 runs at most. Each condition has
-that confidence by itself; that none of a table's intervals errs has less."
+  "Return a list of summaries of RESULTS (see RUN-EXPERIMENT, READ-RESULTS, MERGE-RESULTS), one for
+each condition, in the table's order.
+
+  success   the rate of all trials, with Wilson's interval; a trial with an error did not succeed
+  ticks     the median of the trials that succeeded, with its interval by ranks
+  measures  a rate, if always true or false; else the mean of the numbers, if any, with Student's
+            interval, leaving out anything else; else texts, with their counts. :NONE, and measures
+            that an error prevented, do not count
+
+Intervals have a confidence of 95 %. If trials were added until they were narrow, it is that of the
+look at which the condition stopped: then the intervals of a condition at all its looks together are
+wrong in at most 5 of 100 runs. That holds for each condition by itself, not for all intervals of a
+table together."
   (check-argument summarize-results results (results-p results) "results")
   (let* ((samples (results-samples results))
          (names (results-measures results))

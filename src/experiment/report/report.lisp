@@ -288,12 +288,11 @@ is none of them."
 
 (addition print-results)
 (defun print-results (results &optional (stream *standard-output*))
-  "Write to STREAM, in lines of 100 characters at most, what came of an experiment, of which RESULTS
-are: for each condition how often it succeeded, how often it came to the limit of ticks or broke off
-with an error if it did, how many ticks success took, and all that was measured, as
-SUMMARIZE-RESULTS says; below that why trials failed and what errors there were, with an example
-each, and which intervals these are. Rows of conditions that the experiment no longer has, as far as
-that is known, make a table of their own. Return RESULTS."
+  "Write RESULTS to STREAM, in lines of at most 100 characters, and return them. For each condition:
+how often it succeeded, how often it reached the limit of ticks or had an error (if it did), the
+ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below: why trials failed and which
+errors there were, with an example of each, and which intervals these are. Rows of conditions that
+the experiment no longer has, as far as that is known, make a table of their own."
   (check-argument print-results results (results-p results) "results")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))
                   "an output stream")

@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.experiment)
 
-;;; A trial has its row, or has not; a second start runs those that have none. So an experiment that
-;;; was stopped, by whatever, is gone on with by starting it again. Rows come as trials end, and are
-;;; put in order at the end, so that the table is the same whoever ran what when.
+;;; A second start runs the trials that have no row. So a stopped experiment is continued by
+;;; starting it again. Rows are written as trials end and sorted at the end, so the table is the
+;;; same whatever ran which trial when.
 
-;;; What is there already.
+;;; Rows that exist already.
 
 (defun samples-among (conditions &rest tables)
   "Return what TABLES have for CONDITIONS, each once, those of the first table first."
@@ -38,11 +38,10 @@ Signals MISUSE for rows of other code."
 
 ;;; Looking at intervals.
 
-;;; Whoever looks at an interval again and again, and stops when he likes it, has more confidence
-;;; than he may. So it is looked at after fixed numbers of trials only, 50, 100, 200 and so on, and
-;;; the K-th look has the share 1 / (K (K + 1)) of the error that is allowed: all looks together
-;;; have no more than the whole (Bonferroni's inequality; the shares add up to 1). An interval that
-;;; was decided by is so the one that can be stated.
+;;; If you look at an interval again and again, and stop when you like it, it is too optimistic. So
+;;; it is computed only after fixed numbers of trials: 50, 100, 200 and so on. The K-th look has the
+;;; share 1 / (K (K + 1)) of the allowed error. The shares add up to 1, so all looks together have
+;;; no more than the whole (Bonferroni's inequality). The interval at the last look can be reported.
 
 (defconstant +first-look+ 50 "After how many trials intervals are looked at first.")
 
@@ -166,25 +165,24 @@ Signals MISUSE for rows of other code."
 (define-with-keywords run-experiment (name &key trials (workers (processors)) directory until shard
                                            (time-limit nil time-limit-p)
                                            (stream *standard-output*))
-  "Run the experiment NAME: TRIALS trials of each condition, or as many as it says, by WORKERS
-threads. Return the results; see PRINT-RESULTS, SAVE-RESULT-PICTURES and COMPARE-CONDITIONS.
+  "Run TRIALS trials of each condition of the experiment NAME, by default as many as it says, in
+WORKERS threads. Return the results, for PRINT-RESULTS, SAVE-RESULT-PICTURES, COMPARE-CONDITIONS.
 
-The table is kept in DIRECTORY, made if there is none: in rows.csv, a row for each trial; what
-differs from run to run in machine.csv; how to repeat it in experiment.txt; and what :each-tick
-records in series.csv, a line for each tick of each trial; see TRIAL-SERIES. Trials that have a row
-there are not run again, so that what was stopped is gone on with, and trials are added, by
-starting it again. Rows of other code or another configuration signal MISUSE. Without a DIRECTORY
-nothing is kept but what is returned.
+DIRECTORY, created if necessary, keeps the table: rows.csv, a row for each trial; machine.csv, what
+differs from run to run; experiment.txt, how to repeat it; series.csv, what :each-tick records, a
+line for each tick of each trial, see TRIAL-SERIES. Trials that have a row there are not run again.
+So call it again to continue a stopped run or to add trials. Rows of other code or another
+configuration signal MISUSE. Without DIRECTORY nothing is kept except the value.
 
-With UNTIL, a width, trials are added until the interval of each condition's success is at most that
-wide: after 50, 100, 200 ... trials, at most TRIALS, or a million. SHARD (index . count) runs the
-trials whose numbers divided by COUNT leave INDEX only, to be put together by MERGE-RESULTS. STREAM,
-or NIL, is told how far it has come, and which trial takes much longer than others.
+UNTIL, a width, adds trials until the interval of each condition's success is at most that wide. It
+looks after 50, 100, 200 ... trials, at most TRIALS or a million. SHARD (index . count) runs only
+the trials whose numbers divided by COUNT leave INDEX; MERGE-RESULTS puts shards together. STREAM,
+or NIL, receives the progress, and names a trial that takes much longer than others.
 
-TIME-LIMIT is how many seconds by the clock a trial may take; what the experiment says unless given,
-and NIL for any time. A trial that takes longer is ended: its outcome is timeout, it did not
-succeed, and it is not run again. What lasts so long depends on the machine, so give far more than
-trials need. A trial that ends its own thread is an error of that trial.
+TIME-LIMIT is the most seconds of real time that a trial may take, by default what the experiment
+says; NIL for no limit. A trial that takes longer is ended. Its outcome is timeout, which is no
+success, and it is not run again. Machines differ, so allow far more time than trials need. A trial
+that ends its own thread is an error of that trial.
 
 An error in a trial is a row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE and DAMAGED-TABLE."
   (let* ((experiment (find-experiment name))

@@ -24,7 +24,7 @@
   "For how many fifths of a second threads that are to end may go on with what they do.")
 
 (defun end-workers (channel left)
-  "Let LEFT threads end that have not answered by CHANNEL, or end them."
+  "Wait a moment for LEFT threads that have not answered by CHANNEL to end, then end them."
   (loop repeat +patience+
         while (plusp left)
         do (setf left (await-result channel left)))
@@ -70,7 +70,7 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
                                (stream terminal-p total workers
                                 &aux (under-way (make-array (1+ workers) :initial-element nil))))
                      (:copier nil))
-  "How far an experiment has come, of TOTAL trials, and who is told so."
+  "How far an experiment of TOTAL trials has come, and where that is reported."
   (stream nil :read-only t)
   (terminal-p nil :read-only t)
   (total 0 :type integer)
@@ -196,7 +196,7 @@ STOPPING-P returns true."
 
 ;;;; Which trials are to be run
 
-;;; Trials come by number, and for each number all conditions, so that whoever stops early has as
+;;; Trials come by number, and for each number all conditions, so a run stopped early has equally
 ;;; many of each. Workers take one after the other from the queue. A shard (index . count) has the
 ;;; trials whose numbers leave INDEX when divided by COUNT; (0 . 1) has all.
 
@@ -280,5 +280,5 @@ those under way are given a moment."
   (call-by-workers (lambda (worker) (work-off experiment queue store progress worker))
                    workers
                    :pulse (lambda () (tell-progress progress))
-                   ;; Nobody gets another trial.
+                   ;; No trial is started any more.
                    :stop (lambda () (setf (queue-closed-p queue) t))))

@@ -121,7 +121,7 @@ DAMAGED-TABLE."
       (close-table (store-machine store)))))
 
 (defun close-table (stream)
-  "Close STREAM, to a table, or NIL. What cannot be written any more is no news by now."
+  "Close STREAM, to a table, or NIL. Errors are ignored: they were reported before."
   (when stream
     (ignore-errors (close stream))))
 

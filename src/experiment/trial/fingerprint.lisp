@@ -201,7 +201,7 @@ empty table count as no data, since they often stand where a table or structure 
   "Numbers of files by name: those that a saved Lisp was made of may be gone when it runs.")
 
 (defvar *digests-settled-p* nil
-  "True in a Lisp that was saved with its experiments: what becomes of their files is no matter.")
+  "True in a Lisp that was saved with its experiments: later changes of their files do not count.")
 
 (defun short-name (file)
   (name-in-directory (native-path file)))
@@ -320,8 +320,7 @@ a file is not as it was loaded, and what the making of its worlds signals."
         collect (prepare-condition experiment condition)))
 
 (defun settle-fingerprints ()
-  "Let what the experiments' files say now be what their fingerprints say from now on, whatever
-becomes of the files: for a Lisp that is saved with all that is in it. Signals MISUSE if a file is
-not as it was loaded."
+  "Fix the fingerprints of the experiments' files as they are now, even if the files change later,
+for a Lisp that is saved with its contents. Signals MISUSE if a file is not as it was loaded."
   (mapc #'prepare-experiment (all-experiments))
   (setf *digests-settled-p* t))

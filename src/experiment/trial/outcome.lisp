@@ -102,7 +102,7 @@ table cannot have it."
     (value-text value)))
 
 (defvar *aside-p* nil
-  "True while somebody looks at a trial that stands still: what goes wrong is not the trial's.")
+  "True while a stopped trial is inspected: errors are then not the trial's.")
 
 (defun call-until-error (function)
   "Call FUNCTION, which is not to end this Lisp. Return the condition with which it broke off, or
@@ -197,14 +197,13 @@ one; of the first time SAMPLER keeps the error."
                         sampler tick (simulation-world simulation))))
 
 (defun drop-later-samples (sampler tick)
-  "Let SAMPLER forget samples of ticks after TICK: those that the trial has been rewound over."
+  "Drop SAMPLER's samples of ticks after TICK, over which the trial has been rewound."
   (loop while (and (sampler-samples sampler)
                    (> (first (first (sampler-samples sampler))) tick))
         do (pop (sampler-samples sampler))))
 
 (defun sample-once (sampler simulation)
-  "Let SAMPLER have a sample of SIMULATION, unless it has one of this tick already or the tick is
-not over."
+  "Add a sample of SIMULATION to SAMPLER, unless it has one of this tick or the tick is not over."
   (let ((tick (simulation-tick simulation)))
     (when (zerop (timeline-phase (simulation-timeline simulation)))
       (drop-later-samples sampler tick)
