@@ -363,7 +363,7 @@ describes a slot."
                (face-package (first (basics::mark-faces (basics::find-mark symbol))))))
 
 (test public.readers-only-read
-  "Whoever could set one would change a run behind the back of its journal."
+  "A user who could set one would change a run without an entry in its journal."
   (let ((settable '()) (readers 0))
     (dolist (symbol (append (base:public-symbols :ars) (base:public-symbols :nisp)))
       (let ((shown (users-symbol symbol)))

@@ -206,7 +206,7 @@
     (is (null (warnings-of-run '(driver:run-plan 'anything))))))
 
 (test programs.that-end-before-their-commands-have-are-told
-  "What a live robot was asked for, also if it was stopped; but not what goes on for ever."
+  "Commands to a live robot, also if it was stopped, except endless ones."
   (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* nil))
     (run:simulator 'rover :display nil :rate :free)
     (let ((world (run:simulation-world time:*simulation*)))

@@ -60,7 +60,7 @@
 ;;; Clauses for failures.
 
 (defmacro failure-told (&body plan)
-  "Return what is written of a run in which PLAN is carried out."
+  "Return the output of a run of PLAN."
   `(rover-writes () (driver:run-plan (plan-of ,@plan))))
 
 (test failures.tell-of-clauses-for-classes-like-theirs

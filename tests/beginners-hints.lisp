@@ -214,8 +214,8 @@
 ;;; Kickers and attributes of things.
 
 (defun told-of-run (&rest forms)
-  "Return what two runs of a robot write in a new map, whose thing PAIL has the attribute :level and
-the kicker IN-USE, after the definitions FORMS; in the second run nothing is new."
+  "Return the output of two runs of a robot after the definitions FORMS. The map is new; its thing
+PAIL has the attribute :level and the kicker IN-USE. The second run has no new definitions."
   (with-own-definitions
     (mapc #'eval forms)
     (eval '(world:defmap loft (10 10) (obj (pail :kickers (in-use)) (5 5) ((:level 3)))))

@@ -206,7 +206,7 @@
 ;;; Robots of the top level, named in threads of a WITH-SIMULATION.
 
 (defun told-in-thread (function)
-  "Call FUNCTION in another thread, \"helper\". Return what it said there, or the error."
+  "Call FUNCTION in another thread, \"helper\". Return its output, or the error."
   (let ((text ""))
     (base:join-thread
      (base:start-thread (lambda ()

@@ -142,7 +142,7 @@
 ;;; The prompt.
 
 (defun typed (&rest lines)
-  "Return what a session writes in which LINES are typed."
+  "Return the output of a session in which LINES are typed."
   (joined (apply #'type-batch lines)))
 
 (test prompt.says-what-is-a-plan-and-what-is-a-line

@@ -4,7 +4,7 @@
 
 (in-suite beginners)
 
-;;; Kickers that tell plans something.
+;;; Kickers that set fluents of plans.
 
 (defvar *bell* (rpl:create-fluent 'bell))
 

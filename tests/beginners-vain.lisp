@@ -86,7 +86,7 @@
                                    ((rpl:seq (rpl:wait-for robot) (return)) ,react))
           do (is (not (search "comes first" (apply #'warnings-of-policy policy body)))))))
 
-;;; Handlers of what is no failure.
+;;; Handlers for conditions that are not failures.
 
 (test handlers.want-their-clauses-in-a-list
   (is-true (complains-p '(rpl:def-interp-proc careful-one ()
@@ -196,10 +196,10 @@
                     (dotimes (i 4) (command:robot-turn rover 1 (constantly nil)) (run:run-ticks 3))
                     (dotimes (i 4) (command:robot-turn rover 1/10 nil) (run:run-ticks 30))))))
 
-;;; Commands that come to nothing.
+;;; Commands without effect.
 
 (defmacro told-of-ends (&body body)
-  "Return what is written to the error output when a plan that does BODY has run."
+  "Return what a run of a plan with BODY writes to the error output."
   `(rover-writes () (driver:run-plan (plan-of ,@body))))
 
 (defun movement-error () (rpl:fluent-value driver:robot-movement-error*))

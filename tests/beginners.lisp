@@ -5,8 +5,7 @@
 (def-suite* beginners :in ars-magna)
 
 (defun beginners-complaint (form)
-  "Return what the error says that FORM signals when it is evaluated, or an empty text; warnings are
-muffled."
+  "Evaluate FORM. Return the text of its error, or an empty text. Warnings are muffled."
   (handler-bind ((warning #'muffle-warning))
     (handler-case (let ((*error-output* (make-broadcast-stream))) (eval form) "")
       (error (condition) (text-of condition)))))

@@ -11,11 +11,11 @@
   (uiop:subpathname root (format nil "~(~A~)/" name)))
 
 (defun child-file (kind name root)
-  "Return the path of what the child NAME leaves: its OUTPUT or its VALUE, as KIND says."
+  "Return the path of a file of the child NAME: its output or its value, by KIND."
   (uiop:subpathname root (format nil "~(~A.~A~)" name kind)))
 
 (defun redirect (descriptor file flags)
-  "Let DESCRIPTOR, a number, be FILE from now on in this process, and in those that it starts."
+  "Redirect the file descriptor DESCRIPTOR, a number, to FILE in this process and those it starts."
   (let ((opened (sb-posix:open (uiop:native-namestring file) flags #o600)))
     (sb-posix:dup2 opened descriptor)
     (sb-posix:close opened)))
@@ -35,7 +35,7 @@
 
 ;; No handler here takes a condition: what tests make of one must not depend on who runs them.
 (defun live-as-child (function name root)
-  "Call FUNCTION, write down what it returns, and end this process."
+  "Call FUNCTION, write its value to a file, and end this process."
   (unwind-protect
        (let ((*standard-output* uiop:*stdout*) (*error-output* uiop:*stderr*))
          (redirect-child name root)
@@ -54,8 +54,8 @@
     process))
 
 (defun child-value (name root)
-  "Return what the function of the child NAME returned, or NIL if it never did. Print what it
-printed."
+  "Return the value of the function of the child NAME, or NIL if it did not return. Print its
+output."
   (let ((output (child-file :output name root))
         (value (child-file :value name root)))
     (when (probe-file output) (write-string (uiop:read-file-string output)))

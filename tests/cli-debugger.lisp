@@ -5,7 +5,7 @@
 (def-suite* cli-debugger :in ars-magna)
 
 (defun type-at-terminal (&rest lines)
-  "Type LINES as somebody who sits at a terminal would. Return what is written, a list of lines."
+  "Type LINES as a user at a terminal would. Return the output, a list of lines."
   (let* ((output (make-string-output-stream))
          (input (make-instance 'cli::typed-text :by-hand-p t
                                :octets (make-string-input-stream (joined lines))))
@@ -165,7 +165,7 @@
 (defvar *breaking-said* nil "The queue of its messages.")
 
 (defun break-elsewhere ()
-  "Let another thread break, and wait until it asks how to go on."
+  "Break in another thread, and wait until it asks how to continue."
   (setf *went-on* '()
         *breaking-said* (base:make-message-queue)
         *breaking* (base:start-thread (lambda ()
@@ -187,7 +187,7 @@
     (is-true (written-p "5" written))))
 
 (defun want-value-elsewhere ()
-  "Let another thread break, where one can give it a value, and wait until it asks how to go on."
+  "Break in another thread, with a restart that takes a value, and wait until it asks."
   (setf *went-on* '()
         *breaking* (base:start-thread
                     (lambda ()
@@ -212,7 +212,7 @@
     (is (equal '(44) (goes-on-with "(invoke-restart 'use-value 44)")))))
 
 (defun menus-and-waits (written)
-  "Return, of the lines WRITTEN, those that tell of a break, in few words."
+  "Return the lines of WRITTEN that report a break, shortened."
   (loop for line in written
         when (search "*BREAK* -> " line)
           collect (list (if (search "there" line) :there :typed)
@@ -232,7 +232,7 @@
     (is-true (written-p "5" written))))
 
 (defun break-twice-elsewhere ()
-  "Let two other threads break, one after the other."
+  "Break in two other threads, one after the other."
   (break-elsewhere)
   (let ((first *breaking*))
     (setf *breaking* (base:start-thread
@@ -256,7 +256,7 @@
     (is-true (written-p "5" written))))
 
 (defun break-elsewhere-and-wait ()
-  "Let another thread break, and wait until it has gone on, as RUN-PLAN does for a plan."
+  "Break in another thread, and wait until it has continued, as RUN-PLAN waits for a plan."
   (break-elsewhere)
   (loop with never = (base:make-semaphore "never")
         repeat 6000                     ; a minute, which only a hang reaches
@@ -333,7 +333,7 @@
 ;;; Lisp's own debugger, or an editor's.
 
 (test debuggers.keep-slips-that-are-typed-there
-  "They come up in the debugger, as in any Lisp, not in the handlers around what has broken."
+  "They come up in the debugger, as in any Lisp, not in the handlers around the break."
   (let ((base:*break-on-user-error* t) (seen '()))
     (labels ((ask (condition hook)
                (declare (ignore hook))

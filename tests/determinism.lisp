@@ -146,7 +146,7 @@
       (is (every (lambda (count) (= 1 count)) answers)))))
 
 (test parallel.simulations-do-not-touch
-  "Two at once, each in its thread, give what they give alone."
+  "Two runs at once, each in its thread, have the same results as alone."
   (flet ((digest (seed)
            (with-rover (:seed seed)
              (wander rover (base:make-dice seed))
@@ -169,7 +169,7 @@
         :key #'robot:robot-name :test #'base:same-name-p))
 
 (defun pace-about (robot count)
-  "Let ROBOT turn and drive for ever, by a fixed rule."
+  "Make ROBOT turn and drive for ever, by a fixed rule."
   (labels ((next (&rest ignore)
              (declare (ignore ignore))
              (incf count)
@@ -196,7 +196,7 @@ knowingly.")
 ;;; What happens in the shipped worlds, whatever a digest may cover.
 
 (defun look-and-pace-about (robot)
-  "Let ROBOT turn, drive, look and sense for ever, by a fixed rule."
+  "Make ROBOT turn, drive, look and sense for ever, by a fixed rule."
   (let ((count 0) (camera (robot:robot-camera robot 0)))
     (labels ((next (&rest ignore)
                (declare (ignore ignore))
@@ -250,7 +250,7 @@ knowingly.")
         (is (= digest (nth-value 1 (run:replay (end-journal simulation)))))))))
 
 (test journal.repeats-what-plans-did
-  "A shipped plan, with its odometers, on the noisy office floor; the journal knows no plans."
+  "A shipped plan, with its odometers, on the noisy office floor; journals have no plans."
   (let (digest journal)
     (run:call-with-simulation
      (lambda ()

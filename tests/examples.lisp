@@ -8,8 +8,9 @@
 
 (defparameter *pages-run-elsewhere*
   (append *plan-pages*
-          '("README.md" "src/README.md" "src/experiment/README.md" "src/ways/README.md"
-            "src/floors/README.md" "worlds/tutorial/README.md" "cli/README.md"))
+          '("README.md" "worlds/how-to/extend/README.md" "src/experiment/README.md"
+            "src/ways/README.md" "src/floors/README.md" "worlds/tutorial/README.md"
+            "cli/README.md"))
   "The pages whose Lisp other suites run.")
 
 (defun all-readmes ()
@@ -24,7 +25,7 @@
   (set-difference (all-readmes) *pages-run-elsewhere* :test #'string=))
 
 (defun call-forgetting-packages (function)
-  "Call FUNCTION in ARS-USER; forget what is defined there, and the packages that it makes."
+  "Call FUNCTION in ARS-USER; undo its definitions afterwards, and delete the packages it makes."
   (let ((packages (list-all-packages))
         (*package* (find-package :ars-user))
         (*readtable* *readtable*)
@@ -58,7 +59,7 @@
   "The pages whose blocks of text are sessions with DOT, in a world without noise.")
 
 (defun check-session (lines page)
-  "Check that what has been typed in LINES, of PAGE, is answered as they say."
+  "Check that the answers to the typed lines among LINES, of PAGE, are as shown there."
   (let* ((typed (remove nil (mapcar #'typed-line lines)))
          (answers (remove nil (mapcar #'answered-line lines)))
          (written (apply #'type-to 'ars-worlds:dot typed)))

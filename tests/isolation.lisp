@@ -41,7 +41,7 @@
   (loop for symbol being the present-symbols of package collect symbol))
 
 (defun call-keeping-names (function package)
-  "Call FUNCTION and let PACKAGE know afterwards just the names that it knew before."
+  "Call FUNCTION. Afterwards PACKAGE has the same symbols as before."
   (let ((names (names-in package)))
     (unwind-protect (funcall function)
       (dolist (new (set-difference (names-in package) names)) (unintern new package))
@@ -55,7 +55,7 @@
 
 ;; A run whose plans were not ended would leave them with the robot, to end with a later run of it.
 (defun stop-run (timeline)
-  "Stop who paces TIMELINE. If plans take part in its run, end that, and so them."
+  "Stop the clock of TIMELINE. If plans take part in its run, end the run, and so the plans."
   (time:stop-pacing timeline)
   (let ((run (time:timeline-run timeline)))
     (when (and run (run:simulation-participants run))
@@ -77,14 +77,14 @@
 ;;; All of it.
 
 (defun call-in-own-worlds (function)
-  "Call FUNCTION. What it defines is forgotten, what it runs is stopped, and the worlds are new."
+  "Call FUNCTION. Afterwards undo its definitions, stop its runs, and renew the worlds."
   (unwind-protect (base:with-own-definitions ()
                     (unwind-protect (funcall function)
                       (stop-all)))
     (mapc #'renew-world (resident-worlds))))
 
 (defun call-isolated (function)
-  "Call FUNCTION, a test, so that it leaves nothing to the next one. Return its value."
+  "Call FUNCTION, a test, and undo all that it changed. Return its value."
   (let ((base:*message-queue* (base:make-message-queue)))
     (call-keeping-names
      (lambda ()

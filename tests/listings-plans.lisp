@@ -5,8 +5,8 @@
 (in-suite listings)
 
 (defun run-own (name &rest arguments)
-  "Run the listings' plan called NAME on VALET. Return its value, or failure, and state; what it
-prints goes nowhere."
+  "Run the listings' plan called NAME on VALET. Return its value, or failure, and state. Its output
+is discarded."
   (let ((*standard-output* (make-broadcast-stream)))
     (apply #'driver:run-plan (own name) arguments)))
 
@@ -19,7 +19,7 @@ prints goes nowhere."
 ;;; D.2: scanning.
 
 (defun scan-by-plan (spec)
-  "Let VALET's camera 0 scan for SPEC. Return the designator that the plan hands out, and state."
+  "Scan for SPEC with VALET's camera 0. Return the plan's designator, and its state."
   (let* ((fluent (rpl:create-fluent 'desig))
          (state (nth-value 1 (run-own 'rpl-scan-for-object 0 :non-local spec fluent))))
     (values (rpl:fluent-value fluent) state)))
@@ -65,11 +65,11 @@ prints goes nowhere."
   `(with-listings ("d2-rpl-scan-for-object" "d4-rpl-go-to-object") ,@body))
 
 (defun go-by-plan (timeout)
-  "Let VALET go to what is red. Return the plan's value and state."
+  "Make VALET go to a red thing. Return the plan's value and state."
   (run-own 'rpl-go-to-object 0 '((:color red)) timeout))
 
 (test rpl-go-to-object.goes-there
-  "While it drives ahead it scans; its value is what the thing looked like."
+  "It scans while it drives ahead. Its value describes the thing as seen."
   (with-plans-to-go ()
     (loop for (x y) in '((14.5 14.5) (8.5 13.5) (2.5 12.5))
           do (with-valet (:clean t)
@@ -81,7 +81,7 @@ prints goes nowhere."
                    (is (near .3 (robot:robot-speed valet) 1d-6))))))))
 
 (test rpl-go-to-object.fails-where-there-is-nothing
-  "When it has driven as far as it was told to."
+  "After it has driven the distance given."
   (with-plans-to-go ()
     (with-valet (:clean t)
       (put-ball 14.5 14.5 'green)
@@ -89,7 +89,7 @@ prints goes nowhere."
       (is (near (+ 6.5 (* 20 .3)) (robot:robot-x valet) 1d-4)))))
 
 (test rpl-go-to-object.fails-when-the-thing-is-gone
-  "Its policy hears that the track was lost while the robot has not arrived."
+  "Its policy detects that the track is lost before the robot has arrived."
   (with-plans-to-go ()
     (with-valet (:clean t)
       (let* ((*standard-output* (make-broadcast-stream))
@@ -102,7 +102,7 @@ prints goes nowhere."
         (is (eq :failed (rpl:task-state task)))))))
 
 (test rpl-go-to-object.arrives-amid-noise
-  "Each run ends; most arrive, and then at what was found, if that was there."
+  "Each run ends. Most arrive, at the thing found if there was one."
   (with-plans-to-go ()
     (let ((states (loop for seed from 1 to 60
                         collect (with-valet (:seed seed :parameters '((false-thing-prob* 0)))
@@ -120,7 +120,7 @@ prints goes nowhere."
   `(with-listings ("d2-rpl-scan-for-object" "d6-rpl-grab-object") ,@body))
 
 (defun grab-by-plan ()
-  "Let VALET grab what is red; return how the plan ended."
+  "Make VALET grab a red thing; return the plan's state."
   (let ((driver:*plan-limit* 5000))
     (nth-value 1 (run-own 'rpl-grab-object 0 0 '((:color red)) 0))))
 
@@ -180,7 +180,7 @@ whether the bin has jammed in the end."
   `(with-listings ("d2-rpl-scan-for-object" "d7-rpl-put-down-object") ,@body))
 
 (defun put-down-by-plan ()
-  "Let VALET put down what is red from bin 0; return how the plan ended."
+  "Make VALET put down the red thing from bin 0; return the plan's state."
   (nth-value 1 (run-own 'rpl-put-down-object 0 0 '((:color red)) 0)))
 
 (defun ball-in-bin ()
@@ -243,7 +243,7 @@ red (.475), and keep track for eight ticks; the hand must hit the bin (.95) and 
   (sqrt (+ (expt (- (robot:robot-x valet) x) 2) (expt (- (robot:robot-y valet) y) 2))))
 
 (defun way-of-outing (ticks speed)
-  "Let VALET go out and come back. Return how that ended, and its distances from home at ticks."
+  "Make VALET go out and come back. Return the plan's state, and the distances from home at ticks."
   (let ((distances '()) (x (robot:robot-x valet)) (y (robot:robot-y valet)))
     (flet ((note (simulation)
              (declare (ignore simulation))
@@ -291,7 +291,7 @@ wall ends that."
 ;;; D.9: all of it.
 
 (defun bring-by-plan (timeout)
-  "Let VALET get what is red and bring it back. Return how that ended."
+  "Make VALET get a red thing and bring it back. Return the plan's state."
   (let ((driver:*plan-limit* 5000))
     (nth-value 1 (run-own 'get-object-and-return 0 0 '((:color red)) 0 timeout))))
 

@@ -28,7 +28,7 @@
 ;;; D.1: scanning.
 
 (defun scan (ticks &key (type :non-local) (spec '((:color red))))
-  "Let camera 0 scan for what SPEC says, for TICKS. Return what the continuation got, each time."
+  "Scan for SPEC with camera 0, for TICKS. Return the arguments of each call of the continuation."
   (mapcar #'rest (call-times ticks (own 'scan-for-object) (valets-camera 0) type spec)))
 
 (test scan-for-object.turns-and-finds
@@ -110,7 +110,7 @@ it does not return."
      (base:dirty-simulation)))
 
 (defun go-to-object (timeout)
-  "Let VALET go to what is red. Return what the continuation got, each time."
+  "Make VALET go to a red thing. Return the arguments of each call of the continuation."
   (let ((calls '()))
     (call-while-live
      (lambda ()
@@ -160,7 +160,7 @@ robot has driven ahead meanwhile."
 ;;; D.5: grasping, and stowing away.
 
 (defun grab ()
-  "Let VALET grab what is red. Return what the continuation got, each time."
+  "Make VALET grab a red thing. Return the arguments of each call of the continuation."
   (mapcar #'rest (call-times 80 (own 'grab-object) (robot:robot-hand valet 0)
                              (valets-camera 0) '((:color red))
                              (robot:robot-storage-bin valet 0))))
@@ -183,8 +183,8 @@ robot has driven ahead meanwhile."
           (command:camera-get-object-designator camera type spec continuation))))
 
 (test grab-object.stows-away-what-it-sees
-  "With a scanner that gives it what it wants. It does not mind that the bin is open. As printed
-the last of the manual's five steps is left out: the hand stays inside the bin, and that open."
+  "With a scanner that returns what it needs. An open bin is no problem. As printed, the last of the
+manual's five steps is missing: the hand stays inside the bin, and the bin open."
   (with-listings ("d5-grab-object")
     (define-scanner)
     (with-valet (:clean t)

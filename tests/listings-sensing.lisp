@@ -119,7 +119,7 @@ also widens the range that has none of its own."
      (normal-probability (/ (- low mean) deviation))))
 
 (defparameter *no-others* '((false-thing-prob* 0) (miss-thing-prob* 0))
-  "Parameters by which what is there is looked at, and nothing else.")
+  "Parameters without missed and false things.")
 
 (test specifications.match-with-noise
   "A colour is read right with .4, and else as any of eight; a size with its deviation, at 4 m."

@@ -51,8 +51,8 @@ returns what came of its checks."
   (format t "~&~%FAILED ~(~A~)~%~A~%" (symbol-name (test-name result)) (failure-reason result)))
 
 (defun report-suite (suite results)
-  "Say what came of the checks of SUITE, and how long it took of what it may. Return how many
-passed, failed and were skipped, a list."
+  "Print the results of SUITE, its seconds and its budget. Return a list of how many checks passed,
+failed and were skipped."
   (multiple-value-bind (good failed skipped) (results-status results)
     (declare (ignore good))
     (let ((passed (- (length results) (length failed) (length skipped))))
@@ -69,7 +69,7 @@ passed, failed and were skipped, a list."
           (remove-if #'within-budget-p suites)))
 
 (defun report-total (counts)
-  "Say what COUNTS, a list of what REPORT-SUITE returns, come to. True if no check has failed."
+  "Print the sums of COUNTS, a list of values of REPORT-SUITE. True if no check has failed."
   (destructuring-bind (passed failed skipped)
       (if counts (apply #'mapcar #'+ counts) '(0 0 0))
     (format t "~&~%~D passed, ~D failed~[~:;~:*, ~D skipped~]~%" passed failed skipped)
@@ -78,7 +78,7 @@ passed, failed and were skipped, a list."
 ;;; All suites.
 
 (defun report-in-turn (suites results-of)
-  "Report SUITES, of whose checks the function RESULTS-OF returns what came. Return their counts."
+  "Report SUITES, whose results the function RESULTS-OF returns. Return their counts."
   (loop for suite in suites
         collect (report-suite suite (funcall results-of suite))))
 
@@ -87,7 +87,7 @@ passed, failed and were skipped, a list."
   (list (report-suite suite (run-suite suite)) (seconds-taken suite)))
 
 (defun report-suite-of-child (suite value)
-  "Note what a child returned that was to run SUITE, its VALUE, or NIL. Return its counts."
+  "Record VALUE, which the child that ran SUITE returned, or NIL. Return its counts."
   (destructuring-bind (&optional (counts '(0 1 0)) (seconds 0)) value
     (unless value (format t "~&FAILED ~(~A~): it ended its process.~%" suite))
     (setf (gethash suite *seconds*) seconds)

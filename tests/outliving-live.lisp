@@ -127,7 +127,7 @@
     (is-true (told-p "time cannot pass inside it"))))
 
 (test simulator.is-refused-while-it-starts
-  "A continuation that hears of the end of its run starts no other on the way to one."
+  "A continuation that is called because another run starts cannot start one itself."
   (with-live-shrew
     (let ((codes '()))
       (is-true (goes-on-p (live-shrew)))
@@ -186,7 +186,7 @@
          :key #'sb-thread:thread-name :test #'string=))
 
 (test live.no-run-of-a-map-that-is-replaced-is-left
-  "Some threads start the simulator while others define its map anew."
+  "Some threads start the simulator while others define its map again."
   (with-own-definitions
     (with-messages
       (flet ((start () (run:simulator 'hare :rate :free :display nil))

@@ -26,7 +26,7 @@
                                   (funcall function))))
 
 (defun run-catching (ticks)
-  "Pass TICKS, or fewer if somebody throws to OUT; return what is thrown, or NIL."
+  "Pass TICKS, or fewer after a throw to OUT; return the value thrown, or NIL."
   (catch 'out
     (run:run-ticks ticks)
     nil))
@@ -53,8 +53,8 @@
         (is (= looks (run:simulation-tick)) "and who looks on has seen each tick")))))
 
 (defun kicked (body)
-  "Let BODY, a function of a thing, be the kicker of all things in the dell for a tick. Return how
-far these have come to the east."
+  "Make BODY, a function of a thing, the kicker of all things in the dell for a tick. Return how far
+east they have moved."
   (with-own-definitions
     (world:define-kicker 'shove :prob 1 :test nil :body body)
     (let ((things (list (world:find-thing 'log) (world:find-thing 'stump))))
@@ -217,7 +217,7 @@ far these have come to the east."
         (is-true (replays-p time:*simulation*))))))
 
 (test condition.that-is-no-error-is-told-and-ends-the-call-only
-  "Also where somebody further out offers to continue, as when a file is loaded."
+  "Also inside code with a restart to continue, as when a file is loaded."
   (with-shrew ()
     (turn-and shrew (lambda () (error (make-condition 'condition))))
     (is (eql 20 (with-simple-restart (continue "Go on elsewhere.") (run:run-ticks 20))))
@@ -226,7 +226,7 @@ far these have come to the east."
 ;;; Definitions that go.
 
 (test threads.begin-for-robots-whose-definitions-are-gone
-  "A thread of a live run may begin only after somebody has undefined its robot."
+  "The thread of a live run may begin after its robot has been undefined."
   (with-own-definitions
     (eval '(progn
             (world:defmap short-lived (9 9))

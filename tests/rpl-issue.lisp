@@ -6,7 +6,7 @@
 ;;; Interruptions at issue.
 
 (rpl:def-interp-proc turned (angle)
-  "Turn FITTER by ANGLE; return the error code and when that is heard."
+  "Turn FITTER by ANGLE; return the error code, and the tick in which the plan gets it."
   (driver:rpl-robot-turn angle)
   (rpl:wait-for driver:robot-stopped*)
   (list (value-in driver:robot-movement-error*) (rpl:plan-time)))
@@ -27,7 +27,7 @@
       (is (near 2 (geo:angle-difference (robot:robot-angle fitter) angle) 1d-6)))))
 
 (test issue.ends-what-was-before-at-once
-  "Whoever waits for the older command hears :INTERRUPT before any time passes, and once."
+  "A task that waits for the older command gets :INTERRUPT before any time passes, and once."
   (with-fitter (:clean t)
     (is (equal '((:interrupt 3) (nil 8))
                (run-as-plan
@@ -98,7 +98,8 @@ tick (manual 3.4.3)."
                                 (value-in (svref driver:camera-tracking-error* 0)))))))))
 
 (test issue.a-late-answer-sets-no-error
-  "The robot's own answer to what has been told comes in the next tick: it pulses nothing."
+  "The robot's own answer to an interruption already reported comes in the next tick, and pulses
+nothing."
   (with-fitter (:clean t)
     (is (equal '(:mine nil)
                (run-as-plan
@@ -110,7 +111,7 @@ tick (manual 3.4.3)."
                    (list (value-in driver:robot-movement-error*) pulsed)))))))
 
 (test issue.what-has-been-answered-is-heard-as-such
-  "A command that was answered in the same tick succeeded, though nobody has heard that."
+  "A command that ended in the same tick has succeeded, though no task has seen that yet."
   (with-fitter (:clean t)
     (let ((order '()))
       (flet ((note (what) (push (list what (value-in driver:robot-movement-error*)) order)))
@@ -173,7 +174,7 @@ tick (manual 3.4.3)."
     (is-true (moves-p fitter))))
 
 (test ended.commands-that-others-gave-go-on
-  "What has been taken over from the plan is not its own any more, whoever took it."
+  "A part that was taken over from the plan is not its own any more."
   (with-fitter (:clean t)
     (ended-after 3 (rpl:interp-lambda () (driver:rpl-robot-turn 30) (rpl:wait-time 100))
       (is-false (moves-p fitter)))
@@ -218,8 +219,8 @@ tick (manual 3.4.3)."
           collect (base:message-text message)))
 
 (defun takeover-warnings (&rest plans)
-  "Let PLANS run for ten ticks beside one that counts them. Return how many that saw, and the
-warnings that speak of what is done for ever."
+  "Run PLANS for ten ticks beside one that counts ticks. Return its count, and the warnings about
+endless repetition."
   (with-fitter (:clean t)
     (let ((ticks 0))
       (driver:begin-plan (rpl:interp-lambda () (loop (rpl:wait-time 1) (incf ticks))))
@@ -269,10 +270,10 @@ warnings that speak of what is done for ever."
     (is (<= 9 ticks 10))
     (is (null texts))))
 
-;;; Who has not come to its wait yet.
+;;; Tasks that have not reached their wait yet.
 
 (test issue.who-has-not-come-to-its-wait-hears-it-there
-  "The task that takes the robot goes on only when the one that loses it has heard so."
+  "The task that takes the robot continues only after the task that loses it has been informed."
   (with-fitter (:clean t)
     (is (equal '(:interrupt nil)
                (run-as-plan

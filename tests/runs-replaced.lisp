@@ -165,7 +165,7 @@ function and its arguments."
         (signals base:misuse (run:start-clock old)))
       (is-false (time:live-p old)))))
 
-;;; A map that is defined anew, and what comes between.
+;;; A map that is defined again, and what comes between.
 
 (test defmap.by-two-threads-ends-what-is-live-in-either-map
   "The second thread defines and starts when the first knows the map that it is to replace."
@@ -228,7 +228,7 @@ function and its arguments."
         (is (equal '(:interrupt) heard))))))
 
 (test rewind.of-a-run-whose-map-is-defined-anew-leaves-none-live
-  "The map is defined anew when the run is about to be replaced."
+  "The map is defined again when the run is about to be replaced."
   (with-yard ()
     (let* ((old (start-and-pass 3)) (thread nil)
            (custody (time:timeline-custody (run:simulation-timeline old))))

@@ -37,7 +37,7 @@
                         (abs (- (/ (1+ below) size) probability))))))
 
 (defun same-distribution-p (sample distribution)
-  "True unless the Kolmogorov-Smirnov test at .001 tells SAMPLE from DISTRIBUTION."
+  "True unless the Kolmogorov-Smirnov test at .001 rejects DISTRIBUTION for SAMPLE."
   (< (kolmogorov-distance sample distribution) (/ 1.95 (sqrt (length sample)))))
 
 (defun uniform (low high)
@@ -343,7 +343,7 @@
                                         :test #'equal))))))
 
 (test no-sensor-error.suffices
-  "Manual, chapter 4: it suppresses all sensing error, whatever the other parameters say."
+  "Manual, chapter 4: it suppresses all sensing error, for all values of the other parameters."
   (with-watcher (:seed 20 :parameters '((no-sensor-error* t) (miss-thing-prob* 1)
                                         (false-thing-prob* 1) (prob-lose-track* 1)))
     (let ((ball (put 'ball '(9.5 12.5) :color 'world:red)))

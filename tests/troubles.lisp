@@ -5,7 +5,7 @@
 (def-suite* troubles :in ars-magna)
 
 (defun err-at-turn (&optional (angle 1))
-  "Let ROVER turn by ANGLE; the continuation errs."
+  "Turn ROVER by ANGLE; the continuation signals an error."
   (command:robot-turn rover angle (lambda (&rest results)
                                     (declare (ignore results))
                                     (error "no turns"))))
@@ -161,7 +161,7 @@
     (displayed)))
 
 (test plans.that-die-of-an-error-are-shown
-  "Also if somebody waits for them and passes over what comes back."
+  "Also if the caller waits for them and ignores what they return."
   (dolist (function '(driver:run-plan driver:begin-plan))
     (is-true (has-words-p (error-output
                             (run:with-simulation (rover)
@@ -202,7 +202,7 @@
       (is-true (has-words-p (shown (lambda () (base:message-set "asked") t) errors) "odd"))
       (is (string= "" (shown (constantly nil) errors))))))
 
-;;; Live: nobody listens at a plain REPL.
+;;; Live, at a plain REPL.
 
 (defun echo (&rest arguments)
   "Queue a message made of ARGUMENTS, as MAKE-MESSAGE takes them, where runs live. Return what is

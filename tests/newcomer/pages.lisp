@@ -66,7 +66,7 @@
     (and (plusp end) (char= #\: (char text (1- end))))))
 
 (defun what-is-typed (line)
-  "Return what is typed in LINE of a session, or NIL if it is an answer."
+  "Return the text typed in LINE of a session, or NIL if LINE is an answer."
   (multiple-value-bind (prompt text) (prompt-of line)
     (and prompt (string/= text "") (not (message-p text)) text)))
 
@@ -101,7 +101,7 @@ lines that answer it."
                    thereis (like-p rest (subseq text start)))))))
 
 (defun lines-like-p (patterns lines)
-  "True if LINES begin as PATTERNS say; one that is ... stands for any lines."
+  "True if LINES begin with matches of PATTERNS; the pattern ... matches any lines."
   (cond ((null patterns) t)
         ((string= "..." (first patterns))
          (loop for rest on lines

@@ -69,8 +69,8 @@ seconds."
         (progn (await-quiet terminal) (as-held-p)))))
 
 (defun screen-trouble (name terminal)
-  "Return what is wrong with the screen, a string, or NIL if it is that of the file of NAME. While
-recording, it is."
+  "Return how the screen differs from the file of NAME, a string, or NIL if it does not. While
+recording, it does not."
   (cond (*recording-p* (record-screen name terminal) nil)
         ((await-screen name terminal) nil)
         (t (format nil "~A.txt is~%~{|~A~%~}but the screen~%~{|~A~%~}If that is as it should be: ~

@@ -33,8 +33,8 @@
         finally (return start)))
 
 (defun play-page (terminal text)
-  "Play the sessions that stand below the heading, both in TEXT. One that begins at Robot> where the
-last one has left goes on as if that had been begun again."
+  "Play the sessions below the heading; TEXT has the page and the heading. If a session begins at
+Robot> and the last one has quit, start the prompt again first."
   (loop for (block . before) on (reverse (remove-if-not #'session-block-p (blocks-below text)))
         collect (list block (last-start (reverse before))) into blocks
         finally (loop for (block start) in (reverse blocks)
@@ -65,8 +65,8 @@ last one has left goes on as if that had been begun again."
       (dolist (form (forms-in (page-block-lines block))) (type-form terminal form)))))
 
 (defun definitions-below (text)
-  "Return the lines of the blocks of Lisp that TEXT asks for, as BLOCKS-BELOW has it, but of those
-that show what a form returns."
+  "Return the lines of the Lisp blocks that TEXT selects, as BLOCKS-BELOW does, without blocks that
+show values."
   (loop for block in (blocks-below text)
         for lines = (page-block-lines block)
         when (and (equal "lisp" (page-block-kind block))
@@ -94,12 +94,12 @@ of the file, then what that takes."
   '(("type" . type-line) ("keys" . type-text) ("press" . press-key)
     ("wait" . await-text) ("prompt" . await-prompt) ("resize" . play-resize) ("paste" . play-paste)
     ("page" . play-page) ("lisp" . play-lisp) ("file" . play-file))
-  "The words of sessions but SCREEN, and what does what they say.")
+  "The words of sessions except SCREEN, with the functions that carry them out.")
 
 ;;; Playing.
 
 (defun play-step (terminal word text)
-  "Do what a step says. Return what is wrong then, a string, or NIL."
+  "Carry out a step. Return an error message, a string, or NIL."
   (if (string= word "screen")
       (screen-trouble text terminal)
       (handler-case
@@ -154,7 +154,7 @@ steps."
           (error (condition) (list (princ-to-string condition))))))
 
 (defun make-core ()
-  "Let ./cli/ars-magna make its core if it is not there, so that no session waits for it."
+  "Build the core of ./cli/ars-magna if it is missing, so that no session waits for it."
   (base:run-command (base:native-name (project-file "cli/ars-magna")) '("--batch")))
 
 (defun record-sessions (names)

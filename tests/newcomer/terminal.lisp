@@ -22,9 +22,8 @@
   (:documentation "Something has not come on the screen."))
 
 (defstruct (terminal (:copier nil))
-  "A terminal. ROW is where what was answered last begins, counted from the first row that there
-ever was; NEWS-P is true if something was written on the screen of late; HOME is a directory of its
-own."
+  "A terminal. ROW is the first row of the latest answer, counted from the first row ever. NEWS-P is
+true if there is new output on the screen. HOME is its home directory."
   (client nil :read-only t)
   (home nil :read-only t)
   (row 0 :type integer)
@@ -89,7 +88,7 @@ own."
                            (funcall function terminal))
       (stop-terminal terminal))))
 
-;;; What is told to tmux, and what it answers.
+;;; Commands to tmux, and its answers.
 
 (defun next-notice (terminal)
   "Return the next line that tmux writes. Signals an error at its end, and if there is none in
@@ -109,7 +108,7 @@ own."
         finally (return lines)))
 
 (defun tell-terminal (terminal control &rest arguments)
-  "Let tmux do the command that CONTROL and ARGUMENTS make; return the lines of its answer."
+  "Run the tmux command of CONTROL, formatted with ARGUMENTS; return the lines of its answer."
   (let ((in (sb-ext:process-input (terminal-client terminal))))
     (format in "~?~%" control arguments)
     (finish-output in)
@@ -228,6 +227,6 @@ after Enter and what interrupts, in the rows below."
   (press-key terminal "Enter"))
 
 (defun resize-terminal (terminal columns rows)
-  "Let the window have so many COLUMNS and ROWS. What is waited for from then on is on the screen."
+  "Set the size of the window to COLUMNS and ROWS. Later waits look at the new screen."
   (tell-terminal terminal "resize-window -x ~D -y ~D" columns rows)
   (setf (terminal-row terminal) (cursor terminal)))
