@@ -183,7 +183,8 @@
                  (:file "manipulations") (:file "watson") (:file "office") (:file "hall")
                  (:file "tiny") (:file "doorways") (:file "plans-reckoning")
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
-                 (:file "plans-errands") (:file "trials") (:file "plans-searching")
+                 (:file "plans-errands") (:file "plans-locks") (:file "trials")
+                 (:file "plans-searching")
                  (:file "course") (:file "errand") (:file "going") (:file "experiments") (:file "choosing")))))
 
 ;;; Loaded by worlds/figures.

@@ -234,3 +234,31 @@ of the other command has got."
                (is (equal '(:interrupt) codes))
                (is (= 1 (length others)))
                (is (not (member :interrupt others)))))))
+
+(defun try-key (seed lock-id)
+  "Run OPEN-WITH-KEY on a cabinet whose :lock-id is 4, with a key for LOCK-ID. Return a list of
+whether the cabinet is closed, and the values of RUN-PLAN."
+  (run:with-simulation (ars-worlds:dot :seed seed)
+    (let ((cabinet (world:make-new-thing 'cabinet '(ars-worlds:tiny 5.5 2.5) '((:lock-id 4))
+                                         :prototype ars-worlds:cabinet*)))
+      (world:make-new-thing 'key '(ars-worlds:tiny 9.5 6.5)
+                            `((:lock-id ,lock-id) (:color world:violet))
+                            :prototype ars-worlds:key*)
+      (multiple-value-bind (value state)
+          (driver:run-plan 'ars-worlds:open-with-key
+                           '((:color world:violet) (:substance world:metal))
+                           '((:color world:blue) (:substance world:metal)))
+        (list (world:thing-closed-p cabinet) value state)))))
+
+(test open-with-key.opens-a-locked-cabinet
+  (is (<= 9 (loop for seed below 10
+                  count (destructuring-bind (closed value state) (try-key seed 4)
+                          (declare (ignore value))
+                          (is (eq closed (eq :failed state)))
+                          (not closed))))))
+
+(test open-with-key.fails-with-the-wrong-key
+  (destructuring-bind (closed value state) (try-key 3 5)
+    (is-true closed)
+    (is (eq :failed state))
+    (is (eq :will-not-do (rpl:failure-class value)))))

@@ -35,6 +35,8 @@ programs and experiments. They are user code, written as you would write yours."
            #:withdraw-camera #:put-thing-down #:free-hand #:stowed-p)
   ;; plans: errands
   (:export #:find-and-take #:fetch-thing #:tidy-once #:tidy-room)
+  ;; plans: locks
+  (:export #:manipulation-outcome #:manipulate-thing #:visit-thing #:open-with-key)
   ;; trials
   (:export #:dice-for #:hide-thing #:make-restless #:near-p #:beside-p)
   ;; plans: searching
