@@ -5,13 +5,12 @@
 (export '(attribute define-attribute attribute-of built-in-attribute-p attribute-key *attributes*
           asking-form-p range-p value-limits discrete-p in-domain-p can-be-false-p asks-range-p))
 
-;;; An attribute is discrete, with a list of possible values, or numeric. Attributes that
-;;; nobody defined may be stored and matched but are never sensed unasked. Manual 3.3, 3.4.2
-;;; and 5.4.
+;;; An attribute is discrete, with a list of possible values, or numeric. Undeclared attributes may
+;;; be stored and matched, but are only sensed when asked for. Manual 3.3, 3.4.2 and 5.4.
 
 (addition attribute-p)
 (define-record (attribute (:constructor make-attribute))
-  "What is known of an attribute of things: its possible values and sensing parameters."
+  "An attribute of things: its possible values and sensing parameters."
   (name nil symbol "the keyword that the attribute is called" :addition)
   (kind :discrete (member :discrete :numeric) ":discrete or :numeric" :addition)
   (domain '() list "the list of possible values of a discrete attribute; NIL if numeric" :addition)
@@ -33,7 +32,7 @@
   (if (keywordp name) name (make-keyword (name-string name))))
 
 (defun attribute-of (name)
-  "Return the attribute called NAME, a symbol, or NIL if nobody has defined it."
+  "Return the attribute called NAME, a symbol, or NIL if it is undeclared."
   (loop with key = (attribute-key name)
         for attribute in (registry-objects *attributes*)
         when (eq key (attribute-name attribute)) return attribute))
@@ -82,8 +81,8 @@
                      (format nil "a ~(~A~) attribute, as the simulator computes with ~(~S~)"
                              (attribute-kind old) (attribute-name old))))))
 
-;;; What programs ask of a thing, or give it, many a time: of most names it is known what they may
-;;; be slips for. What is asked for may also be a slip for what a thing has that nobody declared.
+;;; Programs read and set attributes often, so the declared name that another one resembles is
+;;; cached. Names of undeclared attributes that a thing has are compared, too.
 
 (define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
   "For names that are not declared, the name that each may be a slip for, or NIL.")
@@ -159,9 +158,9 @@ of the possible values, unevaluated. Options, in any order:
 Signals MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment (lambda () (attribute-forms name domain options))))
 
-;;; What may be asked of an attribute: a value, a range, or any of some. Robots and manipulations
-;;; ask in the same words, lists (attribute value [threshold]), manual 3.4.2 and 5.5.1; but a robot
-;;; compares with what it senses, a manipulation with what is so.
+;;; A specification asks for a value, a range, or any of several values. Robots (manual 3.4.2) and
+;;; manipulations (5.5.1) use the same lists (attribute value [threshold]). A robot compares them
+;;; with what it senses, a manipulation with the true values.
 
 (defun asking-form-p (form)
   "True if FORM is a list (attribute value) or (attribute value threshold), whatever the values of
@@ -188,7 +187,7 @@ are from -1e15 to 1e15."
   (cond ((realp value) (values value value))
         ((number-pair-p value) (values (first value) (second value)))))
 
-;;; By attribute; NIL is one that nobody has defined.
+;;; Functions by attribute; NIL is an undeclared one.
 
 (defun discrete-p (attribute)
   "True if ATTRIBUTE, or NIL, is known to have one of a list of values."

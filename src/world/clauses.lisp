@@ -65,9 +65,9 @@ which expected EXPECTED there."
   "The positions that lead from the definition at hand to the clause that is being carried out.")
 
 (defun call-with-clause (function clause path)
-  "Call FUNCTION with CLAUSE, the one at PATH of the definition at hand. A user who chooses so
-leaves it out (then return NIL), or has FUNCTION called with another: read again, or typed. A whole
-definition that is typed takes the place of the one at hand."
+  "Call FUNCTION with CLAUSE, the one at PATH of the current definition. By a restart the user may
+leave it out (then return NIL), or have FUNCTION called with another clause, read again or typed. If
+a whole definition is typed, it replaces the current one."
   (restart-case (let ((*path* path)) (funcall function clause))
     (skip-clause ()
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
@@ -86,8 +86,8 @@ definition that is typed takes the place of the one at hand."
           (call-with-clause function other path)))))
 
 (defun parts-of-clauses (function clauses first)
-  "Return the parts, appended, that FUNCTION returns of CLAUSES, the elements from FIRST on of what
-is being carried out; or of others that the user puts in their place."
+  "Call FUNCTION on each of CLAUSES, the elements from FIRST on of the current definition, or on
+those the user replaces them with. Return the parts that it returns, appended."
   (loop for clause in clauses
         for position from first
         append (call-with-clause function clause (append *path* (list position)))))

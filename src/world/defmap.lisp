@@ -1,4 +1,4 @@
-;;;; defmap.lisp -- DEFMAP: from clauses to a map, and to what lies in it (manual 5.1).
+;;;; defmap.lisp -- DEFMAP: from clauses to a map and the things in it (manual 5.1).
 
 (in-package :ars-magna.world)
 
@@ -106,9 +106,9 @@ MALFORMED-DEFINITION if contents are wrong."
   :things (destructuring-bind (x y) position
             (list (recipe-of-thing (map-title map) clause head descriptor contents x y))))
 
-;;; Clauses are carried out, one after another, when the form is evaluated: what is wrong with one
-;;; is MALFORMED-DEFINITION, with restarts for it. When it is expanded they are only looked through
-;;; for code, and for mistakes to warn of in a file that is compiled.
+;;; Evaluating the form executes the clauses in order; an error in one is MALFORMED-DEFINITION, with
+;;; restarts for that clause. Macroexpansion only searches them for code, and for mistakes to warn
+;;; about when a file is compiled.
 
 (defun find-places (map path)
   "Find the places of MAP anew, and keep it in PATH, if any, if the code of all types worked."
@@ -131,7 +131,7 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
   (let ((map (find-map map)))
     (find-places map (usable-cache-path map))))
 
-;;; What is doubtful.
+;;; Warnings.
 
 (defun doubt-clause (map clause control &rest arguments)
   (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-place clause) control arguments))
@@ -167,7 +167,7 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
   (if (stringp (first clauses)) (rest clauses) clauses))
 
 (defun fill-map (map clauses)
-  "Let MAP have the walls and things that CLAUSES, perhaps behind a text, stand for."
+  "Give MAP the walls and things of CLAUSES; a docstring may precede them."
   (flet ((parts (clause)
            (let ((parts (parts-of-clause map clause)))
              (warn-of-walls map clause (remove-if #'recipe-p parts))
@@ -225,20 +225,21 @@ CODE-FORM makes it. PACKAGE is the one that the author writes in. Return the map
 
 (public defmap)
 (define-user-macro defmap (&whole form name &optional size &body clauses &environment environment)
-  "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
-cells of a metre, and perhaps :cache with the name of a file to keep the built grid in, unless a
-place type has a :checker; it is looked for from the directory of the file in which DEFMAP stands.
-Ours is :frame with a list (size x y yaw), as MAP-FRAME says, and a
-string before the clauses, the map's documentation. Clauses:
+  "Define the map NAME (manual 5.1), and a special variable bound to it. SIZE is (width height), in
+cells of one metre, then options:
+- :cache file -- keep the built grid in this file, relative to the file of the DEFMAP; not used
+  while a place type has a :checker
+- :frame (size x y yaw) -- ours, see MAP-FRAME
+A string before the clauses, ours, is the map's documentation. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
   (rect (x0 y0) (x1 y1) substance parameter [parameter1 parameter2 parameter3]) -- an outline
   (circle (x y) radius substance parameter) -- likewise
   (obj name (x y) descriptor contents...) -- a thing; contents: (name descriptor contents...)
-Instead of a thing's name: (name :prototype form) and, ours, (name :kickers (kicker...)). There are
-also those of DEFINE-MAP-CLAUSE. Later walls overwrite earlier ones. A map called by a symbol of
-Common Lisp's, such as ROOM, or ours has no variable: write 'ROOM. Redefinition makes a new map,
-for what is started from then on; a live simulation of the old one stops. Signals
-MALFORMED-DEFINITION, with restarts for the clause. Return the name."
+Instead of a thing's name: (name :prototype form) and, ours, (name :kickers (kicker...)).
+DEFINE-MAP-CLAUSE adds kinds of clauses. Later walls overwrite earlier ones. If NAME is a symbol of
+Common Lisp or ours, such as ROOM, there is no variable: write 'ROOM. A redefinition applies to runs
+that start later; a live simulation of the old map stops. Signals MALFORMED-DEFINITION, with
+restarts for the clause. Return the name."
   (expand-definition form environment
                      (lambda () (values (map-forms name size clauses) (variable-forms name)))))
 

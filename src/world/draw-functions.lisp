@@ -39,7 +39,7 @@
 
 (defun draw-function-said (value)
   "Return what to keep for VALUE of :draw-function. A name that code says may be called."
-  ;; By its name what is drawn goes by the newest definition, and can be saved.
+  ;; A name is kept rather than its function: it follows redefinitions, and can be saved.
   (let* ((name (and (functionp value) (nth-value 2 (function-lambda-expression value))))
          (value (if (and (names-function-p name) (eq value (fdefinition name))) name value)))
     (when (and value (symbolp value) *said-by-code-p*) (setf (get value 'said-by-code-p) t))
@@ -80,8 +80,8 @@ none, a second value says why, and what to do."
         form)))
 
 (defun draw-function-called (name function)
-  "Let NAME be that of FUNCTION, and return it; return FUNCTION itself if it has closed over
-something, so that it is not the only one of its text, or cannot draw."
+  "Define NAME as FUNCTION and return NAME. Return FUNCTION itself if it is a closure, which its
+text does not determine, or if it cannot draw."
   (cond ((or (closure-p function) (not (draw-function-p function))) function)
         (t (setf (fdefinition name) function)
            name)))
@@ -95,7 +95,7 @@ something, so that it is not the only one of its text, or cannot draw."
           (t `',value))))
 
 (defun code-p (key value)
-  "True if VALUE, of the attribute KEY, has code that is to be evaluated."
+  "True if VALUE, of the attribute KEY, contains code to evaluate."
   (and (consp value) (same-name-p key :draw-function)))
 
 (defun descriptor-form (thing-name descriptor)

@@ -4,10 +4,10 @@
 
 (export '(octets-of-copy))
 
-;;; A world may have a hundred thousand things, each with kickers. So its things are copied first of
-;;; all, one after the other; what a thing was copied to is then known by its rank, and what an
-;;; attachment was copied to by its thing. What has been destroyed or taken off has no rank: it is
-;;; copied like anything else, if somebody still has it.
+;;; A world may have a hundred thousand things, each with kickers. So its things are copied first,
+;;; in order. Afterwards a thing's copy is found by its rank, and an attachment's copy by its thing.
+;;; Destroyed things and removed attachments have no rank: they are copied like other objects, if
+;;; something still refers to them.
 
 (declaim (inline twin-by-rank))
 (defun twin-by-rank (thing old new)
@@ -38,8 +38,8 @@
 ;;; Kickers.
 
 (defun attachment-copier (copier)
-  "Return a function of an attachment and of a copy of its thing that returns a copy of the former
-for the latter, seated in the copy of its group."
+  "Return a function that copies an attachment for a copied thing (its second argument) and seats it
+in the copy of its group."
   (let ((kicker nil) (new-kicker nil) (group nil) (new-group nil))
     ;; Most have the kicker and the group of the one before.
     (flet ((kicker-for (old)
@@ -70,8 +70,8 @@ for the latter, seated in the copy of its group."
 ;;; Things.
 
 (defun copy-thing (thing world copied)
-  "Return a copy of THING for WORLD. COPIED returns those of kickers, see ATTACHMENT-COPIER. What it
-is in, and what is in it, is yet to be copied."
+  "Return a copy of THING for WORLD, with its location and contents not yet copied. COPIED returns
+the copies of kickers, see ATTACHMENT-COPIER."
   (declare #.*hot* (type thing thing) (type function copied))
   (let ((twin (copy-structure thing)))
     (setf (thing-world twin) world)
@@ -88,7 +88,7 @@ is in, and what is in it, is yet to be copied."
        (null (thing-contents thing))))
 
 (defun complete-thing (thing old new copier)
-  "Let what the copy of THING is in, and what is in it, be copies too. See TWIN-BY-RANK."
+  "Replace location and contents of the copy of THING by copies. See TWIN-BY-RANK."
   (declare (type thing thing))
   (flet ((twin (other) (or (twin-by-rank other old new) (forked other copier))))
     (let ((twin (twin thing)))
@@ -130,7 +130,7 @@ is in, and what is in it, is yet to be copied."
     (+ (* 5 (map-width map) (map-height map))
        (* 300 (world-rank-count world)))))
 
-;; One of another run stays what it is.
+;; A thing of another run is not copied.
 (defmethod copy-plan-value ((world world) fork)
   (if (not (eq world (copier-option fork :world)))
       world

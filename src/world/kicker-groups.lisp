@@ -4,15 +4,14 @@
 
 (export '(seed-world world-has-kickers-p some-kicker run-kickers))
 
-;;; Each kicker on each thing is a trial of its probability on every tick. Kickers of equal
-;;; probability form a group: a row of trials, tick after tick. Rather than rolling for each we
-;;; draw how many fail before the next that succeeds (a geometric law) and skip them. A :test is
-;;; evaluated only if the trial succeeds, which is the same law. What leaves a group stays in
-;;; the row, dead, until the tick is over. Manual 5.3.1.
+;;; Each kicker on each thing is tried with its probability on every tick. Kickers of equal
+;;; probability form a group: a row of trials, tick after tick. Instead of drawing for each trial we
+;;; draw how many fail before the next success (a geometric distribution) and skip them. A :test is
+;;; evaluated only if the trial succeeds; the distribution is the same. A removed member stays in
+;;; the row, dead, until the end of the tick. Manual 5.3.1.
 ;;;
-;;; A row is a vector with three elements for each member, side by side because reading them is
-;;; what a kick costs (25 ns, most of it waiting for memory): attachment, its thing (NIL when
-;;; dead), its kicker.
+;;; A row is a vector with three elements for each member: attachment, its thing (NIL when dead),
+;;; its kicker. They lie side by side because a kick costs mostly memory access (25 ns).
 
 (define-kind (group :constructor (make-group (probability)))
     "Kickers of equal PROBABILITY, in a row of trials."
@@ -31,7 +30,7 @@
    (origin (make-origin) origin "who is to blame for trouble")))
 
 (defstruct (origin (:constructor make-origin ()) (:copier nil))
-  "What is printed as the origin of trouble: the attachment that ran when it came."
+  "Printed as the origin of an error: the attachment that was running."
   ;; Of no type that would have to be looked for in it, far away, each time one runs.
   (attachment nil :type t))
 
@@ -126,14 +125,14 @@
     (setf self attachment)
     (run-member (attachment-kicker attachment) (attachment-thing attachment))))
 
-;; What lies far away is read ahead: a move in a large world takes 420 ns then, not 750;
-;; but what kickers that move nothing never ask for would cost them as much.
+;; Distant memory is read ahead. In a large world a move then takes 420 ns instead of 750. Kickers
+;; that move nothing would not benefit, and would pay for it.
 (defconstant +large-group+ 5000
   "How many members of a group are more than a processor keeps near itself.")
 
 (defun read-group-ahead (group end dice)
-  "Read what it takes to move the things of those before END in the row of GROUP whose trials will
-succeed next. Return the index in the row of the first for which that was not done."
+  "Read ahead what it takes to move the things whose trials succeed next, before END in the row of
+GROUP. Return the index in the row of the first one not read."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice))
   (let* ((row (group-row group))
          (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
@@ -156,10 +155,10 @@ succeed next. Return the index in the row of the first for which that was not do
     (not (and (= x (thing-x thing)) (= y (thing-y thing))))))
 
 (defun run-members (group end dice tick)
-  "Run those before END in the row of GROUP whose trials succeed, but not those that ran in TICK
-already; TICK is 0 if none did. The next success is drawn before one runs, so that after an
-error the row goes on behind it. When it is tried again, the one that failed comes first. In a
-large group, memory is read ahead if the first that runs moves its thing."
+  "Run the members before END in the row of GROUP whose trials succeed, except those already run in
+TICK; TICK is 0 if none were. The next success is drawn before a member runs, so after an error the
+row continues behind it; on a retry the failed one comes first. In a large group, memory is read
+ahead if the first member to run moves its thing."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice)
            (type tick-count tick))
   (let ((origin (group-origin group)) (curious (>= end +large-group+)) (ahead end)
@@ -247,9 +246,8 @@ Return nothing."
 
 (public run-kicker)
 (defun run-kicker (attachment)
-  "Run ATTACHMENT, which should be given as SELF, once more on the next tick, whatever its
-probability and test say; its own trial is left out that tick (manual 5.3.1). Return nothing.
-See reading 170."
+  "Run ATTACHMENT, usually given as SELF, once more on the next tick, whatever its probability and
+test. Its own trial is left out that tick (manual 5.3.1). Return nothing. See reading 170."
   (check-argument run-kicker attachment (attachment-p attachment) "SELF, while a kicker runs")
   (let ((world (world-of-living (attachment-thing attachment))))
     (when (and world (attachment-alive-p attachment))
@@ -278,7 +276,7 @@ See reading 170."
                                    (funcall test (setf last kicker))))))
 
 (defun seed-world (world seed)
-  "Let all chance in WORLD come from the integer SEED from now on. Return WORLD."
+  "Draw all further randomness in WORLD from the integer SEED. Return WORLD."
   (check-argument seed-world seed (integerp seed) "an integer")
   (dolist (group (world-kicker-groups world)) (setf (group-quantum group) 0))
   (setf (world-seed world) seed
@@ -286,7 +284,7 @@ See reading 170."
                                        +dice-purposes+))
   world)
 
-;; An origin that has nobody to blame is of a group that was read ahead.
+;; An origin without an attachment is a group that was read ahead.
 (defmethod recurring-code ((origin origin))
   (recurring-code (origin-attachment origin)))
 

@@ -196,10 +196,10 @@ See reading 171."
 
 (public put-kicker)
 (define-user-macro put-kicker (name target &optional options &body body)
-  "Define a kicker NAME for one thing alone, with options as for DEFKICKER, instead of any other of
-that name on it; or, with an empty BODY, remove its kicker NAME, even a global one (manual
-5.3.1). TARGET is (variable thing); the variable is bound to the thing in test and body. Return
-the kicker as attached, if any."
+  "Define a kicker NAME for one thing only, with options as for DEFKICKER. It replaces the thing's
+kicker of that name. With an empty BODY, remove the thing's kicker NAME, even a global one (manual
+5.3.1). TARGET is (variable thing); the variable is bound to the thing in test and body. Return the
+attached kicker, if any."
   (let ((definition (title "put-kicker" name)))
     (check-name definition name "kicker")
     (unless (and (proper-list-p target) (= 2 (length target)))
@@ -262,7 +262,7 @@ from another file than the map, or named there more than once."
                          (kicker-name kicker) key)))))
 
 (defun doubt-idle-kickers (world)
-  "Say, when a run in WORLD ends, which kickers most likely could not do what they were for."
+  "At the end of a run in WORLD, warn of kickers that most likely could not do what they were for."
   (dolist (entry (registry-entries *kickers*))
     (doubt-unused-kicker entry world)
     (doubt-untrue-kicker (entry-object entry) world)))

@@ -2,13 +2,13 @@
 
 (in-package :ars-magna.world)
 
-;;; The file is a row of 64-bit words: magic, key, count of walls, count of places, sum; then
-;;; for each wall (index + substance * 2^32, parameter) and for each place (index + type * 2^32,
-;;; direction), floats as their bits. The key stands for the map's size and clauses and for the
-;;; definitions of all place types. A file with another key is stale, one whose words do not
-;;; add up is damaged; neither is ever used. Only the grid is kept, never things; and nothing
-;;; while a place type has a :checker, which is code that may look at anything. What is no cache,
-;;; by its first word, or no file of bytes, or cannot be told is never written to.
+;;; The file is a row of 64-bit words: magic, key, count of walls, count of places, sum; then for
+;;; each wall (index + substance * 2^32, parameter) and for each place (index + type * 2^32,
+;;; direction), floats as their bits. The key is computed from the map's size and clauses and the
+;;; definitions of all place types. A file with another key is stale; one with a wrong sum is
+;;; damaged. Neither is used. Only the grid is kept, never things, and nothing while a place type
+;;; has a :checker, since that is arbitrary code. A file is never overwritten if its first word is
+;;; not the magic one, if it is not a file of bytes, or if this cannot be determined.
 
 (defconstant +cache-magic+ #x4152534D41503031
   "ARSMAP01 in ASCII; changes when the file's layout does.")
@@ -89,8 +89,8 @@ Signals an error if PATH is write-protected."
          "is damaged")))
 
 (defun restore-cell (map wall-p index number value)
-  "Let the cell INDEX of MAP be a wall of the substance with NUMBER if WALL-P, else a place of the
-type with that. Signals an error if there is none; 0 is of none."
+  "Make the cell INDEX of MAP a wall of the substance with NUMBER if WALL-P, else a place of the
+type with that number. Signals an error if there is none; 0 means no place."
   (unless (< 0 number (length (if wall-p (map-substance-types map) (map-place-types map))))
     (error "no name has the number ~D" number))
   (if wall-p
@@ -123,7 +123,8 @@ type with that. Signals an error if there is none; 0 is of none."
                (= +cache-magic+ (aref words 0)))))))
 
 (defun foreign-cache-p (path)
-  "True if what is at PATH, perhaps a link, is no map's cache, damaged or not, or cannot be told."
+  "True if the file at PATH, perhaps a link, is not a map cache, damaged or not, or if this cannot
+be determined."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (plain-file-p path) (begins-as-cache-p path))))))
 
@@ -152,8 +153,8 @@ type with that. Signals an error if there is none; 0 is of none."
                    " cannot be written: " (text-of-condition condition)))))
 
 (defun cache-path (name)
-  "Return the pathname of the cache called NAME, a string or pathname: as seen from the file that
-the definition at hand stands in, or from the current directory if that was typed."
+  "Return the pathname of the cache NAME, a string or pathname, relative to the file of the current
+definition, or to the current directory if that was typed."
   (let ((directory (base-directory))
         (file (source-file (current-source))))
     (merge-pathnames (path-called name)
@@ -163,7 +164,7 @@ the definition at hand stands in, or from the current directory if that was type
                          directory))))
 
 (defun usable-cache-path (map)
-  "Return the file that MAP is to be kept in, if any; not one that holds something else."
+  "Return the cache file of MAP, if it has one, unless that file holds something else."
   ;; Checkers are users' code, on which places would depend.
   (let ((path (and (notany #'place-type-checker (registry-objects *place-types*))
                    (map-cache map))))

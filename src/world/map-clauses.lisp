@@ -4,9 +4,9 @@
 
 (export '(*map-clauses* all-clause-kinds))
 
-;;; A definition says all that is to be known of a kind of clause: how it is written, which clauses
-;;; are right, and what they stand for. Our own kinds are walls that are drawn, or things; those of
-;;; users stand for other clauses. So a map keeps only ours, and its cache depends on nothing else.
+;;; A definition says everything about a kind of clause: how it is written, which arguments are
+;;; valid, and what it expands to. Our own kinds draw walls or make things; users' kinds expand to
+;;; other clauses. So a map stores only clauses of our kinds, and its cache depends on nothing else.
 
 (define-record (clause-kind (:constructor make-clause-kind (name usage derived-p function)))
   "What clauses of a name are."
@@ -122,11 +122,11 @@ warning in a file that is compiled. What users' kinds stand for is not known yet
 (define-user-macro define-map-clause (&whole form name lambda-list &optional usage
                                       &body options &environment environment)
   "Define clauses (NAME argument...) of DEFMAP. LAMBDA-LIST is a variable for the map, whose name
-and size are known, and a macro lambda list for the arguments. The string USAGE shows a clause; an
-error in one says it. Options are forms:
-  :clauses form -- a list of the clauses, such as walls and things, that it stands for
-  :check form -- true of arguments that are right; by default all that fit are
-Maps that are there do not change. Return the name. Signals MALFORMED-DEFINITION."
+and size are known, and a macro lambda list for the arguments. The string USAGE shows a clause;
+error messages quote it. Options are forms:
+  :clauses form -- the list of clauses, such as walls and things, that it expands to
+  :check form -- true if the arguments are valid; by default all that fit the lambda list are
+Existing maps do not change. Return the name. Signals MALFORMED-DEFINITION."
   `(eval-when (:compile-toplevel :load-toplevel :execute)
      ,(expand-definition
        form environment

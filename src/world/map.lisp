@@ -93,15 +93,15 @@ NEW if OLD was undefined. The layer above ends what goes on in OLD.")
   (:method (old new) (declare (ignore old new)) nil))
 
 (defun register-map (map)
-  "Let the name of MAP mean MAP (reading 61)."
+  "Make MAP the meaning of its name (reading 61)."
   (deferring-interrupts
     (let ((old (nth-value 1 (register *maps* (map-name map) map :variable t))))
       (map-replaced old map)))
   map)
 
 (defun map-form (form environment)
-  "Return a form for what FORM, given in ENVIRONMENT where a map is wanted, stands for: its value,
-or if it is a symbol that has none, such as ROOM, or one that is no map, the map of that name."
+  "Return a form for the map that FORM denotes in ENVIRONMENT: its value, or, for a symbol without a
+map as its value, such as ROOM, the map of that name."
   (cond ((or (null form) (not (symbolp form))) form)
         ((local-variable-p form environment) form)
         ((known-variable-p form environment) `(map-meant ',form))
@@ -245,11 +245,11 @@ and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
   (if back (- start cell) (- (1+ cell) start)))
 
 (defun walk-grid (visit width height x y dx dy reach &optional column-first)
-  "Call VISIT with each cell that the line from (X,Y) in direction (DX,DY) meets after the first, by
-its index in a grid of WIDTH by HEIGHT that holds (X,Y), with the distance at which the line enters
-it, and whether that is from another column; until VISIT returns true, the grid ends, or REACH
-columns or rows have been crossed. Return the distance there. Through a corner the line goes by way
-of the next row, or if COLUMN-FIRST, a constant, by way of the next column."
+  "Call VISIT with each cell, after the first, on the line from (X,Y) in direction (DX,DY), in a
+grid of WIDTH by HEIGHT that contains (X,Y). Arguments of VISIT: the index, the distance at which
+the line enters the cell, and whether it comes from another column. Stop when VISIT returns true, at
+the edge, or after REACH columns or rows; return the distance there. Through a corner the line goes
+by the next row, or, if the constant COLUMN-FIRST is true, by the next column."
   (declare (type function visit) (type grid-size width height reach)
            (type double-float x y dx dy))
   (let* ((cell-x (cell-number x)) (cell-y (cell-number y))

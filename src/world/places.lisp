@@ -226,8 +226,8 @@ with a warning. Return MAP, and true if no type was left out. See reading 70."
 
 ;;; Match forms that can never make a place, as their author should be told.
 
-;;; A place is a free cell, and is of the type that was defined first. So a form in which the place
-;;; itself is a wall is in vain, and so is a type all of whose forms fit only what is taken.
+;;; A place is an empty cell, and has the type that was defined first. So a match form with a wall
+;;; in its centre never applies, nor does a type all of whose forms fit only cells of earlier types.
 
 (defun walled-p (rule)
   "True if RULE wants a wall where it has the place."
@@ -253,7 +253,7 @@ with a warning. Return MAP, and true if no type was left out. See reading 70."
                             "its middle"
                             (format nil "the cell ~D ~D from its middle" dx dy)))))
 
-;;; What is taken.
+;;; Cells of earlier types.
 
 (defun free-codes (rule)
   "Return the codes of the neighbourhoods, around a free cell, that RULE, which is small, fits."

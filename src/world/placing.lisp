@@ -22,7 +22,7 @@
                                      (marks-of-cell index (world-stock world))))))
 
 (defun set-mark (thing stock)
-  "Let STOCK know the flags of a cell with THING on its floor."
+  "Set the flags of a cell with THING on its floor in STOCK."
   (setf (aref (stock-marks stock) (thing-rank thing)) (thing-flags thing)))
 
 (defun take-from-floor (thing)
@@ -32,7 +32,7 @@
     (refresh-cell-flags world index)))
 
 (defun add-flags (rank index world)
-  "Let the cell INDEX of WORLD have the flags that come of the thing with RANK."
+  "Add the flags that the thing with RANK causes to the cell INDEX of WORLD."
   (let ((flags (world-flags world)))
     (setf (aref flags index)
           (logior (aref flags index) (aref (stock-marks (world-stock world)) rank)))))
@@ -95,11 +95,11 @@ The primitive: it checks and tells nothing. Return THING."
                 (append (location-contents location) (list thing))))))
   thing)
 
-;; Whoever puts something by hand may put it anywhere on the map; but where that is of no use to
-;; anybody it is said, in the same words whoever does so and how.
+;; You may put a thing or robot anywhere on the map by hand. A warning, in the same words
+;; everywhere, says so if the position is most likely a mistake.
 (defun tell-if-in-wall (what world x y)
-  "Queue a warning if WHAT, a string, has been put into a wall of WORLD at (X,Y). The first one of
-WHAT in a run is shown if nobody reads it."
+  "Queue a warning that WHAT, a string, has been put into a wall of WORLD at (X,Y). The first one
+about WHAT in a run is also printed if nobody reads it."
   (when (wall-at-p (world-map world) x y)
     (queue-message (make-message :warning
                                  (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
@@ -188,8 +188,8 @@ the map, MISUSE for prototypes, things destroyed, and a container put into itsel
 
 (addition destroy-thing)
 (defun destroy-thing (thing)
-  "Destroy THING; what it contains stays where it was. Destroying it again does nothing.
-Signals MISUSE for prototypes. Return nothing. See reading 168."
+  "Destroy THING; its contents stay at its location. Destroying it again does nothing. Signals
+MISUSE for prototypes. Return nothing. See reading 168."
   (unless (and (thing-p thing) (not (thing-alive-p thing)))
     (check-movable 'destroy-thing thing)
     (changing ((thing-world thing) destroy-thing thing)
@@ -242,8 +242,8 @@ Signals MISUSE for prototypes. Return nothing. See reading 168."
   kick)
 
 (defun deflect-kick (kick world)
-  "Let KICK end in the middle of the empty cell beside the one where it would, the nearest to where
-it begins. NIL if there is none, as all eight are filled."
+  "End KICK in the middle of the nearest empty cell beside the one where it would end, nearest to
+where it begins. NIL if all eight are filled."
   (declare #.*hot* (type kick kick) (type world world))
   (let ((column (floor (the (double-float -2d9 2d9) (kick-x kick))))
         (row (floor (the (double-float -2d9 2d9) (kick-y kick))))
@@ -300,10 +300,10 @@ it begins. NIL if there is none, as all eight are filled."
 (declaim (inline kick-thing))
 (public kick-thing)
 (defun kick-thing (thing dx dy kick-if-wall)
-  "Move THING by DX, DY metres (manual 5.3.1). If that ends in a wall, move it to an empty cell
-beside that one (the nearest to where it was) if KICK-IF-WALL is true, or else not at all. True
-if it was put into a cell, which may be its own; NIL also if it is inside something closed or has
-been destroyed (reading 172)."
+  "Move THING by DX, DY metres (manual 5.3.1). If that ends in a wall: with KICK-IF-WALL true, move
+it to the empty cell beside that wall which is nearest to where it was; else leave it. True if it
+was put into a cell, perhaps its own. NIL also if it is inside something closed or destroyed
+(reading 172)."
   (let ((moved (if (and (typep dx 'common-number) (typep dy 'common-number))
                    (let ((kick (make-kick (double dx) (double dy))))
                      (declare (dynamic-extent kick))

@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.world)
 
-;;; In a large world a move spends most of its time waiting for memory: for the thing, then for what
-;;; is known of its cell, as one says where the other is. A processor waits for many words at a time
-;;; as briefly as for one if it knows where they are. So short loops that only read go ahead of many
-;;; moves, one for each step of that chain. What they find decides nothing.
+;;; In a large world a move mostly waits for memory: for the thing, then for its cell, since one
+;;; says where the other is. A processor waits for many words as briefly as for one if it knows
+;;; their addresses. So before many moves, short loops read ahead, one loop for each step of that
+;;; chain. What they read does not affect results.
 
 ;; The more the better, as each loop ends with waiting, as long as a processor has room for it all.
 (defconstant +batch+ 512 "For how many moves memory is read at once.")
@@ -22,8 +22,8 @@
       0))
 
 (defun read-ahead (batch count world)
-  "Read what it takes to move the first COUNT elements of BATCH, things of WORLD or NIL; they are
-overwritten. Return a number without a meaning, for which all has to be read indeed."
+  "Read ahead what it takes to move the first COUNT elements of BATCH, things of WORLD or NIL; they
+are overwritten. Return a meaningless number, which keeps the compiler from removing the reads."
   (declare #.*hot* (type batch batch) (type batch-count count) (type world world))
   (let* ((stock (world-stock world)) (firsts (stock-firsts stock)) (nexts (stock-nexts stock))
          (flags (world-flags world)) (sum 0))
@@ -55,14 +55,14 @@ overwritten. Return a number without a meaning, for which all has to be read ind
     (truncate (the (double-float 0d0 #.(double (expt 2 40)))
                    (min #.(double (expt 2 40)) (* scale (%logarithm u)))))))
 
-;;; To know which trials will succeed, dice are rolled before their time. What they come to depends
-;;; on their state alone: so whoever finds them in that state need not reckon it again.
+;;; To know which trials will succeed, numbers are drawn ahead. They depend on the state of the dice
+;;; alone, so if the dice are in that state later, the results need not be computed again.
 
 (deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch+)))
 
 (defstruct (outlook (:constructor make-outlook ()) (:copier nil))
-  "What dice will be rolled to next: COUNT of the GAPS. That with the number NEXT is what comes of
-dice in STATE."
+  "The next draws of dice: COUNT of the GAPS. These, with the number NEXT, result from dice in
+STATE."
   (gaps (make-array +batch+ :element-type '(unsigned-byte 62) :initial-element 0)
    :type gaps :read-only t)
   (count 0 :type batch-count)
@@ -73,8 +73,8 @@ dice in STATE."
 ;; Inline, so that SCALE is not boxed.
 (declaim (inline foresee))
 (defun foresee (outlook index end scale dice)
-  "Let OUTLOOK know what DRAW-GAP will return next for SCALE and DICE, as far as trials before END
-are concerned if the next that succeeds has INDEX. Return the index of the first after them."
+  "Store in OUTLOOK what DRAW-GAP will return next for SCALE and DICE, for trials before END, if the
+next success has INDEX. Return the index of the first success after them."
   (declare (type outlook outlook) (type (unsigned-byte 50) index end)
            (type double-float scale) (type dice dice))
   (let ((dice (copy-dice dice)) (gaps (outlook-gaps outlook)) (count 0))

@@ -4,10 +4,10 @@
 
 (export '(make-world reset-world recipe make-recipe destroyed-thing))
 
-;;; A recipe is fixed when it is written: a prototype's attributes and contents are copied then,
-;;; so that a world made of it later does not depend on what became of the prototype. Contents
-;;; are made before their container, each with the next serial number of the world; prototypes
-;;; take none. Manual 5.1 and 5.3.
+;;; A recipe is fixed when it is written: a prototype's attributes and contents are copied then, so
+;;; later changes of the prototype do not affect worlds made from the recipe. Contents are made
+;;; before their container, each with the next serial number of the world; prototypes take none.
+;;; Manual 5.1 and 5.3.
 
 (define-record (recipe (:constructor make-recipe (name attributes contents &key kickers x y)))
   "A thing to be made: NAME with ATTRIBUTES, CONTENTS and KICKERS; in a map's recipe, at X, Y."
@@ -137,7 +137,7 @@ tick 0, robots where they start. Timeline and watchers stay. Return WORLD."
                           "NIL, what holds things, (:with thing) or (map x y)"))
         (t (values (check-holder 'new-thing nil location) location))))
 
-;; What is noted does not depend on what becomes of a prototype, or of a map's name.
+;; What is noted is independent of later changes to a prototype, or to a map's name.
 (defun noted-location (location world)
   "Return LOCATION, in WORLD, for MAKE-THING-AGAIN."
   (if (and (consp location) (not (eq :with (first location))))
@@ -186,8 +186,8 @@ hand that holds something."
       thing)))
 
 (defun position-form-p (form environment)
-  "True if FORM, three elements long, means (map x y) rather than a call in ENVIRONMENT: it does if
-it begins with a variable or the name of a map, and unless it begins with that of a function."
+  "True if FORM, three elements long, means (map x y) rather than a call in ENVIRONMENT: that is, if
+it begins with a variable or the name of a map and not with the name of a function."
   (and (proper-list-p form) (= 3 (length form))
        (let ((head (first form)))
          (or (consp head)

@@ -99,7 +99,7 @@ that is like another thing's, gets a warning, once in a run."
     (first things)))
 
 (defun not-a-thing-text (value)
-  "Return in words how to have a thing, for somebody who gave VALUE instead."
+  "Return an explanation of how to refer to a thing, for a caller who passed VALUE instead."
   (format nil "such as (find-thing '~:[NAME~;~:*~(~A~)~]) returns~:[~;, which is NIL where nothing ~
                is called NAME~@[: ~A~]~]"
           (and value (symbolp value) (not (keywordp value)) value)

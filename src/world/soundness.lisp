@@ -5,8 +5,8 @@
 (export '(check-world world-invariant-violations))
 
 (defun check-cell (index stock met)
-  "Signal CONTRADICTION unless what lies in the cell INDEX of STOCK are things that none of the tags
-in MET, which they are added to, stand for."
+  "Signal CONTRADICTION unless the cell INDEX of STOCK contains things, none of which has a tag in
+MET. Add their tags to MET."
   (loop for tag = (aref (stock-firsts stock) index) then (aref (stock-nexts stock) (1- tag))
         until (zerop tag)
         do (must-hold (and (<= tag (stock-count stock))
@@ -79,7 +79,7 @@ in MET, which they are added to, stand for."
              "~A is not marked as what it is" thing))
 
 (defun check-floor (world met)
-  "Count in MET what lies in the cells of WORLD, and check that and the cells' flags."
+  "Add the things in the cells of WORLD to MET, and check them and the cells' flags."
   (loop for index below (length (world-flags world))
         for flags = (aref (map-flags (world-map world)) index)
         do (do-cell (thing index world)
@@ -170,8 +170,8 @@ in MET, which they are added to, stand for."
              "the kickers that are due are none"))
 
 (defun check-world (world)
-  "Signal an error, CONTRADICTION as far as we know, unless WORLD, which was put together from a
-file, could have come about by itself."
+  "Signal an error, CONTRADICTION where we check for it, unless WORLD, which was read from a file,
+is a state that a run can reach."
   (must-hold (and (= (length (world-dice-set world)) (length +dice-purposes+))
                   (every (lambda (dice) (typep dice 'dice)) (world-dice-set world)))
              "its dice are none")

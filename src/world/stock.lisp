@@ -2,10 +2,11 @@
 
 (in-package :ars-magna.world)
 
-;;; A world may have a million cells and a hundred thousand things. So what lies where is kept in
-;;; flat vectors of small numbers, which wait for little memory and are copied at once. The RANK of
-;;; a thing is its place in the vector of things. In those of numbers a thing is 1 more than that,
-;;; its TAG; 0 is no thing. The things on the floor of a cell are a chain, in order of arrival.
+;;; A world may have a million cells and a hundred thousand things. So positions are kept in flat
+;;; vectors of small numbers, which need few memory accesses and are copied at once. The RANK of a
+;;; thing is its index in the vector of things. In the vectors of numbers a thing is its TAG, 1 more
+;;; than its rank; 0 is no thing. The things on the floor of a cell form a chain, in order of
+;;; arrival.
 
 (deftype tag () '(unsigned-byte 32))
 (deftype tags () '(simple-array tag (*)))
@@ -29,7 +30,7 @@
 
 ;;; Cells.
 
-;; Inline, as those who move things call them by the thousand in a tick.
+;; Inline: callers that move things call them by the thousand in a tick.
 (declaim (inline thing-of-tag call-with-cell append-to-cell take-from-cell marks-of-cell))
 (defun thing-of-tag (tag stock)
   "Return the thing of STOCK that TAG, not 0, stands for."
@@ -45,7 +46,7 @@
         do (funcall function (thing-of-tag tag stock))))
 
 (defun append-to-cell (rank index stock)
-  "Let the thing with RANK, which lies nowhere, lie in the cell INDEX of STOCK: it came last."
+  "Put the thing with RANK, which is in no cell, last into the cell INDEX of STOCK."
   (declare (type cell-index rank index) (type stock stock))
   (let* ((firsts (stock-firsts stock)) (nexts (stock-nexts stock)) (first (aref firsts index)))
     (if (zerop first)
@@ -56,7 +57,7 @@
               finally (setf (aref nexts (1- tag)) (1+ rank))))))
 
 (defun take-from-cell (rank index stock)
-  "Let the thing with RANK, which lies in the cell INDEX of STOCK, lie nowhere."
+  "Take the thing with RANK out of the cell INDEX of STOCK."
   (declare (type cell-index rank index) (type stock stock))
   (let* ((firsts (stock-firsts stock)) (nexts (stock-nexts stock))
          (tag (1+ rank)) (next (shiftf (aref nexts rank) 0)))
@@ -75,7 +76,7 @@
        (zerop (aref (stock-nexts stock) rank))))
 
 (defun marks-of-cell (index stock)
-  "Return the flags of the cell INDEX that come of what lies in it."
+  "Return the flags of the cell INDEX that its things cause."
   (declare (type cell-index index) (type stock stock))
   (loop with flags of-type (unsigned-byte 8) = 0
         for tag of-type tag = (aref (stock-firsts stock) index)
@@ -87,7 +88,7 @@
 ;;; Things.
 
 (defun resize (vector size)
-  "Return a vector of SIZE, larger, with what is in VECTOR and 0 or NIL behind that."
+  "Return a larger vector of SIZE with the contents of VECTOR, then 0 or NIL."
   (replace (make-array size :element-type (array-element-type vector)
                             :initial-element (if (simple-vector-p vector) nil 0))
            vector))
@@ -103,10 +104,10 @@
     (setf (thing-rank thing) rank
           (svref (stock-things stock) rank) thing)))
 
-;; Ranks get smaller, from the first to the last: so a tag in FIRSTS that has been put right is not
-;; mistaken for one that has yet to be.
+;; Ranks only get smaller, from the first to the last, so an updated tag in FIRSTS is never mistaken
+;; for one yet to be updated.
 (defun close-gaps (stock index-of)
-  "Let the ranks in STOCK have no gaps. INDEX-OF returns the cell in which a thing lies, or NIL."
+  "Renumber the ranks in STOCK without gaps. INDEX-OF returns the cell of a thing, or NIL."
   (let* ((old (stock-things stock)) (nexts (stock-nexts stock)) (count (stock-count stock))
          (ranks (make-array count :initial-element nil))
          (new (make-stock)))
@@ -130,7 +131,7 @@
           (stock-marks stock) (stock-marks new)
           (stock-count stock) (stock-count new))))
 
-;;; What is where, for a digest: the things in each cell, then those that there are.
+;;; The contents for a digest: the things in each cell, then all things.
 
 (defmethod digest-state ((stock stock) digest)
   (digest-add digest (length (stock-firsts stock)))

@@ -20,7 +20,7 @@
 
 (define-registry substance "substance" :object-p substance-p)
 
-;; The first substances are defined below, where what is compiled is not yet there.
+;; The first substances are defined below, where compiled functions are not yet available.
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun reject-parameter (name parameter)
     (reject-clause (title "defsubstance" name) parameter
@@ -42,8 +42,8 @@
 (addition defsubstance)
 (define-user-macro defsubstance (&whole form name &optional parameter documentation
                                  &environment environment)
-  "Define the type of substance NAME, a symbol: things whose :substance is NAME are viewed as
-PARAMETER, a number; the string DOCUMENTATION says what it is. Our addition to manual 2.1 and 3.3.
+  "Define the type of substance NAME, a symbol: cameras see things whose :substance is NAME as
+PARAMETER, a number. The string DOCUMENTATION describes it. Our addition to manual 2.1 and 3.3.
 Return the name."
   (expand-definition form environment
                      (lambda ()

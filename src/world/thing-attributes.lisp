@@ -25,8 +25,8 @@
               (or (declared-name-like key) (carried-name-like key world))))))
 
 (defun note-slip (operator thing key &key read)
-  "Warn, once, if OPERATOR was given KEY for an attribute of THING, in a world, which is declared by
-nobody, had by nothing, and looks like a declared one or, if it is READ, like one that is had."
+  "Warn once if OPERATOR was given KEY, an undeclared attribute that no thing has, for THING, in a
+world, and KEY resembles a declared attribute or, if it is READ, one that a thing has."
   (let ((world (thing-world thing)))
     (when (and world (not (attribute-of key)))
       (let ((like (known-likeness key world)))
@@ -145,16 +145,16 @@ that the attribute cannot have. Warns as GET-ATTRIBUTE does."
 (define-operator 'change-attribute '(thing datum)
   (lambda (thing descriptor) (call-with-data #'change-attribute thing descriptor)))
 
-;;; Things may have attributes that no DEFATTRIBUTE declares, and specifications may ask for them.
-;;; A name that looks like a declared one is remarked on where a thing is defined; one that no
-;;; thing of the world has, where it is asked for, once in a run.
+;;; Things may have undeclared attributes, and specifications may ask for them. Where a thing is
+;;; defined, a warning names an attribute that resembles a declared one. Where a specification asks
+;;; for one that no thing of the world has, a warning says so once in a run.
 
 (defparameter *options-of-things*
   '((:prototype "(obj (~A :prototype box) ...)" "(new-thing ~A place (...) :prototype box)")
     (:kickers "(obj (~A :kickers (sway)) ...)" "(make-new-thing '~A place '(...) :kickers '(sway))")
     (:contents "(obj ~A (x y) (...) thing...)" "(make-new-thing '~A place '(...) :contents list)"))
-  "What is said of a thing beside its attributes: the option, and how it is written in a map and on
-the fly.")
+  "Options of a thing beside its attributes: the option, and how to write it in a map and at run
+time.")
 
 (defun option-called (name)
   "Return the entry of *OPTIONS-OF-THINGS* that NAME is or is a slip for, or NIL."
@@ -163,8 +163,8 @@ the fly.")
         (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
 
 (defun slips-in (descriptor)
-  "Return a list of lists (name like): the names in the object DESCRIPTOR that are not declared, but
-may be slips for the declared name LIKE, or, if that is NIL, are options of things."
+  "Return a list of lists (name like) for the undeclared names in the object DESCRIPTOR that
+resemble the declared name LIKE, or, if LIKE is NIL, are options of things."
   (loop for (name) in descriptor
         for like = (declared-name-like name)
         when (or like (option-of-things-p name))
@@ -196,7 +196,7 @@ may be slips for the declared name LIKE, or, if that is NIL, are options of thin
     (warn-once (first slip) world (text-of-slip name slip))))
 
 (defun note-strange-name (key world)
-  "Warn, once, if the attribute KEY of a specification is declared by nobody and had by nothing."
+  "Warn once if the attribute KEY of a specification is undeclared and no thing has it."
   (unless (or (attribute-of key)
               (said-p key world)
               (carried-p key world))
@@ -208,8 +208,8 @@ may be slips for the declared name LIKE, or, if that is NIL, are options of thin
 ;;; An attribute that is declared anew may no longer have the values that things have.
 
 (defun unfit-recipe (recipes key)
-  "Return the first of RECIPES, or of those in them, whose things have a value that KEY cannot have;
-and what is wrong with it."
+  "Return the first of RECIPES and their contents whose value of KEY is invalid, and what is wrong
+with it."
   (find-recipe (lambda (recipe)
                  (let ((value (second (assoc key (recipe-attributes recipe) :test #'eq))))
                    (handler-case (progn (check-attribute-value 'defattribute key value) nil)

@@ -5,9 +5,9 @@
 (export '(location-contents location-position location-world location-closed-p location-full-p
           location-name location-words thing thing-holders-text value-like note-unknown-substance))
 
-;;; The location of a thing is :FLOOR (then it has a position of its own), something that
-;;; holds it -- a thing or, in the layer above, a hand or storage bin -- or NIL: nowhere, as
-;;; for prototypes and what has been destroyed. What holds things answers these questions.
+;;; The location of a thing is :FLOOR (then it has a position), or its holder, a thing or, in the
+;;; layer above, a hand or storage bin, or NIL, as for prototypes and destroyed things. Holders
+;;; implement these functions.
 
 (defgeneric location-contents (location)
   (:documentation "Return the list of things directly in LOCATION, a thing, hand or storage bin,
@@ -44,11 +44,11 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
   (:method (location)
     (check-argument remaining-capacity location nil "a thing, hand or storage bin")))
 
-;;; The attributes that the simulator itself knows (manual, table 3.3). The manual gives the sensing
-;;; parameters of :color and :size and the supporters of :capacity. The rest are our choice: what
-;;; blocks the way or the view, or is closed, is plain to see if one looks for it; weight and
-;;; capacity are guesses from afar; a substance that is a symbol is read right in :success of all
-;;; cases.
+;;; The attributes that the simulator uses itself (manual, table 3.3). The manual gives the sensing
+;;; parameters of :color and :size and the supporters of :capacity. The rest are our choice. Whether
+;;; a thing blocks the way or the view, or is closed, is plain to see if you look for it. Weight and
+;;; capacity are guesses at a distance. A substance that is a symbol is read right with probability
+;;; :success.
 
 ;; As reading 121 says.
 (defattribute :obsmove (t nil)

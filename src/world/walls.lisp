@@ -139,7 +139,7 @@ to 1e15"
                         (map-greatest-parameter map) greatest))))
 
 (defun note-walls (map)
-  "Note what is to be known of the walls of MAP, now that all are drawn. Return MAP."
+  "Record facts about the walls of MAP, once all are drawn. Return MAP."
   (note-parameter-range map)
   (let ((right (1- (map-width map))) (bottom (1- (map-height map))))
     (setf (map-enclosed map)

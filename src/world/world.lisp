@@ -57,10 +57,10 @@ grip" :export)))
 (declaim (inline world-dice))
 (addition world-dice)
 (defun world-dice (world purpose)
-  "Return the dice of WORLD for PURPOSE: :motion, :odometry, :place, :looking, :tracking,
-:handling, :kickers, :manipulations or :user. Users roll those for :user, and only in what runs
-within ticks: kickers, manipulations and events. What is rolled outside, as in continuations and
-plans, is not repeated when a journal is replayed."
+  "Return the dice of WORLD for PURPOSE: :motion, :odometry, :place, :looking, :tracking, :handling,
+:kickers, :manipulations or :user. Use those for :user, and only in code that runs within ticks:
+kickers, manipulations and events. Numbers drawn elsewhere, as in continuations and plans, are not
+repeated in a replay."
   (the dice (svref (world-dice-set world)
                    (ecase purpose
                      (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
@@ -131,10 +131,10 @@ in order of arrival. NIL outside the map. Signals WRONG-ARGUMENT."
       (do-cell (thing index world) (push thing things)))
     (nreverse things)))
 
-;;; Whoever runs a world changes it within its ticks: kickers, events, commands. What users do from
-;;; anywhere else goes to the world's owner, its timeline, by one generic function: the layer above
-;;; sends it to the thread that may do it, and notes it in the journal. A world says which thread
-;;; is changing it; so nobody else has to.
+;;; Code within ticks (kickers, events, commands) changes the world directly. Changes by users from
+;;; elsewhere go to the world's timeline by one generic function: the layer above sends them to the
+;;; thread that owns the world, and records them in the journal. A world records which thread is
+;;; changing it, so callers need not.
 
 (defgeneric change-world (timeline world function operator arguments)
   (:documentation
@@ -165,13 +165,13 @@ does with the list ARGUMENTS.")
      (call-writing #'write-it ,world)))
 
 (defun world-of-living (thing)
-  "Return the world that THING is in, or NIL if it is a prototype or has been destroyed, so that
-what becomes of it is nobody's business."
+  "Return the world that THING is in, or NIL if it is a prototype or destroyed; changing it then
+affects no world."
   (and (thing-alive-p thing) (thing-world thing)))
 
 (defmacro changing ((world operator &rest arguments) &body body)
-  "Run BODY, which changes WORLD (NIL: nobody's, as of prototypes), where that is allowed; it is
-what OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside ticks."
+  "Run BODY, which changes WORLD, where that is allowed; WORLD is NIL for prototypes. BODY does what
+OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside ticks."
   (once-only (world)
     `(flet ((change-it () ,@body))
        (if (writing-p ,world)
@@ -180,9 +180,9 @@ what OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside
            (change-world (world-timeline ,world) ,world (lambda () (change-it))
                          ',operator (list ,@arguments))))))
 
-;;; What is allowed, but most likely not what the user wanted, is said once: further warnings about
-;;; the same name would only hide others. Saved runs know a world's slots by name: NOTED-NAMES has
-;;; all that has been said, though it began with names of attributes.
+;;; A call that is allowed, but most likely a mistake, gets a warning once: more about the same name
+;;; would only hide others. Saved runs refer to a world's slots by name, so the slot is still called
+;;; NOTED-NAMES, though it now holds all warnings given, not only names of attributes.
 
 ;;; Plans of live runs warn in a thread of their own: NOTED-NAMES is read and changed under a lock.
 
@@ -201,17 +201,17 @@ what OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside
       t)))
 
 (defun note-looked-after (world)
-  "Note that the program has looked itself at what was under way in the run of WORLD."
+  "Note that the program has itself checked what is in progress in the run of WORLD."
   (first-time-p '(:looked-after) world))
 
 (defun looked-after-p (world)
-  "True if the program has looked itself at what was under way in the run of WORLD."
+  "True if the program has itself checked what is in progress in the run of WORLD."
   (said-p '(:looked-after) world))
 
 (defun warn-once (key world items &key (notable t))
   "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had one about KEY,
-such as a list of a topic and a name. It is shown like an error if nobody reads it and NOTABLE is
-true, or a function that returns true by then. Return true if it was queued."
+such as a list of a topic and a name. If nobody reads it, it is shown like an error, provided that
+NOTABLE is true, or is a function that returns true by then. Return true if it was queued."
   (when (first-time-p key world)
     (queue-message (make-message :warning (ensure-list items) :notable-p notable) *message-queue*)
     t))
