@@ -23,7 +23,7 @@
   (list 'storage-bin :capacity (parse-amount capacity reject)))
 
 (defun maps-to-choose (name)
-  "Return in words which maps there are, for somebody who has asked for NAME."
+  "Return a list of the maps in words, for a message about the unknown NAME."
   (let ((names (mapcar #'map-name (all-maps))))
     (if names
         (format nil "a map: ~{~(~A~)~^, ~}~@[; did you mean ~(~A~)?~]"
@@ -93,7 +93,7 @@
                             cameras, hands and bins have options of their own")))
     (cons (kind-name kind) (parse-values kind specification reject))))
 
-;;; Each option says of its parts in a way of its own what is made of them.
+;;; Each option has its own way to say what a part is made from.
 
 (defun camera-form (camera cameras value)
   (declare (ignore cameras))
@@ -123,10 +123,12 @@
               "a list of capacities after :bins: (20) is one bin of capacity 20")
         (list :parts #'part-form #'parse-part
               "a list of lists after :parts, (kind initarg value ...)"))
-  "The options of DEFROBOT that give it parts, in the order of ROBOT-PARTS. Behind each stand: the
-function that makes of what was said of a part, of all that the option says, and of a function of a
-form and what it stands in, a form for its value; the function that makes of that value, and of one
-that rejects, a list (kind initarg value ...); and what is to follow the option, for FORMAT.")
+  "The options of DEFROBOT for parts, in the order of ROBOT-PARTS. Each is followed by:
+- a function of the text of a part, the whole option, and a function of a form and its context that
+  returns a form for its value; it returns a form for the part
+- a function of the value of that form, and of one that rejects; it returns a list (kind initarg
+  value ...)
+- what should follow the option, for FORMAT")
 
 (defun parse-parts (lists reject)
   "Return what LISTS, a property list of options of DEFROBOT and their values, say of parts."
@@ -214,13 +216,16 @@ robot."
 (public defrobot)
 (define-user-macro defrobot (&whole form name &optional start &body options
                              &environment environment)
-  "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
-[:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]
-[:documentation TEXT]). NAME becomes a special variable bound to the robot, which stands in the
-resident world of the map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in
-radians. Numbers are evaluated. Parts of kinds of one's own, which the manual does not have, are
-made as their KIND says (see DEFINE-KIND). A robot that was called NAME before takes no more
-commands. Signals MALFORMED-DEFINITION (manual 5.2). See reading 9."
+  "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) options...). Options:
+  :cameras ((FOV RESOLUTION) ...)
+  :hands (STRENGTH ...)
+  :bins (CAPACITY ...)
+  :parts ((KIND INITARG VALUE ...) ...) -- ours: parts of your own kinds, see DEFINE-KIND
+  :documentation TEXT
+NAME becomes a special variable bound to the robot. The robot stands in the resident world of the
+map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
+evaluated. An earlier robot called NAME takes no more commands. Signals MALFORMED-DEFINITION (manual
+5.2). See reading 9."
   (let ((definition (title "defrobot" name)))
     (expand-definition form environment
                        (lambda ()

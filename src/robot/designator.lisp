@@ -5,17 +5,17 @@
 (export '(*robot-meant* designators-on *designator-limit* thing-space designator-local-p*
           serial-designator make-designator add-designator))
 
-;;; A designator denotes a thing, a PLACE, or nothing: then it is false and X, Y is where the robot
-;;; believes something to be. Type, angle and data are for programs to read, the rest is the
-;;; simulator's. It is valid until it is dropped (see tracks.lisp); its number is then free,
-;;; its serial number never again. Its LOCATION is where the camera was that saw it: a
-;;; container, a storage bin, or NIL in the open.
+;;; A designator denotes a thing, a PLACE, or nothing: then it is false, and X, Y is where the robot
+;;; seems to have seen something. Programs may read type, angle and data; the rest is for the
+;;; simulator. It is valid until it is dropped (see tracks.lisp). Then its number may be used again,
+;;; its serial number never. Its LOCATION is where the camera was that saw it: a container, a
+;;; storage bin, or NIL in the open.
 
 (public designator)
 ;; As reading 138 says.
 (addition designator-p)
 (define-kind (designator)
-    "A handle on a thing or place that a camera has seen, or believes that it has (manual 3.4.1)."
+    "A handle for a thing or place that a camera has seen, or seems to have seen (manual 3.4.1)."
   (:fixed
    (robot nil (or null robot) "the robot that the designator is a handle for" :addition)
    (number 0 fixnum "the designator's number; after it was dropped, another may have it" :addition)
@@ -67,13 +67,13 @@ robot."
          (< -1 number (length designators))
          (aref designators number))))
 
-;; The prompt sets it: it commands one robot of those that there are.
+;; The prompt sets it: its lines command one of the robots.
 (defvar *robot-meant* (lambda () (and *world* (first (world-robots *world*))))
-  "A function that returns the robot that is meant where nobody says which.")
+  "A function that returns the robot to use if none is given.")
 
 (defun designator (number &optional (robot (funcall *robot-meant*)))
-  "Return the designator of ROBOT with NUMBER; ROBOT is by default the one that the prompt commands,
-or else the first of the world. An addition to manual 3.4.1, for what is typed. Signals
+  "Return the designator of ROBOT with NUMBER. ROBOT is by default the one that the prompt commands,
+or else the first of the world. An addition to manual 3.4.1, for use at the prompt and REPL. Signals
 WRONG-ARGUMENT if there is none."
   (or (find-designator robot number)
       (reject-argument 'designator "number" number
@@ -157,8 +157,8 @@ a container or in a bin, and within reach. False of places."
 ;;; While a robot turns, the world stands still.
 
 (defun turn-designators (robot angle)
-  "Let the designators of ROBOT, which has turned by ANGLE, keep their directions in the world;
-those that have none, being where the robot is, turn along with it."
+  "Rotate the designators of ROBOT, which has turned by ANGLE, so that they keep their directions in
+the world. Those at the robot's own position have no direction and turn with the robot."
   (loop for designator across (robot-designators robot)
         when (and designator (designator-bearing-p designator))
           do (decf (designator-angle designator) angle)))
@@ -189,9 +189,9 @@ those that have none, being where the robot is, turn along with it."
 
 (defun add-designator (robot &key (type :non-local) (angle 0d0) (distance 0d0) data denotation
                                   x y location)
-  "Return a new designator of ROBOT: of TYPE, for DENOTATION (a THING, a PLACE, or NIL for one that
-seems to be at X, Y), seen at DISTANCE metres and at ANGLE to the heading, described by
-DATA, in LOCATION (NIL: in the open)."
+  "Return a new designator of ROBOT: of TYPE, for DENOTATION (a THING, a PLACE, or NIL for a false
+one at X, Y), seen at DISTANCE metres and at ANGLE to the heading, described by DATA, in LOCATION
+(NIL: in the open)."
   (when (>= (length (robot-designators robot)) *designator-limit*) (forget-oldest robot))
   (let ((designator (make-designator :type type :robot robot :data data :location location
                                      :denotation denotation

@@ -6,10 +6,12 @@
           move-part space-around settle-robots))
 
 ;;; A hand or camera is in the open with its robot (location NIL), inside a thing, or inside one of
-;;; the robot's storage bins. What a hand holds is where the hand is. Invariants: nothing is inside
-;;; itself by way of a hand; after each tick, what a part is inside of is within the robot's
-;;; reach and in no bin that is closed or another robot's; and a hand holds one thing at most. Parts
-;;; take up no room: what they reach into has as much capacity left as before.
+;;; the robot's storage bins. What a hand holds is where the hand is. Invariants:
+;;; - Nothing is inside itself by way of a hand.
+;;; - After each tick, a part is only inside things within the robot's reach, and not in a closed
+;;;   bin or another robot's bin.
+;;; - A hand holds at most one thing.
+;;; Parts take up no room: they do not reduce the remaining capacity.
 
 (public in-location)
 (defun in-location (thing location)
@@ -53,7 +55,7 @@
   (max 0d0 (- (storage-bin-capacity bin)
               (loop for thing in (storage-bin-contents bin) sum (thing-size thing)))))
 
-;;; A hand in something closed keeps what it holds in there.
+;;; A hand in a closed container keeps what it holds in there.
 
 (defmethod location-closed-p :around ((hand hand))
   (or (call-next-method)
@@ -62,8 +64,8 @@
             thereis (location-closed-p outer))))
 
 (defun set-down (hand thing)
-  "Leave THING, which HAND holds, where the hand is: in what it is inside of, or on the floor where
-the robot stands (reading 152)."
+  "Leave THING, which HAND holds, where the hand is: in its container, or on the floor where the
+robot stands (reading 152)."
   (let ((robot (hand-robot hand)))
     (if (hand-location hand)
         (move-thing thing (hand-location hand))
@@ -72,8 +74,8 @@ the robot stands (reading 152)."
 ;;; Parts into and out of containers.
 
 (defun move-part (part location)
-  "Take PART, a camera or hand, into LOCATION: a thing, a storage bin, or NIL for the open. What
-it holds moves along, what it tracks is lost; warnings say so."
+  "Move PART, a camera or hand, into LOCATION: a thing, a storage bin, or NIL for the open. What it
+holds moves along; its track is lost; warnings say so."
   (let ((old (part-location part)))
     (when (thing-p location)
       (pushnew #'watch-container (world-move-watchers (location-world part))))
@@ -82,7 +84,7 @@ it holds moves along, what it tracks is lost; warnings say so."
     (part-moved part old)))
 
 (defun space-around (part)
-  "Return where PART comes to when it is taken out of what it is inside of."
+  "Return the location of PART after it is taken out of its container."
   (let* ((location (part-location part))
          (space (and (thing-p location) (thing-space location))))
     (if (eq space :nowhere) nil space)))
@@ -98,8 +100,8 @@ it holds moves along, what it tracks is lost; warnings say so."
         when (storage-bin-p outer) return outer))
 
 (defun astray-p (part)
-  "True if PART is inside a thing that is not within its robot's reach any more, or that has got
-into a closed bin or that of another robot."
+  "True if PART is inside a thing that is no longer within its robot's reach, or that is now in a
+closed bin or in another robot's bin."
   (let ((location (part-location part)))
     (and (thing-p location)
          (or (multiple-value-bind (x y) (thing-position location)
@@ -118,8 +120,8 @@ into a closed bin or that of another robot."
         do (set-down hand (first (last (hand-contents hand))))))
 
 (defun settle-parts (robot)
-  "Pull out the parts of ROBOT that are inside things out of its reach, and let its hands drop
-what they hold too much."
+  "Pull the parts of ROBOT out of things beyond its reach, and make its hands drop all but one
+thing."
   (declare #.*hot* (type robot robot))  ; in each tick
   (loop for hand across (robot-hands robot)
         do (when (or (hand-location hand) (rest (hand-contents hand))) (settle-hand hand)))
@@ -145,6 +147,6 @@ what they hold too much."
 (note-lasting 'watch-container)
 
 (defun settle-robots (world)
-  "Settle what is inside what in WORLD: pull out the parts of robots that are out of their reach."
+  "Enforce the rules on containment in WORLD: pull out robots' parts that are beyond their reach."
   (dolist (robot (world-robots world))
     (settle-parts robot)))

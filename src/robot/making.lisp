@@ -88,15 +88,15 @@ NIL."
 (defmethod reset :after ((robot robot))
   (stand-at-start robot))
 
-;;; A robot is retired when its definition, its map or its run is replaced. What it was doing is
-;;; interrupted; whoever still holds it and commands it is told so.
+;;; A robot is retired when its definition, its map or its run is replaced. Its commands are
+;;; interrupted; commands to it signal an error that says why.
 
 (defun retire-robot (robot reason)
-  "Let ROBOT take no more commands, for REASON, a sentence without its full stop."
+  "Make ROBOT refuse further commands, for REASON, a sentence without its full stop."
   (setf (robot-retired robot) reason))
 
 (defun close-robot (robot)
-  "Tell those who asked for it that the run of ROBOT is over."
+  "Call the functions registered for the end of the run of ROBOT."
   (call-each #'funcall (shiftf (robot-enders robot) '())))
 
 (defun check-in-run (resource operator)
@@ -148,11 +148,11 @@ NIL."
     (and (eq world (map-resident map))
          (eq map (find-map (map-name map) nil)))))
 
-;; Another thread may settle the same robot meanwhile: who owns the world decides. It may also have
-;; put another world in the place of this one: then that is the one to settle in.
+;; Another thread may settle the same robot meanwhile: the owner of the world decides. It may also
+;; have replaced the world: then the robot is settled in the new one.
 (defun settle-robot (blueprint)
-  "Put a robot made by BLUEPRINT into the resident world of its map, instead of any that was made by
-an earlier definition of its name, and return it; the one that is there already, if any."
+  "Put a robot made by BLUEPRINT into the resident world of its map, in place of any from an earlier
+definition of its name. Return it, or the one that is already there."
   (loop
     (let ((world (map-resident-world (find-map (blueprint-map blueprint)))) (robot nil))
       (check-start blueprint (world-map world))

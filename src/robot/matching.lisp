@@ -5,21 +5,22 @@
 (export '(own-symbol reading-reliability reading-deviation read-attribute angle-error
           specification-p specification-trouble notice-probability))
 
-;;; A discrete attribute is read right with a probability that falls with distance; a wrong reading
+;;; A discrete attribute is read right with a probability that falls with distance. A wrong reading
 ;;; is any value of the domain, so it may be right by luck. A reading of a numeric attribute is
-;;; normally distributed; its deviation grows with distance. The manual's formula for that, which
-;;; we follow, lets it come near its largest within a metre (its figure looks more gradual).
-;;; Attributes that nobody defined are read as they are.
+;;; normally distributed; its deviation grows with distance. We follow the manual's formula, by
+;;; which it comes near its largest within a metre (the manual's figure looks more gradual).
+;;; Undeclared attributes are read exactly.
 
 (defun reading-reliability (attribute distance)
-  "Return the probability that the discrete ATTRIBUTE is read right DISTANCE metres away: p / max(1,
-f d (1-p)), p being its base probability and f DISCRETE-NOISE-FACTOR* (manual 3.4.2; reading 115)."
+  "Return the probability that the discrete ATTRIBUTE is read right from DISTANCE metres: p / max(1,
+f d (1-p)), where p is its base probability and f DISCRETE-NOISE-FACTOR* (manual 3.4.2; reading
+115)."
   (let ((p (attribute-success attribute)))
     (/ p (max 1d0 (* (double discrete-noise-factor*) (double distance) (- 1d0 p))))))
 
 (defun reading-deviation (attribute distance)
-  "Return the standard deviation of readings of the numeric ATTRIBUTE from DISTANCE metres away: the
-larger of s and m s d / (d+f), s being its base deviation, m its largest multiplier and f
+  "Return the standard deviation of readings of the numeric ATTRIBUTE from DISTANCE metres: the
+larger of s and m s d / (d+f), where s is its base deviation, m its largest multiplier and f
 CONTINUOUS-NOISE-FACTOR* (manual 3.4.2; reading 116)."
   (let ((base (attribute-base attribute)) (distance (double distance)))
     (if (plusp distance)
@@ -32,8 +33,8 @@ CONTINUOUS-NOISE-FACTOR* (manual 3.4.2; reading 116)."
   (roll-gaussian value (reading-deviation attribute distance) dice))
 
 (defun own-symbol (value package)
-  "Return VALUE, or if it is a symbol, the one of the same name that somebody writes in PACKAGE, the
-name of a package; so that what is misread is still a word of the world's author. NIL: any will do."
+  "Return VALUE; for a symbol, the one of the same name in PACKAGE, the name of a package. So a
+misread value is a symbol of the package that the world was written in. NIL: any package will do."
   (let ((package (and package (find-package package))))
     (if (and value (symbolp value) (not (keywordp value)) (not (eq value t))
              package
@@ -78,9 +79,9 @@ by name."
   (if no-sensor-error* 0d0 (roll-within (double camera-angle-max-error*) dice)))
 
 ;;; A descriptor specification is a list of (attribute value) or (attribute value threshold). A
-;;; thing matches if readings of all those attributes fit; these readings are what is reported.
-;;; A thing that says nothing of a boolean attribute counts as having it false; of any other, it
-;;; does not match. Attributes that nobody defined are taken by the shape of the value.
+;;; thing matches if readings of all those attributes fit; these readings are reported. A boolean
+;;; attribute that a thing lacks counts as false; if it lacks any other attribute, it does not
+;;; match. Undeclared attributes are treated by the shape of the value.
 
 (defstruct (demand (:copier nil))
   "One attribute specification: a reading fits if it is a number from LOW to HIGH, or when these
@@ -199,7 +200,7 @@ as an object descriptor (reading 127)."
           (unless (fits-p demand reading) (return nil))
           (push (list key (as-asked demand reading thing)) readings))))))
 
-;;; What is noticed besides.
+;;; Attributes noticed in addition.
 
 (defun notice-probability (attribute keys)
   "Return the probability that ATTRIBUTE is sensed unasked when the attributes KEYS were asked for:
@@ -209,8 +210,8 @@ as an object descriptor (reading 127)."
     (- 1d0 (power (- 1d0 (attribute-noticed attribute)) (1+ given)))))
 
 (defun noticeable-p (attribute value map)
-  "True if there is something to be noticed when a thing of MAP has VALUE for ATTRIBUTE. A thing
-that says nothing of a boolean has it false; but of one that the manual does not know only where any
+  "True if a thing of MAP that has VALUE for ATTRIBUTE can be noticed for it. A boolean attribute
+that a thing lacks is false; for one that the manual does not define, this applies only if some
 thing of MAP starts with it."
   (or value
       (and (can-be-false-p attribute)
@@ -231,7 +232,7 @@ function of an attribute, returns its value, and secondly whether there is anyth
                                                      (map-package map))))))))
 
 (defun describe-thing (thing readings distance dice)
-  "Return what a search reports of THING: what is noticed, then READINGS (reading 128)."
+  "Return what a search reports of THING: noticed attributes, then READINGS (reading 128)."
   (append (notice-attributes (thing-map thing) (mapcar #'first readings)
                              (lambda (attribute)
                                (values (thing-value thing (attribute-name attribute)) t))

@@ -6,10 +6,10 @@
           longest-step step-now robot-turn-angle-now begin-movement robot-last-move
           robot-last-move-estimate robot-cell-index))
 
-;;; Motion is swept: the robot passes through each cell between where it is and where it would
-;;; be, and stops just short of the first that blocks. The cell it stands in never does, so that it
-;;; is never trapped by a thing that comes to it. What cells block is in the world's flags. What it
-;;; would enter by less than the contact gap it only brushes, and goes on.
+;;; Motion is swept: the robot passes through each cell between its position and its target, and
+;;; stops just short of the first that blocks. Its own cell never blocks, so a thing that moves
+;;; there cannot trap it. The world's flags say which cells block. If the robot would enter a cell
+;;; by less than the contact gap, it only touches it and continues.
 
 (declaim (inline what-blocks))
 (defun what-blocks (flag)
@@ -18,12 +18,12 @@
   (cond ((logtest flag +wall+) :wall)
         ((logtest flag +obsmove+) :thing)))
 
-;; Inline, so that no float has to be boxed on the way. A border belongs to the cell behind it for
-;; those who go to the right or down, and to the cell before it for those who go back.
+;; Inline, so that no float has to be boxed on the way. A position on a border belongs to the cell
+;; behind it when moving right or down, and to the cell before it when moving left or up.
 (declaim (inline free-way))
 (defun free-way (world x y dx dy distance)
-  "Return how far one can go from (X,Y), in the map, in direction (DX,DY), at most DISTANCE; column
-and row of the cell where that is; what blocks the way: :WALL, :THING or NIL; and whether that is in
+  "Return how far the way is free from (X,Y), in the map, in direction (DX,DY), at most DISTANCE;
+column and row of the cell at its end; the obstacle: :WALL, :THING or NIL; and whether that is in
 another column."
   (declare (type world world) (type double-float x y dx dy distance))
   (let* ((map (world-map world)) (flags (world-flags world))
@@ -53,8 +53,8 @@ another column."
                         (abs (- (+ y (* dy at)) (if back-y 0 (map-height map))))))))))
 
 (defun pass-corner (robot x y column row)
-  "Put ROBOT, which has come to (X,Y) in the cell at COLUMN and ROW and is blocked, into the cell
-opposite if only a corner is in its way. True if so."
+  "If ROBOT, in the cell at COLUMN and ROW, is blocked only by a corner, move it into the cell
+opposite. True if so."
   (let ((world (robot-world robot)))
     (multiple-value-bind (beyond-x beyond-y) (beyond-corner world +blocking+ x y column row)
       (unless (or (null beyond-x)
@@ -94,8 +94,8 @@ the metres in ROBOT-MOVED; return :WALL, :THING or NIL."
              nil))))
 
 (defun meet (robot block dx dy moved left cell-x cell-y sideways)
-  "Let ROBOT come to BLOCK, in the next column if SIDEWAYS, else in the next row, after MOVED metres
-with LEFT to go; and go on if that only touches its way. Return what blocks it, or NIL."
+  "Stop ROBOT before BLOCK, in the next column if SIDEWAYS, else in the next row, after MOVED metres
+with LEFT to go; continue if BLOCK only touches its way. Return what blocks it, or NIL."
   (let ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved))))
     (cond ((brushes-p (if sideways dx dy) left)
            (stand robot dx dy moved cell-x cell-y)
@@ -214,7 +214,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
 ;;; Driving and turning.
 
 (defun begin-movement (robot)
-  "Let the last movement of ROBOT begin here."
+  "Start a new movement of ROBOT here."
   (setf (robot-start-x robot) (robot-x robot)
         (robot-start-y robot) (robot-y robot)
         (robot-estimate-x robot) 0d0
@@ -226,7 +226,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
           (- (robot-y robot) (robot-start-y robot))))
 
 (defun robot-last-move-estimate (robot)
-  "Return how far ROBOT believes that its last movement has taken it, in x and in y."
+  "Return the robot's estimate of its last movement, in x and in y."
   (values (robot-estimate-x robot) (robot-estimate-y robot)))
 
 (declaim (inline count-distance))

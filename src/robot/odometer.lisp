@@ -114,7 +114,7 @@ metres on the map, and the heading in radians. For displays: no program of the r
   (widen (odometer-angle-min odometer) low (odometer-angle-max odometer) high)
   (refresh-bounds odometer))
 
-;;; What programs use.
+;;; Functions for programs.
 
 (defun check-odometer (odometer operator)
   (unless (odometer-p odometer)
@@ -122,7 +122,7 @@ metres on the map, and the heading in radians. For displays: no program of the r
                      "an odometer, as (robot-main-odometer ROBOT) returns")))
 
 (defun reset-reading (odometer part)
-  "Let PART of ODOMETER, :POS or :ANG, count from here (reading 98)."
+  "Reset PART of ODOMETER, :POS or :ANG (reading 98)."
   (let ((robot (odometer-robot odometer)))
     (ecase part
       (:pos (setf (odometer-x-min odometer) 0d0 (odometer-x-max odometer) 0d0

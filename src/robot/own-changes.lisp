@@ -1,16 +1,16 @@
-;;;; own-changes.lisp -- what programs do to a robot besides commanding it (3.2.2, E).
+;;;; own-changes.lisp -- what programs change on a robot without a command (3.2.2, E).
 
 (in-package :ars-magna.robot)
 
 (export '(robot-way-left))
 
-;;; A robot is given one command after the other; where these are to lead only the program knows
-;;; that gives them. What it says of that decides nothing: it is no part of a run's digest, and a
-;;; journal does not have it. But it belongs to the run, so that forks have it, too.
+;;; The simulator sees single commands; only the program knows where they lead. The planned way
+;;; affects nothing: it is not in a run's digest or journal. It belongs to the run, so forks copy
+;;; it.
 
 (defstruct (planned-way (:constructor make-planned-way (points interruption)) (:copier nil))
-  "POINTS, a list of lists (x y), and what had last been INTERRUPTED on the robot when they were
-published: if that is something else now, the robot has been taken off its way."
+  "POINTS, a list of lists (x y), and INTERRUPTION, the robot's last interruption when they were
+published. If the last interruption is another one now, the way is void."
   (points '() :type list :read-only t)
   (interruption nil :read-only t))
 
@@ -24,11 +24,11 @@ published: if that is something else now, the robot has been taken off its way."
 
 (addition publish-way)
 (defun publish-way (robot points)
-  "Let pictures show, in the layer :PLANNED-WAY, that ROBOT is about to go from one of POINTS to the
-next: a list of PTs or lists (x y), as FIND-WAY returns it; () says that it is on no way any more.
-It holds until something else is published, or a command of the robot is interrupted. ROBOT-GO-TO
-and TRAVEL-TO do this; programs of one's own may. Nothing else comes of it: ROBOT goes nowhere, and
-digests and journals stay what they are. Return ROBOT. Signals WRONG-ARGUMENT."
+  "Show the way of ROBOT through POINTS in pictures, in the layer :PLANNED-WAY. POINTS is a list of
+PTs or lists (x y), as FIND-WAY returns it; () removes the way. It is shown until you publish
+another or a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call this; your programs
+may. ROBOT does not move, and digests and journals do not change. Return ROBOT. Signals
+WRONG-ARGUMENT."
   (check-argument publish-way robot (robot-p robot) (argument-type-text 'robot robot))
   (check-argument publish-way points
                   (proper-list-of-p (lambda (point) (or (pt-p point) (number-pair-p point))) points)
@@ -46,7 +46,7 @@ PUBLISH-WAY; () if it is on none, or was taken off it."
          (eq (planned-way-interruption way) (resource-interruption robot))
          (planned-way-points way))))
 
-;;; What is left of it.
+;;; The remaining way.
 
 (defun foot-on (from to x y)
   "Return the point between FROM and TO, on a line, that is nearest to X, Y, and how far it is."
@@ -60,7 +60,7 @@ PUBLISH-WAY; () if it is on none, or was taken off it."
       (values foot (abs (complex (- x (first foot)) (- y (second foot))))))))
 
 (defun left-of-way (points x y)
-  "Return what is left of the way through POINTS for somebody at X, Y: from where it is nearest."
+  "Return the rest of the way through POINTS, from its point nearest to (X,Y)."
   (let ((least nil) (left points))
     (loop for (from . after) on points
           while after
@@ -71,11 +71,11 @@ PUBLISH-WAY; () if it is on none, or was taken off it."
     left))
 
 (defun robot-way-left (robot)
-  "Return the points, lists (x y), of what is left of the planned way of ROBOT from where it is."
+  "Return the remaining points, lists (x y), of the planned way of ROBOT, from its position on."
   (left-of-way (robot-planned-way robot) (robot-x robot) (robot-y robot)))
 
-;;; Odometers and where the robot stands belong to its world. So programs change them by way of the
-;;; world's owner, whose journal notes what they did.
+;;; Odometers and positions of robots belong to their world. Programs change them by way of the
+;;; world's owner, which records the changes in its journal.
 
 (addition make-odometer)
 (defun make-odometer (robot name)
@@ -106,19 +106,19 @@ no part of the robot any more."
 
 (public reset-odometer-pos)
 (defun reset-odometer-pos (odometer)
-  "Let ODOMETER count its position from here. Return ODOMETER (manual 3.2.2)."
+  "Reset the position of ODOMETER to (0,0). Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer-pos)
   (reset-by-program odometer :pos))
 
 (public reset-odometer-ang)
 (defun reset-odometer-ang (odometer)
-  "Let ODOMETER count its angle from the present heading. Return ODOMETER (manual 3.2.2)."
+  "Reset the angle of ODOMETER to 0 at the present heading. Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer-ang)
   (reset-by-program odometer :ang))
 
 (public reset-odometer)
 (defun reset-odometer (odometer)
-  "Let ODOMETER count position and angle from here. Return ODOMETER (manual 3.2.2)."
+  "Reset position and angle of ODOMETER. Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer)
   (reset-odometer-ang (reset-odometer-pos odometer)))
 

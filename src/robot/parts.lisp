@@ -95,7 +95,7 @@
    (retired nil (or null string) "why the robot's run is over, or NIL as long as it is not" :export)
    (enders '() list "the functions that are called when the robot's run is over" :export)))
 
-;; What is of another run stays what it is.
+;; Parts of another run are not copied.
 (defun copy-of-robots (object robot copier)
   "Return what COPIER has for OBJECT, which is ROBOT or belongs to it."
   (if (eq (robot-world robot) (copier-option copier :world))
@@ -217,8 +217,8 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
     (:hands robot-hands hand)
     (:bins robot-bins storage-bin)
     (:sensors robot-sensors part))
-  "The vectors in which robots keep their parts: what each is called, its reader, and the type of
-what is in it. A part is in the first that takes it.")
+  "The vectors that hold a robot's parts: name, reader, and type of the elements. A part is in the
+first vector whose type it has.")
 
 (addition robot-parts)
 (defun robot-parts (robot)
@@ -227,7 +227,7 @@ what is in it. A part is in the first that takes it.")
         append (coerce (the simple-vector (funcall reader robot)) 'list)))
 
 (defun (setf robot-parts) (parts robot)
-  "Let ROBOT, which is being made, have PARTS, a list."
+  "Give ROBOT, which is being made, PARTS, a list."
   (dolist (row *part-vectors* parts)
     (destructuring-bind (key reader type) row
       (declare (ignore key))
@@ -238,12 +238,13 @@ what is in it. A part is in the first that takes it.")
         (setf parts (remove-if #'here-p parts))))))
 
 (defun robot-resources (robot)
-  "Return a list of all of ROBOT that does one thing at a time: itself, its parts and its mind."
+  "Return a list of all resources of ROBOT, each of which does one thing at a time: the robot, its
+parts and its mind."
   (append (list robot) (robot-parts robot) (list (robot-mind robot))))
 
 (defun unsettle (robot)
-  "Let the next tick look for what there is to settle in the world of ROBOT. To be called before
-anything comes to be that WORLD-SETTLED-P excludes."
+  "Make the next tick settle the world of ROBOT. Call this before creating anything that
+WORLD-SETTLED-P excludes."
   (setf (world-settled-p (robot-world robot)) nil))
 
 (addition hand-holding)

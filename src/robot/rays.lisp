@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.robot)
 
-;;; A ray passes from cell to cell (WALK-GRID); a fan is a number of evenly spaced rays, turned
-;;; into each other by one rotation instead of a sine and a cosine each. Nothing is allocated but
-;;; a list of the cells that were found. Each is found once: while a scan lasts, the flags of the
-;;; cells found carry the mark +SEEN+ instead of +OCCUPIED+, so that they are passed like empty
-;;; ones, and cost depends on what is seen, neither on the size of the map nor on what exists in it.
+;;; A ray passes from cell to cell (WALK-GRID). A fan is a number of evenly spaced rays; each is
+;;; made from the one before by one rotation instead of a sine and a cosine. Only a list of the
+;;; cells found is allocated. Each cell is found once: during a scan, the flags of the cells found
+;;; carry +SEEN+ instead of +OCCUPIED+, so they are passed like empty ones. The cost depends on what
+;;; is seen, not on the size of the map or the number of things in it.
 
 (define-constant +seen+ 128
-  :documentation "The flag of a cell that the scan under way has found; clear between scans.")
+  :documentation "The flag of a cell that the current scan has found; clear between scans.")
 (define-constant +least-component+ 1d-12
   :documentation "Any component of a ray's direction that is nearer to 0 is taken for this.")
 
@@ -20,15 +20,15 @@
 
 (declaim (inline nonzero walk-to-corner walk-ray))
 (defun nonzero (component)
-  "Return COMPONENT of a direction, or if it is almost 0 what is as good, whatever its sign."
+  "Return COMPONENT of a direction, or +LEAST-COMPONENT+ if it is almost 0 (either sign will do)."
   (declare (type double-float component))
   (if (< (abs component) +least-component+) +least-component+ component))
 
 (defun walk-to-corner (visit world x y dx dy)
-  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction
-(DX,DY) meets after the first, until it returns true or the map ends; or until the ray meets a
-corner, which something beside it obstructs, and goes on: then return the point beyond, as two
-values; else NIL."
+  "Call VISIT with index and flags of each cell of WORLD, after the first, on the ray from (X,Y) in
+direction (DX,DY). Stop when VISIT returns true or at the edge of the map; return NIL. If the ray
+meets an obstructed corner through which it passes, stop, too, and return the point beyond the
+corner, as two values."
   (declare (type function visit) (type double-float x y dx dy))
   (let* ((flags (world-flags world)) (map (world-map world))
          (beyond-x nil) (beyond-y nil))
@@ -44,9 +44,9 @@ values; else NIL."
     (values beyond-x beyond-y)))
 
 (defun walk-ray (visit world x y dx dy)
-  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction
-(DX,DY) meets after the first, until it returns true or the map ends. At a corner it meets neither
-of the two cells beside that, if one of them lets it through (reading 100)."
+  "Call VISIT with index and flags of each cell of WORLD, after the first, on the ray from (X,Y) in
+direction (DX,DY), until it returns true or the map ends. At a corner the ray meets neither of the
+two cells beside it, if one of them lets it through (reading 100)."
   (declare (type function visit) (type double-float x y dx dy))
   (let ((dx (nonzero dx)) (dy (nonzero dy)) (map (world-map world)))
     (loop
@@ -58,8 +58,8 @@ of the two cells beside that, if one of them lets it through (reading 100)."
         (setf x beyond-x y beyond-y)))))
 
 (defun cells-past-corner (world x y dx dy)
-  "Return a list of the cells with things that a ray in direction (DX,DY) meets which an opaque cell
-stops at (X,Y), if it only meets a corner there and goes on."
+  "If an opaque cell stops a ray in direction (DX,DY) at (X,Y), but the ray only meets a corner
+there, continue it. Return a list of the cells with things that it then meets."
   (let ((cells '()))
     (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
       (when beyond-x
@@ -94,27 +94,28 @@ before BODY runs for the direction before, so that the processor divides while B
                         ,next-per-y (/ (nonzero ,next-y)))
                   ,@body)))))
 
-;;; Scans are most of what a robot that looks costs, so they have a walk of their own, which meets
-;;; the same cells as WALK-GRID. What the rays of a fan have in common is computed once, cells that
-;;; nobody waits for cost one test, each axis has its own code. 75 x 75, 10 things: 10.8 -> 12.6 M
+;;; Scans are most of the cost of a robot that looks, so they have a walk of their own, which meets
+;;; the same cells as WALK-GRID. Values common to the rays of a fan are computed once, cells of no
+;;; interest cost one test, and each axis has its own code. 75 x 75, 10 things: 10.8 -> 12.6 M
 ;;; rays/s, some 5 % of it by leaving REACH out; 1000 x 1000 rooms, 100,000 things: 14.7 -> 19.7.
 
 (declaim (inline begin-axis walk-fan))
 (defun begin-axis (back per stride behind ahead left-behind left-ahead)
-  "Return how the index changes where a ray crosses borders of one axis, at what distance it does
-so first, and how often it may, going BACK or not, with a distance PER border. The rest is how far
-the borders behind and ahead are, and how many of each."
+  "Return how the index changes where a ray crosses borders of one axis, the distance of the first
+crossing, and the largest number of crossings, with a distance PER border; BACK is true towards
+smaller coordinates. The other arguments are the distances to the borders behind and ahead, and how
+many there are of each."
   (declare (type double-float per behind ahead) (type grid-size stride left-behind left-ahead))
   (if back
       (values (- stride) (* per behind) left-behind)
       (values stride (* per ahead) left-ahead)))
 
 (defun walk-fan (visit corner stops flags width height x y angle fan count reach)
-  "Call VISIT, which is inline, with index and flags of each cell that has some of the flags STOPS
-and that COUNT rays from (X,Y) meet after the first, evenly spaced over FAN radians around ANGLE.
-Each goes on until VISIT returns true, the map ends, or REACH columns or rows have been crossed.
-If REACH is NIL, a constant, all that is left to end them is VISIT. If a ray ends at a corner,
-CORNER, inline too, is called with its direction and how far that is."
+  "Trace COUNT rays from (X,Y), evenly spaced over FAN radians around ANGLE. Call VISIT, which is
+inline, with index and flags of each cell, after the first, that has some of the flags STOPS. A ray
+ends when VISIT returns true, at the edge of the map, or after REACH columns or rows. If REACH is
+the constant NIL, only VISIT ends rays. If a ray ends at a corner, call CORNER, inline too, with its
+direction and length."
   (declare (type function visit corner) (type flag-vector flags) (type (unsigned-byte 8) stops)
            (type double-float x y angle fan) (type grid-size width height)
            (type (or null grid-size) reach))

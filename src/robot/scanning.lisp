@@ -4,16 +4,15 @@
 
 (export '(look-for-things look-for-places camera-heading take-view))
 
-;;; SCAN-DENSITY* rays cross the field of view. Whatever lies in a cell that one of them meets is in
-;;; view, up to and with the first cell that is a wall or holds something that obstructs vision; so
-;;; is all that lies in the robot's own cell. What is within reach needs no ray, as rays from next
-;;; to a thing may all pass it: its direction has to be in the field of view. A camera inside a
-;;; container or storage bin sees what is directly in it, at distance 0. What a hand holds is where
-;;; the hand is.
+;;; SCAN-DENSITY* rays cross the field of view. In view is whatever is in a cell that a ray meets,
+;;; up to and including the first cell that is a wall or holds something that obstructs vision; also
+;;; all in the robot's own cell. Things within reach need no ray, since rays from next to a thing
+;;; may all miss it: their direction must be in the field of view. A camera inside a container or
+;;; storage bin sees what is directly in it, at distance 0. What a hand holds is where the hand is.
 
 (declaim (inline mark-seen walls-around-p))
 (defun mark-seen (flags index)
-  "Let the flag +SEEN+ take the place of +OCCUPIED+ in FLAGS at INDEX, or the other way round."
+  "Swap the flags +SEEN+ and +OCCUPIED+ in FLAGS at INDEX."
   (declare (type flag-vector flags) (type cell-index index))
   (setf (aref flags index) (logxor (aref flags index) (logior +occupied+ +seen+))))
 
@@ -31,7 +30,7 @@
 
 (defun occupied-cells (world x y angle width count reach)
   "Return a list of the cells of WORLD with things on their floor that a fan of COUNT rays from
-(X,Y) meets, of WIDTH radians around ANGLE, within REACH columns and rows (reading 130)."
+(X,Y) meets, WIDTH radians wide around ANGLE, within REACH columns and rows (reading 130)."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 15) reach) (type (unsigned-byte 30) count))
   (let* ((flags (world-flags world)) (map (world-map world))
@@ -179,8 +178,8 @@ for what DEMANDS describe (reading 129)."
                      (describe-thing thing readings (seen-from camera thing) dice)))))
 
 (defun look-for-things (camera type specification &key all)
-  "Return sightings by CAMERA of things of TYPE that fit SPECIFICATION: of one, or of ALL that it
-finds. What is not there may be among them."
+  "Return sightings by CAMERA of things of TYPE that fit SPECIFICATION: one, or ALL. False sightings
+may be among them."
   (let* ((world (robot-world (camera-robot camera)))
          (dice (world-dice world :looking))
          (demands (parse-specification specification))
@@ -208,9 +207,9 @@ finds. What is not there may be among them."
                         (cell-type (map-cell map x y)))))))
 
 (defun look-for-places (camera type &key all (name (place-type-name type)))
-  "Return sightings by CAMERA, in the open, of places of the place type TYPE: of one, or of ALL
-that it finds. What is not there may be among them. They are described by NAME, the symbol by which
-somebody has asked for TYPE (reading 74)."
+  "Return sightings by CAMERA, in the open, of places of the place type TYPE: one, or ALL. False
+sightings may be among them. They are described by NAME, the symbol by which the caller asked for
+TYPE (reading 74)."
   (let* ((dice (world-dice (robot-world (camera-robot camera)) :looking))
          (missing (sensing-chance miss-place-prob*))
          (finds (remove-if (lambda (place) (declare (ignore place)) (chance missing dice))
@@ -224,11 +223,11 @@ somebody has asked for TYPE (reading 74)."
                                        (list name)))
                       (imagine camera :non-local (list name) dice)))))
 
-;;; Each pixel is the parameter of the surface that its ray meets: of a wall, of the largest thing
-;;; that obstructs vision in the first cell that has one, or 0 where the map ends. Things on the
-;;; way that do not obstruct vision, but have a substance, corrupt it: the pixel is the mean of them
-;;; all. What lies in the robot's own cell does not count. From inside, all there is to see is the
-;;; container.
+;;; Each pixel is the parameter of the surface that its ray meets: a wall, the largest thing that
+;;; obstructs vision in the first cell that has one, or 0 at the edge of the map. Things on the way
+;;; that have a substance but do not obstruct vision corrupt it: the pixel is the mean of them all.
+;;; Things in the robot's own cell do not count. From inside a container, only the container is
+;;; seen.
 
 (defun obstructing-thing (index world)
   "Return the largest thing in the cell INDEX that obstructs vision, or NIL (reading 240)."
@@ -258,7 +257,7 @@ somebody has asked for TYPE (reading 74)."
     (/ (+ sum last) count)))
 
 (defun noisy-pixel (value map dice)
-  "Return a reading of VALUE: uniform within PIXEL-ERROR-RANGE* of it, or now and then anything
+  "Return a reading of VALUE: uniform within PIXEL-ERROR-RANGE* of it, or occasionally any number
 from the least to the greatest parameter of the walls of MAP (reading 147)."
   (cond (no-sensor-error* value)
         ((chance pixel-outlier-prob* dice)
@@ -282,8 +281,8 @@ from the least to the greatest parameter of the walls of MAP (reading 147)."
                                     0d0))))
 
 (defun take-view (camera)
-  "Let CAMERA take a view: return a list of as many numbers as it has pixels, from left to right,
-and remember it as CAMERA-LAST-VIEW (manual 3.4.3)."
+  "Take a view with CAMERA: return a list of one number for each pixel, from left to right, and
+store it as CAMERA-LAST-VIEW (manual 3.4.3)."
   (let* ((world (robot-world (camera-robot camera)))
          (map (world-map world)) (dice (world-dice world :looking)))
     (setf (camera-last-view-tick camera) (world-tick world)

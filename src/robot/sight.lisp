@@ -4,10 +4,10 @@
 
 (export '(line-clear-p in-sight-p within-reach-p in-same-cell-p reached-p))
 
-;;; Much stands at whole coordinates, so lines that pass exactly where four cells meet are common,
-;;; and rounding would decide which of the two cells beside the corner they meet. They meet neither:
-;;; a line goes on if one of the two lets it through. Two that touch at the corner close it, so that
-;;; oblique walls have no holes. What moves and what sees agree on this (manual 2.1).
+;;; Many things have whole coordinates, so lines often pass exactly where four cells meet. Rounding
+;;; would then decide which of the two cells beside the corner a line meets. So it meets neither: it
+;;; passes if one of the two lets it through. If both block, it stops, so oblique walls have no
+;;; holes. Motion and sight follow the same rule (manual 2.1).
 
 (declaim (inline whole-part within-cell))
 (defun whole-part (x)
@@ -35,9 +35,9 @@ corner, along either axis, a line passes through it.")
         (logtest mask (aref (world-flags world) index)))))
 
 (defun beyond-corner (world mask x y column row)
-  "If (X,Y) is at a corner of the cell at COLUMN and ROW, and a line from there is not stopped by
-the two cells beside the corner, return the point just beyond it, in the cell opposite, as two
-values; else NIL. Cells with a flag of MASK stop the line."
+  "If (X,Y) is at a corner of the cell at COLUMN and ROW, and the two cells beside the corner do not
+stop a line from there, return the point just beyond it, in the cell opposite, as two values; else
+NIL. Cells with a flag of MASK stop the line."
   (let ((corner-x (round x)) (corner-y (round y)))
     (flet ((other (cell corner) (if (= cell corner) (1- corner) corner)))
       (let ((other-column (other column corner-x)) (other-row (other row corner-y)))
@@ -49,7 +49,7 @@ values; else NIL. Cells with a flag of MASK stop the line."
                   (within-cell (double corner-y) other-row)))))))
 
 (defun past-corner (world mask x y dx dy)
-  "If a line in direction (DX,DY) that is stopped at (X,Y) only meets a corner there and goes on,
+  "If a line in direction (DX,DY) that is stopped at (X,Y) only meets a corner there and passes,
 return the point just beyond it, as two values; else NIL. Cells with a flag of MASK stop the line."
   (flet ((before (position direction)
            (if (plusp direction) (1- (round position)) (round position))))
@@ -66,7 +66,7 @@ return the point just beyond it, as two values; else NIL. Cells with a flag of M
 
 (defun corner-clear-p (world x y dx dy to-x to-y)
   "True if the line in direction (DX,DY) to (TO-X,TO-Y), obstructed at (X,Y), only meets a corner
-there and goes on beyond it."
+there and passes."
   (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
     (and beyond-x
          (or (same-cell-p beyond-x beyond-y to-x to-y)
@@ -102,11 +102,11 @@ there and goes on beyond it."
           (clear-p left (+ top side))
           (clear-p (+ left side) (+ top side))))))
 
-;;; What is local to a robot, and what it has arrived at (manual 2.1, 3.4.1, 3.5).
+;;; What is local to a robot, and where it has arrived (manual 2.1, 3.4.1, 3.5).
 
-;;; Searches, tracks, hands and approaches share one idea of what is next to a robot, that of
-;;; WITHIN-REACH-P. A cell that blocks robots cannot be entered, so all that is in it counts as next
-;;; to a robot that stands at the cell. What a robot has arrived at is always within its reach.
+;;; Searches, tracks, hands and approaches share one definition of "next to a robot",
+;;; WITHIN-REACH-P. A robot cannot enter a cell that blocks it, so everything in that cell counts as
+;;; next to a robot that stands at the cell. Where a robot has arrived is always within its reach.
 
 (define-constant +contact+ (* 1.001d0 +contact-gap+)
   :documentation "No farther than this from a cell, in metres, a robot stands at it: the gap, and
@@ -126,7 +126,7 @@ what rounding adds to it.")
          (<= (gap (robot-y robot) (floor y)) +contact+))))
 
 (defun within-reach-p (robot x y)
-  "True if (X,Y), in metres, is local to ROBOT: less than a metre away, or in the same cell, or in a
+  "True if (X,Y), in metres, is local to ROBOT: less than a metre away, in the same cell, or in a
 cell that blocks ROBOT and that it stands at (reading 108)."
   (let ((dx (- (double x) (robot-x robot))) (dy (- (double y) (robot-y robot))))
     (declare (type double-float dx dy))
@@ -138,9 +138,8 @@ cell that blocks ROBOT and that it stands at (reading 108)."
                   (closed-cell-p (robot-world robot) x y +blocking+))))))
 
 (defun reached-p (robot x y last-step block)
-  "True if ROBOT, which has just driven for a tick, has thereby arrived at (X,Y). LAST-STEP is true
-if it could come that far in the tick; BLOCK, if something blocked it. Nothing may hide what is
-there (reading 108)."
+  "True if ROBOT has arrived at (X,Y) by its drive in this tick. LAST-STEP is true if it could get
+that far in the tick; BLOCK, if something blocked it. Nothing may hide the point (reading 108)."
   (or (in-same-cell-p robot x y)
       (and (within-reach-p robot x y)
            (or last-step

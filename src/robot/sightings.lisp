@@ -42,8 +42,8 @@
           (clamp y 0d0 (- (map-height map) 1d-6))))
 
 (defun walk-to-phantom (robot angle dice)
-  "Return where a walk from ROBOT in the direction ANGLE ends: metre by metre, outside the robot's
-cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136)."
+  "Return the end of a random walk from ROBOT in the direction ANGLE: metre by metre, outside the
+robot's cell, ending with probability PROB-STOP* at each, or at the edge of the map (reading 136)."
   (let ((map (world-map (robot-world robot)))
         (dx (cosine angle)) (dy (sine angle)))
     (loop for metres from 1d0 by 1d0
@@ -79,8 +79,8 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136
       (make-sighting type nil x y data))))
 
 (defun imagine-description (world demands dice)
-  "Return a random description that meets DEMANDS. What is noticed besides is true of some thing
-in WORLD, each attribute of another."
+  "Return a random description that meets DEMANDS. Each attribute noticed in addition is true of
+some thing in WORLD, a different one for each."
   (let ((readings (loop for demand in demands
                         for (low high) = (list (demand-low demand) (demand-high demand))
                         collect (list (demand-key demand)
@@ -115,8 +115,8 @@ in WORLD, each attribute of another."
              (within-reach-p robot x y)))))
 
 (defun set-bearing (designator bearing dice)
-  "Let DESIGNATOR have been seen in the true direction BEARING; its angle becomes an estimate of
-that, the nearest to what it was."
+  "Mark DESIGNATOR as seen in the true direction BEARING; its angle becomes an estimate of that, the
+nearest to the old angle."
   (let* ((heading (robot-angle (designator-robot designator)))
          (angle (designator-angle designator))
          (change (angle-difference bearing (+ heading angle))))

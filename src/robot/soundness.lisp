@@ -22,7 +22,7 @@
              "what ~A holds is not in it" holder))
 
 (defun check-track (track)
-  "Signal CONTRADICTION unless what is told when TRACK ends, if anything, was asked for."
+  "Signal CONTRADICTION if TRACK has an operation that is not a valid request."
   (when (track-operation track) (check-request (track-operation track))))
 
 (defgeneric check-part (part)
@@ -91,8 +91,8 @@
              "~A does not look where it looks" robot))
 
 (defun check-robot (robot world)
-  "Signal an error, CONTRADICTION as far as we know, unless ROBOT of WORLD, which was put together
-from a file, could have come about by itself."
+  "Signal an error, CONTRADICTION where we check for it, unless ROBOT of WORLD, which was read from
+a file, is in a state that a run can reach."
   (must-hold (and (robot-p robot)
                   (eq world (robot-world robot))
                   (robot-blueprint robot)

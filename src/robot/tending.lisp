@@ -26,8 +26,8 @@
 
 (defun sight-by-rays (world x y to-x to-y heading width count)
   "Return :CLEAR if one of COUNT rays from (X,Y), evenly spaced over WIDTH radians around HEADING,
-reaches the cell of (TO-X,TO-Y) in WORLD; :OBSTRUCTED if all that cross it are stopped before; NIL
-if none crosses it."
+reaches the cell of (TO-X,TO-Y) in WORLD; :OBSTRUCTED if all that would cross it are stopped before;
+NIL if none would."
   (let* ((index (map-index (world-map world) to-x to-y))
          (dx (- (+ 0.5d0 (floor to-x)) x)) (dy (- (+ 0.5d0 (floor to-y)) y))
          (spacing (/ width count)) (first (- heading (* 0.5d0 (- width spacing))))
@@ -70,18 +70,22 @@ miss it though nothing obstructs it. During an approach a line to a corner of it
           (t (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot)
                          (designator-x designator) (designator-y designator))))))
 
-;;; A track refreshes angle and distance of its designator, never the data, and points the camera
-;;; there. It is lost when the denotation is occluded, moves too fast -- its direction from the
-;;; robot changes in a tick by more than half the field of view -- or is arrived at, and by chance.
-;;; The robot's own turning does not count as fast: the camera makes up for it. Nor does what is
-;;; within reach, or was a tick before. Whoever goes to something ends the track on arrival; else
-;;; only the robot's own cell does. A local designator of something that is out of reach becomes a
-;;; non-local one, if it is in the open. A false designator drifts.
+;;; A track updates angle and distance of its designator, never the data, and points the camera
+;;; there. It is lost:
+;;; - when the denotation is hidden
+;;; - when it moves too fast: its direction from the robot changes in a tick by more than half the
+;;;   field of view. The robot's own turning does not count, as the camera compensates it; nor do
+;;;   things within reach, or within reach a tick before
+;;; - when the robot arrives. A command that drives the robot to something ends the track on
+;;;   arrival; else only the robot's own cell counts
+;;; - by chance
+;;; A local designator of something in the open that is out of reach becomes a non-local one. A
+;;; false designator drifts.
 
 ;;; Refreshing.
 
 (defun drift (designator dice)
-  "Let the false DESIGNATOR wander: if non-local, nearer or farther and to the side (reading 143)."
+  "Make the false DESIGNATOR drift: if non-local, nearer or farther and to the side (reading 143)."
   (let* ((robot (designator-robot designator))
          (map (world-map (robot-world robot)))
          (x (designator-x designator)) (y (designator-y designator)))
@@ -118,7 +122,7 @@ changed (reading 226)."
                       (designator-x designator) (designator-y designator))))
 
 (defun swing-to (designator bearing before dice)
-  "Let DESIGNATOR now be in the true direction BEARING, and BEFORE have been its distance."
+  "Update DESIGNATOR to the true direction BEARING; BEFORE is its previous distance."
   (let ((relative (- bearing (robot-angle (designator-robot designator))))
         (known (designator-bearing-p designator)))
     (when (and known (not (near-p designator before)))
@@ -156,8 +160,8 @@ CAMERA, if one may."
        (visible-p designator camera)))
 
 (defun out-of-sight-p (designator camera)
-  "True if the local DESIGNATOR is of something in the open that is hidden from CAMERA, as by a wall
-between two cells that are next to each other."
+  "True if the local DESIGNATOR denotes something in the open that is hidden from CAMERA, for
+example by a wall between two adjacent cells."
   (and (followable-p designator)
        (not (visible-p designator camera))))
 
@@ -193,7 +197,7 @@ approach is the approach's to tell (reading 112)."
         (t (drop-designator designator))))
 
 (defun tend-track (camera designator tick dice)
-  "Do what is due in TICK for the track of DESIGNATOR by CAMERA."
+  "Update the track of DESIGNATOR by CAMERA in TICK."
   (refresh-once designator tick dice)
   (cond ((eq (designator-type designator) :local)
          (tend-local-track camera designator dice))
@@ -228,7 +232,7 @@ approach is the approach's to tell (reading 112)."
           do (tell-track-ended track code))))
 
 (defun tend-tracks (world)
-  "Do what is due in this tick for all tracks and designators in WORLD."
+  "Update all tracks and designators in WORLD for this tick."
   (dolist (robot (world-robots world))
     (tend-robot robot (world-tick world))))
 
@@ -239,7 +243,8 @@ approach is the approach's to tell (reading 112)."
                       (some #'camera-tracking (robot-cameras robot)))))
 
 (defun start-track (camera designator operation)
-  "Let CAMERA track DESIGNATOR; OPERATION is told by TRACK-ENDED when that ends (reading 142)."
+  "Make CAMERA track DESIGNATOR. When the track ends, TRACK-ENDED is called with OPERATION (reading
+142)."
   (unless (tracked-p designator)
     (let ((world (robot-world (camera-robot camera))))
       (refresh-once designator (world-tick world) (world-dice world :tracking))
@@ -249,8 +254,8 @@ approach is the approach's to tell (reading 112)."
         (camera-tracking camera) (make-track designator operation)))
 
 (defun end-on-arrival (camera)
-  "Let CAMERA lose its track, as the robot has arrived at what it tracks; to the last it has pointed
-there (reading 108)."
+  "End the track of CAMERA, since the robot has arrived; the camera has pointed there to the end
+(reading 108)."
   (let ((designator (camera-tracks camera)))
     (when (designator-denotation designator)
       (refresh-designator designator (world-dice (robot-world (camera-robot camera)) :tracking))

@@ -4,15 +4,15 @@
 
 (export '(tracking-p end-track drop-designator track track-ended approaching-p))
 
-;;; A track is what a camera does in the background of its commands: it keeps pointing where its
-;;; designator's denotation is. Tracks are looked after once a tick, after events and kickers. A
-;;; track may end at any moment of a tick, and is over at once; but whoever asked for it is told
-;;; only in the tracks phase, after the command that ended it has reported its own end. Only an
-;;; interruption is told at once.
+;;; A track runs in the background of a camera's commands: the camera keeps pointing at its
+;;; designator's denotation. Tracks are updated once a tick, after events and kickers. A track may
+;;; end at any moment of a tick, at once. Its continuation is called later, in the tracks phase,
+;;; after the command that ended the track has reported its own end; only an interruption is
+;;; reported at once.
 ;;;
-;;; A designator that was tracked becomes invalid with the loss of its last track. One that was
-;;; not tracked becomes invalid when its denotation moves, unless a hand takes this up or sets it
-;;; down; and a local one when its denotation is out of reach.
+;;; A tracked designator becomes invalid when its last track is lost. An untracked one becomes
+;;; invalid when its denotation moves, unless a hand grasps it or sets it down; a local one also
+;;; when its denotation is out of reach.
 
 ;; As reading 82 says.
 (define-kind (track :constructor (make-track (designator operation)))
@@ -59,7 +59,7 @@
 ;;; Ending.
 
 (defun tell-track-ended (track code)
-  "Let whoever asked for TRACK, if anybody, know that it has ended with CODE."
+  "Report the end of TRACK with CODE to its command, if any."
   (when (track-operation track)
     (track-ended (track-operation track) code (track-designator track))))
 
@@ -119,7 +119,7 @@ is lost and no other camera tracks the designator, that is dropped."
 ;;; When things and parts move.
 
 (defun watch-thing (thing old-location new-location)
-  "Let the robots' designators know that THING has moved. A world's move watcher."
+  "Update the robots' designators after THING has moved. A world's move watcher."
   (let ((by-hand (or (hand-p old-location) (hand-p new-location))))
     (dolist (robot (world-robots (thing-world thing)))
       (when (plusp (length (robot-designators robot)))
@@ -130,8 +130,9 @@ is lost and no other camera tracks the designator, that is dropped."
 (note-lasting 'watch-thing)
 
 (defun survives-move-p (designator by-hand)
-  "True if DESIGNATOR stays valid although its denotation has moved, BY-HAND if it was taken up or
-set down: if a camera tracks it and can follow, or if it is local and so stays (reading 139)."
+  "True if DESIGNATOR stays valid although its denotation has moved; BY-HAND is true if it was
+grasped or set down. So it does if a camera tracks it and can follow, or if it is local and stays
+local (reading 139)."
   (if (tracked-p designator)
       (eq (denotation-space designator) (designator-location designator))
       (and by-hand
@@ -139,8 +140,8 @@ set down: if a camera tracks it and can follow, or if it is local and so stays (
            (designator-local-p* designator))))
 
 (defun part-moved (part old-location)
-  "Let PART, a camera or hand, have been taken from OLD-LOCATION into PART-LOCATION: a camera loses
-its track, and what a hand holds has moved. Warnings say so."
+  "Account for the move of PART, a camera or hand, from OLD-LOCATION to PART-LOCATION: a camera
+loses its track, and what a hand holds has moved. Warnings say so."
   (unless (eq old-location (part-location part))
     (etypecase part
       (camera
