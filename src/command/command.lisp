@@ -1,4 +1,4 @@
-;;;; command.lisp -- what is known of a command, and of the steps that carry it on.
+;;;; command.lisp -- data about a command, and the steps that continue it.
 
 (in-package :ars-magna.command)
 
@@ -21,7 +21,7 @@
 
 (addition command-p)
 (define-record command
-  "A command as defined: its name, what it takes and returns, and how it can fail."
+  "A command as defined: its name, its arguments and results, and how it can fail."
   (name nil symbol "the symbol of the function that issues the command" :addition)
   (prompt-name "" string "what the command is called at the prompt, in upper case" :addition)
   (prefix "" string "the word that the command's messages begin with" :addition)
@@ -91,13 +91,13 @@ parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
         (apply name resource (append arguments '(nil)))))
     name))
 
-;;; An operation has the name of a function that carries it on, its step. A file that says how far a
-;;; command is may name what is a step, and no other function. Our own steps trust what they are
-;;; called with, so DEFINE-STEP says what that must be. What GO-ON is told of in a user's program is
-;;; a step of users' commands: these are called with care, and check what they get.
+;;; An operation has the name of a function that continues it, its step. A saved file may name
+;;; steps, and no other function. Our own steps trust their arguments, so DEFINE-STEP says what
+;;; these must be. A step passed to GO-ON in a user's program belongs to a user's command: it is
+;;; called with care, and checks its arguments.
 
 (defun note-step (step fits-p)
-  "Let the function called STEP carry on each operation that the function FITS-P is true of; those
+  "Make the function STEP a step of each operation for which the function FITS-P is true; for those
 of users' commands, if it is :GUARDED."
   (setf (get step 'step) fits-p)
   step)
@@ -111,7 +111,7 @@ that is false."
      (defun ,name (,operation) ,documentation ,@body)))
 
 (defun use-step (step)
-  "Return STEP, which GO-ON is told of. Signals an error for one of ours without a DEFINE-STEP."
+  "Return STEP, an argument of GO-ON. Signals an error for one of ours without a DEFINE-STEP."
   (cond ((get step 'step) step)
         (*marking-p* (error "~S is not defined by DEFINE-STEP" step))
         (t (note-step step :guarded))))
@@ -120,8 +120,8 @@ that is false."
   (and (get name 'step) (fboundp name) t))
 
 (defun using-step (form)
-  "Return FORM, a call with a step as its second argument, such that USE-STEP is told of a quoted
-one when what it stands in is loaded."
+  "Return FORM, a call with a step as its second argument. If the step is quoted, USE-STEP registers
+it when the form is loaded."
   (destructuring-bind (function operation step &rest more) form
     (if (typep step '(cons (eql quote) (cons (and symbol (not null)) null)))
         `(,function ,operation (load-time-value (use-step ,step)) ,@more)

@@ -1,4 +1,4 @@
-;;;; define-command.lisp -- one form says everything that is to be known of a command.
+;;;; define-command.lisp -- define a command, with all data about it, in one form.
 
 (in-package :ars-magna.command)
 
@@ -91,7 +91,7 @@ COUNT arguments, and that is not known to return one."
                                                               (first form)))))))))
 
 (defun doubt-result (name form count)
-  "Warn if FORM, the continuation in a call of NAME, does at once what is for the end."
+  "Warn if FORM, the continuation in a call of NAME, is evaluated at once instead of at the end."
   (when (or (returns-nothing-p form) (called-early-p form count))
     (let ((*print-pretty* nil))
       (doubt-definition "~(~A~): ~S is done at once, not when the command has ended, and returns ~

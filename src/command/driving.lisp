@@ -12,8 +12,8 @@
   (drive-tick (operation-resource operation)))
 
 (defun drive-in-time (operation)
-  "Drive the robot of OPERATION for a tick, or what is left of its time if a tick stands for more.
-Return what blocks it, :WALL, :THING or NIL."
+  "Drive the robot of OPERATION for a tick, or for the rest of its time if that is shorter. Return
+what blocks it, :WALL, :THING or NIL."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation))
          (later (- left (the double-float (double tick-quantum*)))))
@@ -85,7 +85,8 @@ and if the robot has stopped meanwhile."
          (go-on-now operation 'drive-a-while))
         (t (succeed operation))))
 
-;;; So far, not so long: the last step is the shorter one, and the robot's speed stays what it is.
+;;; A distance instead of a time: the last step is shorter, and the robot's speed setting does not
+;;; change.
 
 (define-argument-type 'distance
   (lambda (value) (and (realp value) (< 0 value) (<= value 1000000)))
@@ -126,7 +127,7 @@ ticks."
   (begin-movement robot)
   (go-on-now operation 'drive-to-wall))
 
-;; A stop that interrupts another goes on where that was.
+;; A stop that interrupts another continues it.
 (defmethod note-cut-short ((name (eql 'robot-stop)) operation rival)
   (if (eq name (command-name (operation-command rival)))
       (setf (operation-subject operation) (operation-subject rival)
@@ -151,9 +152,9 @@ once more meanwhile does not prolong that."
          (go-on-now operation 'coast))
         (t (succeed operation))))
 
-;;; The manual only mentions that robots can do this (appendix C); what it means is ours. The wall
-;;; is the one in the nearest of the four cells around the robot's that are walls; those to the
-;;; side win over the one ahead. The robot keeps it on the side where it was.
+;;; The manual only mentions this command (appendix C); its meaning is ours. The wall is the nearest
+;;; of the four neighbouring cells of the robot that are walls; those at the side take precedence
+;;; over the one ahead. The robot keeps it on the side where it was.
 
 (defun axis (angle)
   "Return the axis of the grid nearest to ANGLE, as a number of quarter turns from 0 to 3."
@@ -170,8 +171,8 @@ once more meanwhile does not prolong that."
     (ecase (mod quarter 4) (0 (- 1 x)) (1 (- 1 y)) (2 x) (3 y))))
 
 (defun wall-to-follow (robot)
-  "Return the side of ROBOT, in quarter turns, where a wall is to be followed, and the heading
-along it; NIL if no wall is near."
+  "Return the side of ROBOT, in quarter turns, of the wall to follow, and the heading along it; NIL
+if no wall is near."
   (let* ((heading (axis (robot-angle robot)))
          (sides (remove-if-not (lambda (quarter) (neighbour-wall-p robot quarter))
                                (list (1+ heading) (1- heading))))

@@ -4,9 +4,9 @@
 
 (export '(trouble-p))
 
-;;; An error code says in a word what went wrong; people want a sentence, and a remedy. What codes
-;;; mean is said here, once for all commands: of several that can end with the same code, each has
-;;; a message of its own besides (see DEFINE-COMMAND).
+;;; An error code is a word; people need a sentence and a remedy. This file has both, once for all
+;;; commands. Of several commands that end with the same code, each also has its own message (see
+;;; DEFINE-COMMAND).
 
 (defparameter *meanings*
   '((:interrupt
@@ -117,8 +117,8 @@ lost from view."
     (:not-tracking-destination "The camera tracks something else than where it is to go."
      "Track the container itself with camera-track.")
     (:not-inside "The hand or camera is not inside of anything." "Go on."))
-  "Lists of an error code of the simulator's own commands, what it means, in a sentence, and what to
-try, in another, or an empty one.")
+  "Lists (code meaning remedy) for the simulator's own commands: an error code, a sentence, and a
+sentence or an empty string.")
 
 (mapc #'note-error-code (mapcar #'first *meanings*))
 
@@ -136,6 +136,6 @@ a sentence; NIL if it is not one of the simulator's own."
     (and remedy (string/= "" remedy) (one-line remedy))))
 
 (defun trouble-p (code)
-  "True if CODE, an error code or NIL, is of a failure that people look for: plans often look for
-what is not there, and let a newer command take over from an older one."
+  "True if CODE, an error code or NIL, is worth reporting as a failure. Plans often look for what is
+not there, and interrupt older commands on purpose; such codes do not count."
   (not (member code '(nil :interrupt :designator-not-found))))

@@ -23,8 +23,8 @@ known."
   (interrupter '() :type list :read-only t))
 
 (defun interruption-of (request tick)
-  "Return what is known of the interruption of REQUEST just now, when TICK has been counted; or NIL.
-Where requests are carried out, the tick that they begin has not been counted yet."
+  "Return a record of the interruption of REQUEST, just now, in TICK once that is counted; or NIL.
+Where requests are performed, the tick they begin has not been counted yet."
   (let ((interruption (resource-interruption (event-resource request))))
     (and interruption
          (<= tick (interruption-tick interruption) (1+ tick))
@@ -32,7 +32,7 @@ Where requests are carried out, the tick that they begin has not been counted ye
          interruption)))
 
 (defun note-failure (operation code text)
-  "Let the robot of OPERATION remember that it ends with the error CODE and the message TEXT."
+  "Record in the robot of OPERATION that it ends with the error CODE and the message TEXT."
   (let* ((tick (timeline-tick (operation-timeline operation)))
          (interruption (and (eq code :interrupt) (interruption-of operation tick))))
     (setf (robot-failure (resource-robot (operation-resource operation)))
@@ -44,8 +44,8 @@ Where requests are carried out, the tick that they begin has not been counted ye
                              (list (interruption-by interruption)
                                    (interruption-by-asker interruption)))))))
 
-;;; The newest request always wins, whoever asks: the prompt, a plan, a continuation, a program. So
-;;; whoever drives a robot from several sides at once needs to see who drives it now.
+;;; The newest request always wins, whether it comes from the prompt, a plan, a continuation or a
+;;; program. If several of them drive one robot, these functions show which one does now.
 
 (defmethod request-name ((operation operation))
   (command-name (operation-command operation)))
@@ -73,11 +73,10 @@ Where requests are carried out, the tick that they begin has not been counted ye
 
 (addition under-way)
 (defun under-way (resource)
-  "Return the name of the command that RESOURCE, a robot or part of one, carries out or waits to
-begin, and who asked for it, a string such as \"the prompt\", \"the plan fetch\", \"the continuation
-of robot-turn\" or \"Lisp (main thread)\". A camera that does nothing else but follow something
-carries out CAMERA-TRACK, a robot that does nothing else but think THINK. NIL if there is none. The
-newest command takes a resource over, whoever asks for it."
+  "Return the name of the command that RESOURCE, a robot or part of one, executes or is about to
+begin, and who issued it: a string such as \"the prompt\", \"the plan fetch\", \"the continuation of
+robot-turn\" or \"Lisp (main thread)\". A camera that only tracks executes CAMERA-TRACK, a robot
+that only thinks THINK. NIL if there is none. A newer command always interrupts an older one."
   (check-resource 'under-way resource)
   (let ((occupant (occupant resource)))
     (when occupant
@@ -85,9 +84,9 @@ newest command takes a resource over, whoever asks for it."
 
 (addition last-interruption)
 (defun last-interruption (resource)
-  "Return what was interrupted last on RESOURCE, a robot or part of one, by a newer request: a list
-(what asker by-what by-asker tick), the names of both, strings that say who asked for them, and the
-tick in which it was. A robot's thoughts count. NIL if nothing ever was."
+  "Return the last interruption on RESOURCE, a robot or part of one, by a newer request: a list
+(what asker by-what by-asker tick) of the names of both, strings that say who issued them, and the
+tick. THINK counts as a command of the robot. NIL if there was none."
   (check-resource 'last-interruption resource)
   (let ((interruption (newest-interruption resource)))
     (when interruption
@@ -103,7 +102,7 @@ tick in which it was. A robot's thoughts count. NIL if nothing ever was."
     (when name (format nil "~(~A~), for ~A" name asker))))
 
 (defun interruption-text (resource)
-  "Return in words what was interrupted last on RESOURCE; NIL if nothing ever was."
+  "Return the last interruption on RESOURCE in words; NIL if there was none."
   (let ((interruption (last-interruption resource)))
     (when interruption
       (format nil "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"
@@ -133,11 +132,13 @@ tick in which it was. A robot's thoughts count. NIL if nothing ever was."
 
 (addition last-failure)
 (defun last-failure (resource)
-  "Return, as a property list, what failed or was interrupted last of the commands given to
-RESOURCE, a robot or part of one, or to another part of that robot: :COMMAND, its name; :CALL, what
-was asked for, a string; :FOR, who asked; :ASKED, the tick after which that was; :TICK, the one in
-which it ended; :ERROR, the code; :TEXT, the message; :BY, what interrupted it, if that is known,
-and :BY-FOR, who asked for that. NIL if none has failed. See WHY."
+  "Return the last failure or interruption of a command to RESOURCE, a robot or part of one, or to
+another part of that robot, as a property list:
+- :COMMAND, the name; :CALL, the call, a string
+- :FOR, who issued it; :ASKED, the tick after which that was
+- :TICK, the one in which it ended; :ERROR, the code; :TEXT, the message
+- :BY, what interrupted it, if known; :BY-FOR, who issued that
+NIL if none has failed. See WHY."
   (check-resource 'last-failure resource)
   (let ((failure (robot-failure (resource-robot resource))))
     (when failure
@@ -149,8 +150,8 @@ and :BY-FOR, who asked for that. NIL if none has failed. See WHY."
               :by by :by-for (and by (note-text by-asker)))))))
 
 (defun failure-sentences (resource)
-  "Return a list of sentences about the LAST-FAILURE of RESOURCE: what was asked for and when, what
-came of it, what that means and what to try."
+  "Return a list of sentences about the LAST-FAILURE of RESOURCE: what was asked for and when, the
+result, what that means and what to try."
   (destructuring-bind (&key call for asked tick error text by by-for &allow-other-keys)
       (last-failure resource)
     (if (null error)

@@ -81,14 +81,14 @@ forgiven (readings 153 and 237)."
         ((not (tracking-p camera designator)) :not-tracked)))
 
 (defun grasp (hand thing dice)
-  "Let HAND grasp THING, NIL if it only seems there. Return NIL or a code (readings 151, 231)."
+  "Make HAND grasp THING; NIL is a false sighting. Return NIL or a code (readings 151, 231)."
   (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
         ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
         (t (move-thing thing hand)
            nil)))
 
 (defun try-grasp (hand designator dice)
-  "Let HAND grasp what DESIGNATOR denotes. Return an error code or NIL. See reading 165."
+  "Make HAND grasp what DESIGNATOR denotes. Return an error code or NIL. See reading 165."
   (let ((thing (designator-thing designator)))
     (if (and thing (not (part-reaches-p hand thing)))
         :missed-grasp
@@ -111,8 +111,8 @@ forgiven (readings 153 and 237)."
      (:report (designator)
               (format nil "~A grasped ~A" (operation-resource operation)
                       (hand-holding (operation-resource operation)))))
-    "Let HAND grasp what a local designator denotes. Hits or misses, it may bump that, which loses
-designators silently."
+    "Grasp what a local designator denotes with HAND. Hit or miss, the hand may bump it, which makes
+designators invalid silently."
   (let ((obstacle (grasp-obstacle hand camera designator)))
     (finish operation
             (or obstacle (try-grasp hand designator (handling-dice hand)))
@@ -126,7 +126,7 @@ designators silently."
     ()
     ((:family :handling) (:section "3.6")
      (:errors (:not-grasping (text-of "~A is not holding anything"))))
-    "Let HAND drop what it holds: into what the hand is inside of, or where the robot stands."
+    "Drop what HAND holds: into the container the hand is in, or where the robot stands."
   (let ((thing (hand-holding hand)))
     (cond (thing (set-down hand thing)
                  (succeed-saying operation (dropped-text hand thing)))
@@ -153,7 +153,7 @@ designators silently."
   "How long the event of a watch waits, in ticks, before it is queued anew.")
 
 (define-step watch-grip (operation (hand-p (operation-resource operation)))
-  "Let OPERATION occupy its hand until that does not hold its subject any more (reading 162)."
+  "Occupy the hand of OPERATION until it no longer holds its subject (reading 162)."
   (let ((hand (operation-resource operation)))
     (cond ((not (eq (operation-subject operation) (hand-holding hand)))
            (fail-with operation :grasp-lost))
@@ -180,7 +180,7 @@ designators silently."
          (eq 'watch-grip (operation-step operation)))))
 
 (defun check-grips (world)
-  "Let the watches of grips in WORLD see whether they still hold."
+  "Check all watched grips in WORLD; end the watches of those that are lost."
   (declare #.*hot*)                     ; in each tick
   (dolist (robot (world-robots world))
     (loop for hand across (robot-hands robot)

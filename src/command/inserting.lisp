@@ -81,7 +81,7 @@
 ;;; Out again.
 
 (defun take-out (operation part)
-  "Take PART one level out of what it is inside of and end OPERATION (reading 160)."
+  "Take PART one level out of its container and end OPERATION (reading 160)."
   (let ((location (part-location part)))
     (cond (location
            (move-part part (space-around part))
@@ -93,7 +93,7 @@
     ()
     ((:family :handling) (:section "3.6") (:delay hand-move-delay*)
      (:errors (:not-inside (text-of "~A is not inside anything"))))
-    "Take HAND, with what it holds, out of the container that it is inside of, one level."
+    "Take HAND, with what it holds, one level out of its container."
   (take-out operation hand))
 
 (define-command camera-remove (operation (camera camera))
@@ -106,8 +106,8 @@
 ;;; Cameras.
 
 (defun camera-misses-p (camera destination container)
-  "True if CAMERA, on its way into DESTINATION, bumps it, or is where there is nothing. What it
-cannot reach it cannot bump."
+  "True if CAMERA, on its way into DESTINATION, bumps it, or reaches for something false. It cannot
+bump what it cannot reach."
   (cond ((null container) (eq (designator-type destination) :local))
         ((reaches-container-p camera container)
          (chance camera-insert-miss-prob* (handling-dice camera)))))
@@ -141,7 +141,7 @@ cannot reach it cannot bump."
               (:non-local-designator "Designator is not local")
               (:local-not-local (inserting-text "~A not in same location as ~A")))
      (:report (destination) (inserted-text operation destination)))
-    "Insert CAMERA into a container, to look at what is in there. It loses its track."
+    "Insert CAMERA into a container, to look inside. The camera loses its track."
   (let ((code (try-camera-insertion camera destination (destination-container destination))))
     (when (and (designator-p destination)
                (or (eq code :camera-bump)

@@ -1,11 +1,11 @@
-;;;; issuing.lisp -- a command is issued: what is refused, and what is said of it.
+;;;; issuing.lisp -- issue a command: refuse invalid calls, and warn about doubtful ones.
 
 (in-package :ars-magna.command)
 
 (export '(issue *ticks-follow-p* between-runs-p *asked-with* parameters-bound doubt-asked-with
           asked-elsewhere-p))
 
-;;; What is of another run.
+;;; Arguments from another run.
 
 (defun owner-of-argument (argument)
   (typecase argument
@@ -24,14 +24,14 @@
                        ~]; of a fork, (counterpart OBJECT FORK) is what one is there."
                       (command-name command) argument resource (designator-p argument)))))))
 
-;;; What is said once for each name.
+;;; Warnings given once for each name.
 
 (defun told-at-end (command)
   (list* 'err (spec-name (command-resource command))
          (mapcar #'spec-name (command-results command))))
 
 (defun misplaced-p (continuation told)
-  "True if CONTINUATION calls a parameter by the name of what comes in another place of TOLD."
+  "True if CONTINUATION calls a parameter by the name of an argument in another position of TOLD."
   (multiple-value-bind (list unknown-p) (lambda-list-of continuation)
     (unless unknown-p
       (loop for name in list
@@ -57,7 +57,7 @@
 ;;; One simulation inside of another.
 
 (defun asked-elsewhere (world)
-  "Return the key for what is asked of WORLD in this tick inside of a simulation of another."
+  "Return the key for requests to WORLD in this tick from within a simulation of another world."
   (list :asked-elsewhere (world-tick world)))
 
 (defun asked-elsewhere-p (world)
@@ -82,13 +82,13 @@ of WORLD passed."
   (not (or (command-instant-p command) (trait-p :stops command))))
 
 (defun by-program-p ()
-  "True where a program asks, one that is not of plans, the prompt or a journal: whoever has called
-WITH-SIMULATION, somebody at a REPL or a continuation."
+  "True if the asker is a program: WITH-SIMULATION, a REPL or a continuation; not a plan, the prompt
+or a journal."
   (or (null *asker*)
       (and (stringp *asker*) (starts-with-subseq "the continuation of " *asker*))))
 
 (defun not-yet-begun (resource timeline)
-  "Return what was asked for last of what takes time on RESOURCE and has not begun, or NIL."
+  "Return the last request for a lasting command on RESOURCE that has not begun, or NIL."
   (find-if (lambda (request)
              (and (operation-p request)
                   (eq resource (operation-resource request))
@@ -105,8 +105,9 @@ WITH-SIMULATION, somebody at a REPL or a continuation."
          event)))
 
 (defun corrects-p (command resource arguments before)
-  "True if COMMAND of RESOURCE with ARGUMENTS may be meant to replace BEFORE: it is the same, of a
-part, with other arguments, or in the world of a map, where what was asked may be of another time."
+  "True if COMMAND of RESOURCE with ARGUMENTS may be meant to replace BEFORE: it is the same
+command, and RESOURCE is a part, or ARGUMENTS are other ones or none, or the world is a map's
+resident one, where BEFORE may have been issued at another time."
   (and (eq command (operation-command before))
        (not (and (robot-p resource)
                  arguments
@@ -115,9 +116,9 @@ part, with other arguments, or in the world of a map, where what was asked may b
                    (not (eq world (map-resident (world-map world)))))))))
 
 (defun doubt-hurry (command resource arguments timeline)
-  "Say once for a pair if COMMAND is asked of RESOURCE, with ARGUMENTS, by who has asked for another
-one in the same tick, or live in the one before, and is not told of the end of that. So it is with
-the same command of a robot again, as in a loop."
+  "Warn once for a pair of commands if COMMAND is issued to RESOURCE, with ARGUMENTS, in the same
+tick as another (live: one tick later) by the same asker, without a continuation for the end of
+that. The same command to a robot again, as in a loop, counts, too."
   (when (and (by-program-p) (lasting-p command))
     (let ((before (or (not-yet-begun resource timeline) (barely-begun resource timeline))))
       (when (and before
@@ -144,8 +145,8 @@ ask again is to turn on.")
   (:method (name) (declare (ignore name)) nil))
 
 (defun doubt-again (command resource arguments timeline)
-  "Say once if COMMAND, which turns by ARGUMENTS, is asked of RESOURCE, headless, while it is under
-way by the same asker, who is not told of its end: it begins anew."
+  "Warn once if COMMAND, which turns by ARGUMENTS, is issued again to RESOURCE, headless, while it
+is in progress for the same asker, who has no continuation for its end: it starts over."
   (let ((before (resource-event resource)))
     (when (and (operation-p before)
                (eq command (operation-command before))
@@ -210,8 +211,8 @@ than the run of TIMELINE in WORLD knows.")
                                 (command-name command) symbol value (symbol-value symbol)))))
 
 (defun doubt-asked-with (world)
-  "Say once for each command, and forget, what is done with other parameters than it was asked for
-with, now that ticks of WORLD pass."
+  "Warn once for each command that runs with other parameters than it was issued with, now that
+ticks of WORLD pass. Then forget the recorded parameters."
   (loop for (command asked . bindings) in (reverse *asked-with*)
         when (eq asked world) do (doubt-bindings command world bindings))
   (setf *asked-with* (remove world *asked-with* :key #'second :test #'eq)))
@@ -225,8 +226,8 @@ with, now that ticks of WORLD pass."
                               (command-name command) symbol (global-value symbol) value))))
 
 (defun note-bindings (command world)
-  "If COMMAND is asked for in WORLD between ticks, and not by a plan, remember with which parameters
-that is; or, live, say so if they are this thread's."
+  "If COMMAND is issued in WORLD between ticks, and not by a plan, record the parameters. In a live
+run, warn if they are bound in this thread only."
   (let ((timeline (world-timeline world)))
     (unless (or (asker-forked-p *asker*) (timeline-passing-p timeline))
       (let ((bindings (parameters-bound timeline world)))
@@ -235,7 +236,8 @@ that is; or, live, say so if they are this thread's."
               (t (push (list* command world bindings) *asked-with*)))))))
 
 (defun between-runs-p (world)
-  "True if what is asked of a robot in WORLD, a map's own, waits for a run to begin or go on."
+  "True if requests to a robot in WORLD, the resident world of a map, wait for a run to start or
+continue."
   (let ((timeline (world-timeline world)))
     (and (eq world (map-resident (world-map world)))
          (not (live-p timeline))
@@ -273,12 +275,12 @@ that is; or, live, say so if they are this thread's."
                 (robot-name robot)))))
 
 (defvar *ticks-follow-p* nil
-  "True where whoever gives commands lets ticks pass for them, or says that none do.")
+  "True if the caller lets ticks pass for its commands, or says that none do.")
 
 (defun tell-if-kept (command resource robot)
-  "Say once for ROBOT, that of RESOURCE, that COMMAND is kept for a later run, if so, and once for
-each WITH-SIMULATION in another thread that has bound the name of ROBOT; but not of what a plan asks
-for, as running a plan lets ticks pass."
+  "Warn once for ROBOT, that of RESOURCE, if COMMAND is kept for a later run, and once for each
+WITH-SIMULATION in another thread that has bound the name of ROBOT. Commands of plans are left out,
+as running a plan lets ticks pass."
   (when (and (between-runs-p (robot-world robot))
              (not (asker-forked-p *asker*))
              (not *ticks-follow-p*))

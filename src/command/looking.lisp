@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.command)
 
-;;; A search only needs a camera that does not track. A track goes on in the background of views
-;;; and insertions; whatever else turns the camera interrupts it.
+;;; A search only needs a camera that does not track. A track continues in the background of views
+;;; and insertions; other commands that turn the camera interrupt it.
 
 (defun already-tracking-text (operation)
   (let ((camera (operation-resource operation)))
@@ -16,8 +16,8 @@
     "Take a view with CAMERA."
   (succeed operation (take-view camera)))
 
-;;; The search itself takes no time once its delay is over, but naming all that was found takes a
-;;; tick for each after the first. What has moved away by then is left out.
+;;; After its delay the search itself takes no time. Naming the things found takes a tick for each
+;;; after the first; those that have moved away by then are left out.
 
 (define-argument-type 'designator-type
   (lambda (value) (member value '(:local :non-local)))
@@ -118,7 +118,7 @@ found none is an answer: :DESIGNATOR-NOT-FOUND."
 ;;; Things.
 
 (defun search-for-things (operation camera type specification all)
-  ;; Tell of substances that are wanted and that there are not.
+  ;; Warn of substances that are asked for but do not exist.
   (loop for (key value) in specification
         when (eq key :substance)
           do (dolist (choice (ensure-list value))
@@ -228,7 +228,7 @@ track begins, with NIL, and again when it ends, with the error code that says ho
          (succeed operation))
         (t (fail-with operation :not-tracking))))
 
-;;; A camera turns exactly as told, and at once after its delay; what it reports is an estimate. Its
+;;; A camera turns exactly by its argument, at once after its delay; the result is an estimate. Its
 ;;; angle is relative to the robot and never normalised. Turning a camera interrupts its track.
 
 (defun turn-camera (operation camera angle)

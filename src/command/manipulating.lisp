@@ -4,8 +4,8 @@
 
 (export '(manipulation-command-p command-for))
 
-;;; What is given for an object is a designator. One that is invalid, false, non-local, or of
-;;; another robot designates nothing that could be manipulated.
+;;; Objects are given as designators. One that is invalid, false, non-local, or of another robot
+;;; denotes nothing to manipulate.
 
 (defun designated-thing (designator resource)
   "Return the local thing that DESIGNATOR, of RESOURCE's robot, denotes, or NIL (reading 175)."

@@ -1,19 +1,18 @@
-;;;; manipulations.lisp -- what programs do to things by methods of their own (manual 5.5).
+;;;; manipulations.lisp -- actions on things that users define by methods (manual 5.5).
 
 (in-package :ars-magna.command)
 
 (export '(define-manipulation method-shape manipulation-method))
 
-;;; A manipulation is a name with methods, the newest first. Of those that take what was given, the
-;;; first that is for the things designated is chosen when the manipulation begins; it must still be
-;;; for them when its delay has passed. What happens then is a command's operation on the value of
-;;; the method's :BY parameter.
+;;; A manipulation is a name with methods, the newest first. When it begins, it chooses the first
+;;; method that takes the arguments and fits the designated things. The method must still fit when
+;;; its delay has passed. Then its body runs as a command's operation on the value of the method's
+;;; :BY parameter.
 ;;;
-;;; A method replaces one with the same parameter list. When a file is loaded that has changed
-;;; since, the methods that it had before and has no more are forgotten: so a method whose
-;;; parameters were edited does not stay behind. Of those that are typed, one with the same
-;;; variables, types and attributes is taken for an earlier version unless no thing could be for
-;;; both.
+;;; A method replaces one with the same parameter list. When a changed file is loaded again, the
+;;; methods that it no longer contains are forgotten, so a method with edited parameters leaves no
+;;; old version behind. Of typed methods, one with the same variables, types and attributes counts
+;;; as an earlier version unless no thing could fit both.
 
 (define-record (parameter-list (:constructor make-parameter-list (objects patterns typed)))
   "The parameters of a method: variables and patterns of its objects, and then its resource and
@@ -132,8 +131,8 @@ it still has it, it will come yet, unless loading fails before."
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
 (defun with-method (name methods method)
-  "Return METHODS, a list of those of NAME, with METHOD before them, without one that has the same
-parameter list or of which it is a new version (reading 174)."
+  "Return METHODS, the list for NAME, with METHOD in front, without any that has the same parameter
+list or of which it is a new version (reading 174)."
   (let* ((current (remove-if (lambda (old) (outdated-p name old (method-source method))) methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
                   (find-if (lambda (old) (retyped-p old method)) current))))
@@ -195,13 +194,13 @@ parameter list, BODY a function of as many arguments. Return NAME."
                                     &environment environment)
   "Define a method of the manipulation NAME (manual 5.5.1). PARAMETERS is
   (variable - descriptor ... :by resource other ...)
-where each object's variable will be bound to a thing that is exactly as the descriptor
-((attribute value [threshold]) ...) says. A value may be a matchvar ?x, which stands for the same
-value wherever it occurs. A hyphen and a type may follow the resource, which is what the
-scheduler arbitrates, and each of the others. OPTIONS is ([:success probability] [:delay ticks]),
-by default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a value.
-Of several methods that fit, the one defined last is used. One with the same parameter list is
-replaced, and so are those that an earlier version of the same file defined. Signals
+Each variable of an object is bound to a thing that fits the descriptor ((attribute value
+[threshold]) ...) exactly. A value may be a matchvar ?x, which has the same value wherever it
+occurs. A hyphen and a type may follow the resource and each of the others. The resource is the
+robot or part that the command occupies. OPTIONS is ([:success probability] [:delay ticks]), by
+default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a value.
+Of several methods that fit, the one defined last is used. A method replaces one with the same
+parameter list. Loading a file again removes the methods that its earlier version defined. Signals
 MALFORMED-DEFINITION. Return NAME."
   (let ((definition (title "defmanipulation" name)))
     (expand-definition form environment

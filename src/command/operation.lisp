@@ -1,4 +1,4 @@
-;;;; operation.lisp -- a command under way: how it begins, goes on and ends.
+;;;; operation.lisp -- a command in progress: how it begins, continues and ends.
 
 (in-package :ars-magna.command)
 
@@ -6,11 +6,11 @@
           notify report go-on))
 
 ;;; Issuing a command posts an OPERATION, a request, to the timeline of its robot. At the start of
-;;; the next tick the operation takes its resource over, interrupting what was there, and waits for
-;;; the command's delay; then its body runs, with the preconditions as they are by then. The body
-;;; ends the operation, or goes on in further ticks: its STEP is the name of a function, and what
-;;; that needs to know from tick to tick is in the operation's slots. Invariant: an operation ends
-;;; exactly once, and its continuation is called exactly once, at the end of that tick.
+;;; the next tick the operation takes over its resource, interrupting the command there, and waits
+;;; for its delay. Then its body runs; preconditions are checked at that time. The body ends the
+;;; operation or continues in further ticks: its STEP is the name of a function, and state from tick
+;;; to tick is in the operation's slots. Invariant: an operation ends exactly once, and its
+;;; continuation is called exactly once, at the end of that tick.
 
 (define-kind (operation :include event
                         :constructor (make-operation
@@ -18,7 +18,7 @@
                                        &aux (function #'run-operation)
                                          (interrupt #'interrupt-operation)
                                          (asked (timeline-tick timeline)))))
-    "A command under way. It is the event that is pending on its resource."
+    "A command in progress. It is the event that is pending on its resource."
   (:fixed
    (timeline nil (or null timeline) "the timeline that the operation takes place in"))
   (:state
@@ -34,7 +34,7 @@ command that it cut short, or NIL"))
   (:link
    (continuation nil t "what to call when it ends, or NIL")))
 
-;; What is told of an end is a program's own affair, unless that is forked along with the run.
+;; The continuation belongs to a program: a fork only copies it if the program is forked, too.
 (defmethod copy-plan-value ((operation operation) fork)
   (let ((copy (copy-slots operation fork)))
     (when (or (and (operation-forked-p operation) (copier-option fork :participants))
@@ -62,7 +62,7 @@ command that it cut short, or NIL"))
   (timeline-agenda (the timeline (operation-timeline operation))))
 
 (defun resource-told (operation)
-  "Return what programs and journals call the resource of OPERATION: the robot, if it is its mind."
+  "Return the resource of OPERATION as programs and journals name it: the robot, not its mind."
   (let ((resource (operation-resource operation)))
     (if (mind-p resource) (mind-robot resource) resource)))
 
@@ -106,7 +106,8 @@ command that it cut short, or NIL"))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
 (defun tell-of-failure (operation kind code text)
-  "Queue TEXT, a message of KIND, as OPERATION ends with CODE, told to its continuation, too."
+  "Queue TEXT, a message of KIND, for the end of OPERATION with CODE, which its continuation gets,
+too."
   (queue-message (make-message kind (list text)
                                :about (command-name (operation-command operation))
                                :told-p (and (operation-continuation operation) t))
@@ -171,8 +172,8 @@ the resource and RESULTS. The second end of an operation changes nothing."
   (not (eq (operation-step operation) 'start-body)))
 
 (defun known-results (operation)
-  "Return the results of OPERATION that are known before it ends: of those that it echoes, arguments
-of the same name, or else, once it has begun, what it is about."
+  "Return the results of OPERATION that are known before it ends, those that it echoes: arguments of
+the same name, or else its subject, once it has begun."
   (let* ((command (operation-command operation))
          (names (mapcar #'spec-name (command-parameters command))))
     (loop for result in (command-results command)
@@ -208,8 +209,8 @@ on, are messages and end that with :FAILED."
       (funcall (the symbol step) operation)))
 
 (defun run-operation (operation)
-  "Call the step of OPERATION: what is to be done in this tick. If that is left halfway, as by a
-time limit, OPERATION is interrupted."
+  "Call the step of OPERATION for this tick. If the step is left by a non-local exit, as by a time
+limit, OPERATION is interrupted."
   (unless (operation-finished-p operation)
     (let ((returned nil))
       (unwind-protect
@@ -220,16 +221,16 @@ time limit, OPERATION is interrupted."
 
 (declaim (inline once-more))
 (defun once-more (operation)
-  "Let the step of OPERATION be called again in the next tick. Called by that step."
+  "Call the step of OPERATION again in the next tick. Called by that step."
   (queue-again (operation-agenda operation) operation 1))
 
 (defun go-on (operation step &optional (delay 1))
-  "Let STEP, the name of a function of OPERATION, be called DELAY ticks from now to carry it on."
+  "Continue OPERATION with STEP, the name of a function of it, DELAY ticks from now."
   (setf (operation-step operation) step)
   (queue-again (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
 
 (defun go-on-now (operation step)
-  "Let STEP, the name of a function of OPERATION, carry it on in this tick and all that follow."
+  "Continue OPERATION with STEP, the name of a function of it, in this tick and all that follow."
   (setf (operation-step operation) step)
   (funcall step operation))
 
@@ -240,9 +241,9 @@ time limit, OPERATION is interrupted."
          operation (resource-told operation) (operation-arguments operation)))
 
 (defun make-way (operation agenda rival)
-  "Free for OPERATION the resource of RIVAL, the event pending on it: a command that takes no time
-and has only just been issued is carried out first, anything else is interrupted. So
-\(robot-set-speed ...) followed by (robot-go-forward ...) sets the speed (reading 77)."
+  "Free the resource of RIVAL, the event pending on it, for OPERATION. A command that takes no time
+and has only just been issued is executed first; anything else is interrupted. So \(robot-set-speed
+...) followed by (robot-go-forward ...) sets the speed (reading 77)."
   (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
          (cancel-event agenda rival)
          (call-step rival 'start-body))
@@ -276,7 +277,7 @@ by interrupting RIVAL, an operation: nothing, if that has not begun.")
       (begin operation)))
 
 (defun resource-robot (resource)
-  "Return RESOURCE if it is a robot, else the robot whose part or mind it is."
+  "Return RESOURCE if it is a robot, else the robot that has it as a part or mind."
   (cond ((robot-p resource) resource)
         ((mind-p resource) (mind-robot resource))
         (t (part-robot resource))))

@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.command)
 
-;;; A pattern is a list of clauses (key value threshold). It looks at what a thing really is, with
-;;; no noise, and with no threshold but one that is given. A list of values means a range for a
-;;; numeric attribute and alternatives for any other; of an attribute that nobody has defined,
-;;; two numbers mean a range. NIL means false or unspecified. A matchvar is bound where
-;;; it comes first and must meet the same value wherever it comes again, in this pattern or a later.
+;;; A pattern is a list of clauses (key value threshold). It tests a thing's true values, without
+;;; noise, and without a threshold unless one is given. A list of values is a range for a numeric
+;;; attribute and alternatives for any other; for an undeclared attribute, two numbers are a range.
+;;; NIL means false or unspecified. A matchvar is bound at its first occurrence and must have the
+;;; same value at each later one, in this pattern or the next.
 
 (defun check-discrete-clause (definition clause attribute)
   (let ((value (find-if-not (lambda (value) (or (matchvar-p value) (in-domain-p attribute value)))
@@ -53,7 +53,7 @@ for. Signals MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (<= (- low threshold) number (+ high threshold)))
 
 (defun comparable-value (key value wanted)
-  "Return what of VALUE, of the attribute KEY, is to be compared with WANTED: of a substance, its
+  "Return the part of VALUE, of the attribute KEY, to compare with WANTED: for a substance, its
 parameter or its type."
   (cond ((not (eq key :substance)) value)
         ((value-limits wanted) (substance-value-parameter value))
@@ -71,7 +71,7 @@ parameter or its type."
 ;;; Matchvars.
 
 (defun bind-matchvar (matchvar key value bindings)
-  "True if MATCHVAR, for KEY, can be VALUE; BINDINGS with what it is bound to as second value."
+  "True if MATCHVAR, for KEY, can have VALUE; the second value is BINDINGS, extended by it."
   (let ((binding (assoc matchvar bindings)))
     (cond ((not (or value (can-be-false-p (attribute-of key)))) (values nil bindings))
           ((null (matchvar-name matchvar)) (values t bindings))

@@ -1,4 +1,4 @@
-;;;; soundness.lisp -- commands under way that were put together from a file.
+;;;; soundness.lisp -- check commands in progress that were read from a file.
 
 (in-package :ars-magna.command)
 

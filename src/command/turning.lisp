@@ -52,7 +52,7 @@
 ;;; Turning.
 
 (define-constant +facing+ 1d-12
-  :documentation "What is less than this has been turned, in radians: it is rounding.")
+  :documentation "Angles below this, in radians, are rounding errors and count as turned.")
 
 (defun turn-step (robot left)
   "Turn ROBOT for a tick, of the angle LEFT to be turned. Return what is then left, and the
@@ -70,7 +70,7 @@ it then faces there, but for the error of turning."
       (< (abs (turn-step robot angle)) +facing+)))
 
 (define-step turn-on (operation (robot-p (operation-resource operation)))
-  "Turn for a tick what is left to be turned by OPERATION, and end that when nothing is."
+  "Turn the remaining angle of OPERATION for a tick, and end OPERATION when nothing remains."
   (multiple-value-bind (left read)
       (turn-step (operation-resource operation) (operation-left operation))
     (setf (operation-left operation) left)
@@ -156,9 +156,9 @@ it then faces there, but for the error of turning."
           (t (fail-with operation :incorrect-place-type)))))
 
 (defun corner-direction (robot type directions)
-  "Return the heading in which ROBOT, coming along one wall of a corner, follows the other. At
-a convex corner it came along one of DIRECTIONS and turns against the other; at a concave one it
-came against one of them and turns along the other. If it looks along a wall already, away from the
+  "Return the heading in which ROBOT, coming along one wall of a corner, follows the other. At a
+convex corner it came along one of DIRECTIONS and turns against the other; at a concave one it came
+against one of them and turns along the other. If it already looks along a wall, away from the
 corner, it turns to the other wall (reading 105)."
   (let* ((opposite (mapcar (lambda (d) (+ d pi)) directions))
          (convex (same-name-p (place-type-name type) 'convex))

@@ -1,4 +1,4 @@
-;;;; withdrawing.lisp -- a command is interrupted by who issued it, if it is still under way.
+;;;; withdrawing.lisp -- interrupt a command that you issued, if it is still in progress.
 
 (in-package :ars-magna.command)
 
@@ -11,7 +11,7 @@
 (define-kind (withdrawal :include request
                          :constructor (make-withdrawal (continuation arguments
                                                         &aux (operator 'withdraw-command))))
-    "That a command is to be interrupted on a resource, the first argument, if it is under way."
+    "A request to interrupt a command on a resource, the first argument, if it is in progress."
   (:fixed
    (continuation nil t "what the command was to tell of its end; NIL if the second argument says
 where the command is: :COMMAND, :TRACK or NIL" :export)))
@@ -51,8 +51,8 @@ where the command is: :COMMAND, :TRACK or NIL" :export)))
       ((nil)))))
 
 (defun withdraw-command (resource continuation)
-  "Interrupt the command on RESOURCE, also in the background of that, that is to tell CONTINUATION
-of its end, at the start of the next tick, if it is under way by then. Returns nothing."
+  "Interrupt the command on RESOURCE that has CONTINUATION, also if it runs in the background, at
+the start of the next tick, if it is in progress by then. Returns nothing."
   (post (make-withdrawal continuation (list resource)) resource))
 
 ;; What a withdrawal came to, in a run that is repeated.
