@@ -7,13 +7,13 @@
           note-interruption interruption))
 
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
-;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; what lies
-;;; beyond waits in one list. Turning a page moves its far bucket into the near wheel. Queueing
-;;; and running an event cost the same however many wait.
+;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; later events wait
+;;; in one list. Turning a page moves its far bucket into the near wheel. The cost of queueing and
+;;; running an event does not depend on the number of events.
 ;;;
 ;;; Invariants: a bucket is NIL or the last of its events, which form a ring: next to the last is
 ;;; the first, and so on in the order of queueing. Within a tick, higher priorities run first and
-;;; equal ones in that order; a resource has at most one pending event; cancelled events stay in
+;;; equal ones in that order. A resource has at most one pending event. Cancelled events stay in
 ;;; their bucket and are dropped when it comes up. Manual 3.8.
 
 (defconstant +page-bits+ 8)
@@ -31,7 +31,7 @@
    (time 0 tick-count "the tick that the event waits for" :export)
    (priority 0 fixnum "the event's priority; higher ones come first")
    (pending-p nil boolean "the event waits for its tick" :export))
-  ;; True while some bucket holds the event, pending or cancelled, and what comes after it there.
+  ;; True while a bucket holds the event, pending or cancelled; and the next event in the bucket.
   (:link
    (queued-p nil boolean "a bucket holds the event, pending or cancelled")
    (next nil (or null event) "the event behind it in its bucket; the first behind the last")))
@@ -110,7 +110,7 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 
 ;; As reading 81 says.
 (defun claim (agenda event resource)
-  "Let EVENT, or none if it is NIL, be pending on RESOURCE."
+  "Make EVENT, or none if it is NIL, the pending event of RESOURCE."
   (cond ((null resource))
         ((resource-p resource) (setf (resource-event resource) event))
         (event (setf (gethash resource (agenda-claims agenda)) event))

@@ -6,10 +6,10 @@
 
 (addition ask)
 (defun ask (object function)
-  "Call FUNCTION, with no arguments, where the world of OBJECT, a simulation or robot, stands still:
-at once if this thread has it in its hands or nobody has, else between two ticks in the thread that
-does. Return its values; what it signals is signalled here. Signals MISUSE inside a tick of another
-world, and if FUNCTION is aborted."
+  "Call FUNCTION, without arguments, while the world of OBJECT, a simulation or robot, stands still.
+If this thread owns the world or no thread does, call it at once; else the owning thread calls it
+between two ticks. Return its values; its errors are signalled here. Signals MISUSE inside a tick of
+another world, and if FUNCTION is aborted."
   (let ((custody (timeline-custody (timeline-of object))))
     (call-with-custody custody function (lambda () (ask-holder custody function)))))
 
@@ -21,21 +21,21 @@ world, and if FUNCTION is aborted."
 ;;; Of another thread.
 
 (defstruct (question (:constructor make-question (function)) (:copier nil))
-  "What somebody has asked, and the answer."
+  "A question of another thread, and the answer."
   (function nil :type function :read-only t)
   (answered (make-semaphore "answer") :type t :read-only t)
   (values '() :type list)
   (trouble nil :type t)
-  ;; Whoever asked has left.
+  ;; The asking thread has left.
   (given-up-p nil :type t))
 
 (defun note-trouble (question condition)
   (setf (question-trouble question)
         (if (typep condition 'serious-condition) condition :aborted)))
 
-;; A user's thread that answers may itself be under a time limit: who has asked has no part in that.
+;; The answering user thread may itself be under a time limit, which must not apply to the question.
 (defun for-asker-p (condition)
-  "True if CONDITION, signalled while this thread answers a question, is for the one who asked."
+  "True if CONDITION, signalled while this thread answers a question, belongs to the asking thread."
   (or (own-thread-p) (not (typep condition 'time-limit))))
 
 (defun call-for-other (question)
@@ -69,7 +69,7 @@ world, and if FUNCTION is aborted."
           (t (error trouble)))))
 
 (defun check-outside-ticks ()
-  "Signal MISUSE inside a tick: nobody can be answered here, so none can be asked."
+  "Signal MISUSE inside a tick: a thread in a tick answers no questions, so it may ask none."
   (when (and *simulation* (timeline-ticking-p (timeline-of *simulation*))
              (owner-p *simulation*))
     (reject-use "A tick of ~A is under way here. Another world that is live can be asked or ~
@@ -79,7 +79,7 @@ world, and if FUNCTION is aborted."
 (defun await-answer (question custody)
   (loop until (wait-for-other (question-answered question))
         do (release-if-dead custody)
-           ;; Who has given it up meanwhile leaves its questions to whoever waits.
+           ;; A thread that gives up the world leaves pending questions to a waiting thread.
            (call-with-custody custody (constantly nil) (constantly nil))))
 
 (defun keeping-seclusion (function)

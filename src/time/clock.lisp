@@ -1,4 +1,4 @@
-;;;; clock.lisp -- ticks that pass by themselves, in a thread of their own (manual 2.3, A).
+;;;; clock.lisp -- a thread that passes ticks in real time (manual 2.3, A).
 
 (in-package :ars-magna.time)
 
@@ -11,7 +11,7 @@
 ;;; Resting.
 
 (defun sleep-until-woken (custody seconds &optional (may-p (constantly t)))
-  "Sleep for SECONDS if the function MAY-P says so, but not while somebody wants something."
+  "Sleep for SECONDS if the function MAY-P allows it, but wake up when another thread asks."
   (setf (custody-asleep-p custody) t)
   (memory-barrier)
   (when (and (funcall may-p) (null (custody-questions custody)))
@@ -23,11 +23,11 @@
   (and (pacing-paused-p pacing) (zerop (pacing-steps pacing))))
 
 (defun stands-still-p (simulation)
-  "True if the live SIMULATION is paused, and passes no ticks that somebody has let it pass."
+  "True if the live SIMULATION is paused and has no ticks left to pass by request."
   (if-paced (pacing simulation) (held-p pacing)))
 
 (defun clock-standing-still-p (pacing)
-  "True if no tick may pass, as somebody has told PACING to pause or to stop."
+  "True if no tick may pass, because PACING was paused or stopped."
   (or (pacing-stopping-p pacing) (held-p pacing)))
 
 (defun nothing-to-do-p (pacing)
@@ -140,9 +140,9 @@ the custody has been handed over by then."
         (signal-semaphore start)))))
 
 (defun start-pacing (timeline tick idle-p rate caller &key paused-p)
-  "Let a new thread pass ticks of TIMELINE at RATE by calling TICK, as long as IDLE-P is false, both
-functions of no arguments; if PAUSED-P, not before RESUME. The thread works inside CALLER, a
-function of a function that calls it, and is handed the custody of TIMELINE, which this thread has.
+  "Start a thread that passes ticks of TIMELINE at RATE by calling TICK while IDLE-P is false, both
+functions without arguments; if PAUSED-P, not before RESUME. The thread works inside CALLER, a
+function of a function that calls it, and takes over the custody of TIMELINE from this thread.
 Return TIMELINE. Signals MISUSE if it is live already, WRONG-ARGUMENT for a rate that is neither a
 number from 0.001 to 1000000 nor :FREE."
   (check-rate rate)

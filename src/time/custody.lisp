@@ -4,17 +4,17 @@
 
 (export '(answer-questions call-with-custody mine-p answer-meanwhile))
 
-;;; A world, with the timelines of its runs, which follow one another, is in the custody of one
-;;; thread at a time: the one that paces it, or one that passes its ticks or changes it, for as long
-;;; as that takes. Custody is taken if nobody has it, and given up; it may be handed over to another
-;;; thread meanwhile. Who does not get it leaves a question, a function, which the thread that has
-;;; it calls between two ticks, or before it gives custody up.
+;;; A world and the successive timelines of its runs are in the custody of one thread at a time: the
+;;; one that paces the world, or one that passes ticks or changes the world, while it does. A thread
+;;; takes custody if no other has it, and gives it up; it may hand it over to another thread. A
+;;; thread that cannot get custody leaves a question, a function. The thread in custody calls that
+;;; between two ticks, or before it gives custody up.
 
 (define-record (custody (:constructor make-custody ()))
   "Which thread may touch a world."
   (thread nil t :writable)
   (questions '() t
-             "what others have asked those who have the custody, newest first" :writable :export)
+             "questions of other threads to the one in custody, newest first" :writable :export)
   (wake-up (make-semaphore "custody") t)
   (asleep-p nil t :writable)
   (pacing nil t "how the thread that has it paces the world, or NIL if it does not" :writable)
@@ -29,23 +29,23 @@
   (eq (custody-thread custody) (current-thread)))
 
 (defun take-custody (custody)
-  "Let this thread have CUSTODY, if nobody has it. True if so."
+  "Take CUSTODY for this thread, if no other has it. True if it was taken."
   (swap-if (custody-thread custody) nil (current-thread)))
 
 (defun answer-questions (custody)
-  "Call what others have asked those who have CUSTODY to call, in order."
+  "Call the functions that other threads have left for CUSTODY, in order."
   (loop for questions = (custody-questions custody)
         while questions
         when (swap-if (custody-questions custody) questions '())
           do (call-each #'funcall (reverse questions))))
 
 (defun give-up-custody (custody)
-  "Let others have CUSTODY. Whatever has been asked is answered before."
+  "Give CUSTODY up. Pending questions are answered first."
   (in-any-case
     (when (mine-p custody) (answer-questions custody))
     (swap-if (custody-thread custody) (current-thread) nil)
     (progn (memory-barrier)
-           ;; Somebody may have asked just now.
+           ;; A question may have come just now.
            (when (and (custody-questions custody) (take-custody custody))
              (give-up-custody custody)))))
 
@@ -90,5 +90,5 @@ for it while it waits for them."
   "Wait for SEMAPHORE for a moment, of SECONDS at most. True if it came."
   (answer-meanwhile)
   (yield-foreground)
-  ;; Who has a world in custody must look often who asks for that.
+  ;; A thread in custody must check for questions often.
   (wait-on-semaphore semaphore (if *held* (min seconds 0.002) seconds)))

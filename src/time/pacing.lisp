@@ -1,4 +1,4 @@
-;;;; pacing.lisp -- the pace of ticks that pass by themselves, and their end (2.3, A).
+;;;; pacing.lisp -- the pace of ticks in real time, and their end (2.3, A).
 
 (in-package :ars-magna.time)
 
@@ -6,8 +6,8 @@
           hog-seconds seconds-now stop-pacing claim-pacing claimed-p unclaim-pacing call-alone
           users-code-under-way users-code-broken-p abort-hog))
 
-;;; A thread passes ticks at the pace RATE, a number of ticks per second or :FREE, for as long as
-;;; anything is to be done (clock.lisp). Others steer it by setting its fields and waking it.
+;;; A thread passes ticks at the pace RATE, a number of ticks per second or :FREE, while there is
+;;; anything to do (clock.lisp). Other threads control it by setting its fields and waking it.
 
 (addition *default-rate*)
 (defparameter *default-rate* 20
@@ -32,13 +32,13 @@ what users' code the thread is in."
   (idle-p nil :type function :read-only t)
   (calls nil :type user-calls :read-only t)
   (thread nil)
-  ;; True when the thread has ended, and what then wakes one of those who wait for that.
+  ;; True when the thread has ended; and the condition that wakes those waiting for it.
   (over-p nil)
   (ended (make-semaphore "ended") :read-only t)
   (paused-p nil)
-  ;; True when it is to end: :REPLACED if another run is to go on and nobody has stopped this one.
+  ;; True when it should end; :REPLACED if another run follows and no thread has stopped this one.
   (stopping-p nil)
-  ;; What it has failed by and is paused for, in words, or NIL.
+  ;; The failure, in words, that it is paused for, or NIL.
   (trouble nil :type (or null string))
   ;; The number of the call of users' code that was named last for keeping the thread waiting.
   (hog nil)
@@ -61,7 +61,7 @@ what users' code the thread is in."
      (when ,pacing ,@body)))
 
 (defun timeline-thread (timeline)
-  "Return the thread that paces TIMELINE, or NIL if none does, or it has been told to stop."
+  "Return the thread that paces TIMELINE, or NIL if there is none or it was asked to stop."
   (if-paced (pacing timeline)
     (and (not (pacing-stopping-p pacing)) (pacing-thread pacing))))
 
@@ -76,11 +76,11 @@ what users' code the thread is in."
 
 (addition paused-p)
 (defun paused-p (&optional (simulation (current-simulation)))
-  "True if the live SIMULATION has been told to pause."
+  "True if the live SIMULATION was paused."
   (if-paced (pacing simulation) (pacing-paused-p pacing)))
 
 (defvar *waits-while-paused-p* t
-  "True if somebody sits where this thread waits, and may let a run go on that is paused.")
+  "True if an interactive user, where this thread waits, can resume a paused run.")
 
 (defun clock-trouble (simulation)
   "Return in words what the live SIMULATION has failed by, if it is paused for that; else NIL."
@@ -101,7 +101,7 @@ what users' code the thread is in."
   (check-of-type 'set-rate 'rate rate 'rate))
 
 (defun steer (simulation paused-p steps)
-  "Let SIMULATION, if live, be paused if PAUSED-P, but pass STEPS ticks."
+  "Pause SIMULATION, if live, if PAUSED-P, after STEPS more ticks; else resume it."
   (if-paced (pacing simulation)
     (setf (pacing-steps pacing) steps
           (pacing-paused-p pacing) paused-p
@@ -111,16 +111,16 @@ what users' code the thread is in."
 
 (addition pause)
 (defun pause (&optional (simulation (current-simulation)))
-  "Let the live SIMULATION stand still after its current tick, until RESUME. Returns nothing."
+  "Pause the live SIMULATION after its current tick, until RESUME. Returns nothing."
   (steer simulation t 0))
 
 (addition resume)
 (defun resume (&optional (simulation (current-simulation)))
-  "Let the live SIMULATION go on after PAUSE. Returns nothing."
+  "Resume the live SIMULATION after PAUSE. Returns nothing."
   (steer simulation nil 0))
 
 (defun let-pass (count simulation)
-  "Let COUNT ticks of the live SIMULATION pass, at its pace, and then pause. Returns nothing."
+  "Pass COUNT ticks of the live SIMULATION, at its pace, then pause it. Returns nothing."
   (steer simulation t count))
 
 (addition set-rate)
@@ -133,8 +133,8 @@ RATE. Signals WRONG-ARGUMENT."
     (wake-clock pacing))
   rate)
 
-;;; The thread ends by itself after its tick. Users' code that keeps it from ending is aborted, but
-;;; only if whoever stops the run says so.
+;;; The thread ends after its tick. User code that keeps it from ending is aborted only if the
+;;; caller that stops the run says so.
 
 (defun ended-p (pacing seconds)
   "Wait for the thread of PACING to end, for SECONDS. True if it has."
@@ -175,8 +175,8 @@ again if it does not go. Signals MISUSE if that does not help either."
     (await-end pacing)))
 
 (defun claim-pacing (timeline)
-  "Tell the thread that paces TIMELINE to end after its current tick, as this thread is to replace
-the run. True if it was live, and nobody else had told it to end."
+  "Ask the thread that paces TIMELINE to end after its current tick, because this thread will
+replace the run. True if it was live and not yet asked to end."
   (if-paced (pacing timeline) (swap-if (pacing-stopping-p pacing) nil :replaced)))
 
 (defun claimed-p (timeline)
@@ -184,7 +184,7 @@ the run. True if it was live, and nobody else had told it to end."
   (if-paced (pacing timeline) (eq :replaced (pacing-stopping-p pacing))))
 
 (defun unclaim-pacing (timeline)
-  "Let what may be about to replace the run of TIMELINE not be live: somebody has stopped that."
+  "Make the run that may be about to replace that of TIMELINE not live, since it was stopped."
   (if-paced (pacing timeline) (swap-if (pacing-stopping-p pacing) :replaced t)))
 
 (defun stop-pacing (timeline)
@@ -195,7 +195,7 @@ interrupted."
   timeline)
 
 (defun call-alone (timeline function)
-  "Stop whoever paces the world of TIMELINE; return what FUNCTION does with that in custody."
+  "Stop the thread that paces the world of TIMELINE; call FUNCTION in custody and return its value."
   (let ((custody (timeline-custody timeline)))
     (flet ((make-free ()
              (let ((pacing (custody-pacing custody)))
@@ -210,8 +210,8 @@ interrupted."
 
 ;;; Users' code that keeps a live simulation waiting is named while it does.
 
-;;; A thread beside that of the simulation looks twice in *HOG-SECONDS* where that is. What it sees
-;;; three times on end has been there for so long.
+;;; A second thread checks twice in *HOG-SECONDS* where the simulation's thread is. A function seen
+;;; three times in a row has run for that long.
 
 (defun watch-for-hogs (pacing)
   "Warn of what users' code the thread of PACING does not get out of, until that ends."

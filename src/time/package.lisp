@@ -1,4 +1,4 @@
-;;;; package.lisp -- the time layer: what happens when, and who may make it happen.
+;;;; package.lisp -- the time layer: when events happen, and which thread may run them.
 
 (ars-magna.host:define-package :ars-magna.time
   (:documentation "Events, resources and priorities; requests from any thread and the timeline that

@@ -5,9 +5,9 @@
 (export '(request request-entry perform resource note-asked phase-number changing-phase-p
           telling-phase-p))
 
-;;; A request names an operator and has its arguments. It waits in a timeline (see timeline.lisp)
-;;; until a tick begins; then it is performed, in the order of asking. Layers above include the
-;;; structure for what they need besides, and add methods.
+;;; A request has the name of an operator and its arguments. It waits in a timeline (see
+;;; timeline.lisp) until a tick begins, and is then performed, in the order of asking. Layers above
+;;; include the structure, add slots and methods.
 
 (define-kind (request :constructor (make-request (operator arguments)))
     "Something asked of a run."
@@ -15,7 +15,7 @@
    (operator nil t "what is asked for: an operator's name, or what has one" :export)
    (arguments '() list "what it is asked for with" :export)
    (forked-p (goes-on-in-forks-p) boolean
-             "who asked for it goes on in forks of the run too" :export)
+             "true if the asker is copied to forks of the run" :export)
    (phase 0 fixnum "the phase of the tick in which it was asked for, 0 between ticks" :export))
   (:memory
    (asker nil t "a note of who asked for it" :export)))
@@ -49,8 +49,8 @@ the other can tell by that whether somebody else came between" :export)))
   "Note that RESOURCE is asked for, if it is one that can tell."
   (when (resource-p resource) (atomic-incf (resource-asked resource))))
 
-;;; Phases are counted from 1, and 0 is between ticks. What happens in one the run's tick says. In
-;;; those that change the world a fork does again by itself whatever users' code does there.
+;;; Phases are counted from 1; 0 is between ticks. The run's tick defines what happens in each. In
+;;; phases that change the world, a fork repeats by itself whatever user code does there.
 
 (define-constant +phases+
     '(:requests :events :kickers :settling :continuations :observers :participants :keeping)

@@ -27,7 +27,7 @@
 
 ;; Requests are performed in a tick, before its number counts.
 (defun call-in-tick (function timeline)
-  "Call FUNCTION, where the tick of TIMELINE that is under way counts, as in all users' code of it."
+  "Call FUNCTION with the current tick of TIMELINE in effect, as for all its user code."
   (let ((agenda (timeline-agenda timeline)))
     (cond ((= (phase-number :requests) (timeline-phase timeline))
            (incf (agenda-tick agenda))
@@ -117,14 +117,18 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
 (public schedule)
 (define-user-macro schedule ((resource &key priority interrupt (when t when-p) timeout timer)
                     &body body)
-  "Ask for an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
-now. On a resource that has an event, the one with the higher :PRIORITY (an integer, default 0)
-stays, of equal ones the first; the form INTERRUPT is evaluated if this event loses. With the
-form WHEN, the event happens in the first tick from then on in which WHEN is true, at most
-TIMEOUT ticks from now; then it evaporates. TIMER and TIMEOUT are integers from 0 to 1e9. INTERRUPT
-and WHEN, like BODY, run inside ticks. Resources that are EQUAL are the same. What is asked of a
-resource, by commands too, is taken in the order of asking, at the start of the next tick; a command
-has the priority 0, and takes over whatever is there. Returns nothing (manual 3.8). See reading 7."
+  "Schedule an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
+now.
+- :PRIORITY is an integer, default 0. If the resource already has an event, the one with the higher
+  priority stays, of equal ones the first.
+- The form INTERRUPT is evaluated if this event loses.
+- With the form WHEN, the event happens in the first tick from then on in which WHEN is true, at
+  most TIMEOUT ticks from now; then it is dropped.
+- TIMER and TIMEOUT are integers from 0 to 1e9.
+INTERRUPT and WHEN, like BODY, run inside ticks. Resources that are EQUAL are the same. Requests for
+a resource, commands included, are performed in the order of asking, at the start of the next tick.
+A command has the priority 0, and interrupts any event there. Returns nothing (manual 3.8). See
+reading 7."
   (when (test-advice when) (doubt-definition "schedule, :when: ~A" (test-advice when)))
   `(call-scheduled (lambda () ,@body) ,resource
                    :priority ,(or priority 0)
@@ -137,15 +141,15 @@ has the priority 0, and takes over whatever is there. Returns nothing (manual 3.
 
 (defgeneric release-resource (resource timeline)
   (:documentation
-   "Interrupt whatever is pending on RESOURCE, or goes on in the background of it. Called inside
-a tick, by the owner. A layer that adds background activities adds a method.")
+   "Interrupt the event that is pending on RESOURCE, and its background activities. Called inside a
+tick, by the owner. A layer with background activities adds a method.")
   (:method (resource timeline)
     (let* ((agenda (timeline-agenda timeline))
            (event (pending-event agenda resource)))
       (when event (interrupt-event agenda event)))))
 
 (define-kind (grab :include request :constructor (make-grab (arguments &aux (operator 'grab))))
-    "That a resource, the only argument, is to be taken from whatever occupies it.")
+    "A request to interrupt everything on a resource, the only argument.")
 
 (defmethod perform ((grab grab) timeline)
   (let* ((resource (first (request-arguments grab)))
@@ -164,7 +168,7 @@ start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
 (define-operator 'grab '(datum) #'grab-resource)
 
 (defun abandon (timeline resources)
-  "Interrupt all that occupies RESOURCES, in order, and let those know who asked for it. Called by
-the owner of TIMELINE, between ticks."
+  "Interrupt everything on RESOURCES, in order, and inform the askers. Called by the owner of
+TIMELINE, between ticks."
   (dolist (resource resources) (release-resource resource timeline))
   (deliver-notifications timeline))

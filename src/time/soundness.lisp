@@ -5,7 +5,7 @@
 (export '(fill-agenda check-occupant check-request))
 
 (defun put-in-place (agenda event)
-  "Let EVENT, which says that it is pending, be so in AGENDA. Signals CONTRADICTION."
+  "Make EVENT, whose slots say that it is pending, pending in AGENDA. Signals CONTRADICTION."
   (let ((resource (event-resource event)))
     (must-hold (and (event-pending-p event)
                     (< (agenda-tick agenda) (event-time event)
@@ -20,8 +20,8 @@
     (shelve agenda event)))
 
 (defun fill-agenda (agenda tick events)
-  "Let AGENDA, which is new, have come to TICK, with EVENTS, a list in the order of PENDING-EVENTS,
-waiting in it. What their resources say must be so already. Signals CONTRADICTION."
+  "Set AGENDA, which is new, to TICK, with EVENTS, a list in the order of PENDING-EVENTS, waiting in
+it. The slots of their resources must agree with that already. Signals CONTRADICTION."
   (must-hold (typep tick `(integer 0 ,(expt 10 15))) "~A is no tick" tick)
   (must-hold (proper-list-of-p #'event-p events) "what waits in the agenda are no events")
   (setf (agenda-tick agenda) tick)

@@ -8,10 +8,10 @@
           deliver-notifications share-custody check-thinking thinking-modes-text thinking-mode-p
           timeline-thinking set-timeline-thinking give-threads thinking-charged-p thinking-budget))
 
-;;; Whoever has the timeline in custody passes its ticks. Others reach it in two ways. POST leaves a
-;;; request, which is performed at the start of the next tick, and returns at once; it is how
-;;; commands are issued, from wherever. ASK, in asking.lisp, has a function called between two ticks
-;;; and waits for its values. A timeline that nobody runs yet keeps what was posted.
+;;; The thread in custody of the timeline passes its ticks. Other threads use it in two ways. POST
+;;; leaves a request, performed at the start of the next tick, and returns at once; all commands are
+;;; issued by it. ASK, in asking.lisp, calls a function between two ticks and waits for its values.
+;;; A timeline that is not running yet keeps what was posted.
 
 ;;; Code may be secluded: kept to runs that begin where it works, so that it can change no other.
 
@@ -23,14 +23,14 @@
   `(let ((*seclusion* (gensym "SECLUSION"))) ,@body))
 
 (define-kind (timeline :constructor (make-timeline (name &optional (custody (make-custody)))))
-    "The events of a run, and what was asked of it."
+    "The events of a run, and the requests to it."
   (:fixed
    (name "" (or symbol string) "what the timeline is called, for messages" :export)
    (real-p nil boolean "plans think in a thread of their own while the clock goes on" :export))
   (:state
    (agenda (make-agenda) agenda "the events that wait for their ticks" :part :export)
    (charge '() list "what thinking costs: NIL for no ticks, or a plist; see THINKING-CHARGE"))
-  ;; What is asked of a run is no part of its state before it is taken.
+  ;; Requests are not part of a run's state before they are taken.
   (:scratch
    (inbox '() t "the requests that wait for the next tick, newest first" :export)
    (notifications '() list "what to call at the end of the tick: lists (function argument...), the
@@ -68,8 +68,8 @@ it follows another in the same world.")
     (format stream "~A at tick ~D" (timeline-name timeline) (timeline-tick timeline))))
 
 (defun share-custody (new old)
-  "Let the timeline NEW, which no other thread knows yet, be in the custody of OLD, which it is to
-follow: a thread that has waited for that gets it when NEW is in the place of OLD."
+  "Put the timeline NEW, which no other thread has yet, into the custody of OLD, its predecessor. A
+thread waiting for custody gets it once NEW has replaced OLD."
   (setf (timeline-custody new) (timeline-custody old)))
 
 (defgeneric timeline-of (object)
@@ -116,22 +116,24 @@ given to SIMULATOR.")
   "Return the number of the phase of the tick of TIMELINE that this thread is in, 0 if in none."
   (if (owner-p timeline) (timeline-phase timeline) 0))
 
-;;; What goes on in forks acts there by itself, and others do not. Who repeats what these did must
-;;; know between which acts of the former that was.
+;;; Plans copied to forks act there by themselves; other askers do not. To repeat the acts of the
+;;; latter at the right moment, their order among the acts of the former must be known.
 
 (defun begin-moment (timeline)
-  "Note that what goes on in forks too is about to be told something, or to act, in a tick of
-TIMELINE after its world has changed."
+  "Note that something copied to forks is about to be called, or to act, in a tick of TIMELINE after
+its world has changed."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
 
-;;; Where a run is repeated, what was asked of it is asked again, also what continuations asked. So
-;;; those of commands that events and kickers give, inside of ticks, must not be called besides.
+;;; When a run is repeated, all requests to it are repeated, including those of continuations. So
+;;; continuations of commands that events and kickers issue, inside ticks, must not be called in
+;;; addition.
 
 (defvar *repeated* nil "The timeline of the run that is being repeated here, or NIL.")
 
 (defun untold-p (timeline)
-  "True if who asks TIMELINE here is not to be told of the end, as that is told of again anyway."
+  "True if the continuation of a request to TIMELINE made here must not be called, because the
+repeated run repeats its requests anyway."
   (and (eq timeline *repeated*)
        (changing-phase-p (phase-here timeline))
        (not (goes-on-in-forks-p))))
@@ -181,7 +183,7 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
   (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw-request (request timeline)
-  "Take REQUEST out of the inbox of TIMELINE again. True unless somebody else has taken it."
+  "Remove REQUEST from the inbox of TIMELINE. True unless another thread has removed it."
   (loop for inbox = (timeline-inbox timeline)
         unless (member request inbox) return nil
         when (swap-if (timeline-inbox timeline) inbox (remove request inbox))
@@ -219,7 +221,7 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
 (defun notifications-left-p (timeline)
   (or (timeline-notifications timeline) (timeline-untold timeline)))
 
-;; What is left while one is called, forks that are made there take along.
+;; While one is called, a fork made there copies the rest.
 (defun deliver-all (timeline)
   (let ((*tick-dice* nil))
     (unwind-protect (loop for notification = (next-notification timeline)
@@ -228,15 +230,17 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
       (when (notifications-left-p timeline) (deliver-all timeline)))))
 
 (defun deliver-notifications (timeline)
-  "Call what is to be called at the end of this tick, in order; the rest also if a call is left."
+  "Call all that is due at the end of this tick, in order, the rest also after a non-local exit."
   (when (notifications-left-p timeline) (deliver-all timeline)))
 
-;;; The manual (1.2) keeps simulated time and thinking time apart. Who wants to know what thinking
-;;; is worth has to tie them together again, and so that every machine does it alike. So a run has a
-;;; thinking mode: :FREE, the world waits; :CHARGED, what says what it costs takes that many ticks,
-;;; and with (:CHARGED :BUDGET steps) so do the steps of plans; :REAL, plans think in a thread of
-;;; their own while a clock goes on. What thinking costs decides how a run goes on. Whether it has a
-;;; thread only decides what is asked of the run, and that is in the journal.
+;;; The manual (1.2) separates simulated time from thinking time. To measure the value of thinking
+;;; they must be connected, in the same way on every machine. So a run has a thinking mode:
+;;; - :FREE: the world waits
+;;; - :CHARGED: thinking with a stated cost takes that many ticks
+;;; - (:CHARGED :BUDGET steps): the steps of plans take ticks, too
+;;; - :REAL: plans think in a thread of their own while a clock runs
+;;; The cost of thinking affects the run. Whether there is a separate thread only affects the
+;;; requests to the run, and these are in the journal.
 
 (defun thinking-charge (mode)
   "Return what thinking costs in MODE: NIL for no ticks, or a plist; and whether MODE is one."
@@ -269,16 +273,16 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
           (t :free))))
 
 (defun set-timeline-thinking (timeline mode)
-  "Let thinking in TIMELINE cost from now on what MODE, a thinking mode, says."
+  "Set the cost of thinking in TIMELINE from now on to that of MODE, a thinking mode."
   (setf (timeline-charge timeline) (thinking-charge mode)
         (timeline-real-p timeline) (eq mode :real)))
 
 (defun give-threads (timeline real)
-  "Let plans of TIMELINE have a thread of their own if REAL, unless thinking is charged for."
+  "Run plans of TIMELINE in a separate thread if REAL, unless thinking is charged for."
   (setf (timeline-real-p timeline) (and real (not (timeline-charge timeline)))))
 
 (defun thinking-charged-p (timeline)
-  "True if thoughts in TIMELINE that say what they cost take ticks."
+  "True if thinking with a stated cost takes ticks in TIMELINE."
   (and (timeline-charge timeline) t))
 
 (defun thinking-budget (timeline)
