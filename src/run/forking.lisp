@@ -1,12 +1,12 @@
-;;;; forking.lisp -- a run copied in its present state, plans and all, to go on by itself.
+;;;; forking.lisp -- a copy of a run in its present state, plans included, that continues by itself.
 
 (in-package :ars-magna.run)
 
 (export '(call-with-fork *fork-asker* refuse-fork counterpart-here))
 
-;;; A fork is a run like any other, headless, of a world of its own. What the original has bound for
-;;; those who work in it (its robots, the fluents of plans) belongs to it too: a fork keeps that as
-;;; its environment, which is bound while somebody works in the fork.
+;;; A fork is a headless run with a world of its own. The variables bound in the original (its
+;;; robots, the fluents of plans) belong to it too: a fork keeps their values as its environment,
+;;; which is bound while code works in the fork.
 
 (defvar *fork-asker* 'fork-simulation
   "What a user has called that wants a fork: refusals are headed by it.")
@@ -99,7 +99,7 @@ tick, and CANNOT-FORK."
     (finish-tick copy (timeline-phase (simulation-timeline simulation)))
     copy))
 
-;;; Whoever takes part may be busy just now, in another thread.
+;;; A participant may be busy at the moment, in another thread.
 
 (defun call-around (caller participants function)
   "Call FUNCTION within calls of CALLER, such as PARTICIPANT-AT-REST, for all PARTICIPANTS. Return
@@ -139,8 +139,8 @@ FORK-NOW."
          (lambda () (keep-trying-to-fork simulation continuations decisions)))
         fork)))
 
-;; The restarts are here, where whoever asks for the fork can see them: another thread may have the
-;; run in its hands.
+;; The restarts are established here, in the thread that asked for the fork: another thread may own
+;; the run.
 (defun decide-on-fork (condition)
   "Signal CONDITION, a CANNOT-FORK. Return what the fork is to have for its value, and true; or NIL
 and false if there is to be no fork."
@@ -181,21 +181,22 @@ and false if there is to be no fork."
 
 (addition fork-simulation)
 (defun fork-simulation (&rest arguments)
-  "Return a fork of a run: a headless twin at the same tick that goes on by itself, with a world,
-robots, agenda, parameters, dice, messages and journal of its own, and the plans under way.
-ARGUMENTS are the simulation, by default the current one, and
-  :seed           an integer that all its chance is to come from; without it the fork goes on as the
-                  original will, given the same requests;
-  :continuations  true if the continuations of commands under way are to be called in the fork as
-                  well, with what they have closed over copied; those of plans always are.
-Each run has its own state of a fluent and a valve, also of one that a global variable holds: code
-of a fork finds that of the fork. WITH-FORK binds the robots' names; any other global variable is
-the same for all. To change things, or command robots, of the run around a fork from inside of that
-is MISUSE: COUNTERPART says what they are there. A live run is forked between two ticks. Observers
-stay with the original. What plans and programs of a live run roll by CL:RANDOM comes from their
-thread, and a fork rolls anew; all else of it goes on as the original will. Signals MISUSE inside a
-tick, in which no continuation runs, and inside a plan's own step, and CANNOT-FORK for what is part
-of the world outside, with restarts; MAKE-NO-FORK returns NIL."
+  "Return a headless copy of a run at the same tick, with its own world, robots, agenda, parameters,
+dice, messages and journal, and the plans in progress. The copy continues exactly as the original
+would, given the same requests. ARGUMENTS are the simulation, by default the current one, and
+  :seed           an integer from which all further randomness is drawn instead
+  :continuations  true to copy the continuations of commands in progress, too, with the values
+                  they close over; by default only those of plans are called in the fork
+- Each run has its own state of a fluent and a valve, also of one in a global variable. WITH-FORK
+  binds the robots' names; other global variables are shared.
+- Changing or commanding the original run from inside the fork is MISUSE: COUNTERPART returns the
+  fork's own objects.
+- A live run is forked between two ticks. Numbers that plans and programs of a live run draw by
+  CL:RANDOM come from their thread, and a fork draws new ones; all else continues as in the
+  original.
+- Observers stay with the original.
+Signals MISUSE inside a tick, in which no continuation runs, and inside a plan's own step. Signals
+CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL."
   (multiple-value-bind (simulation options) (fork-arguments arguments)
     (check-fork-options options)
     (check-not-over simulation *fork-asker*)
@@ -211,9 +212,9 @@ of the world outside, with restarts; MAKE-NO-FORK returns NIL."
 
 (addition release-fork)
 (defun release-fork (fork)
-  "Let FORK, a simulation that FORK-SIMULATION returned, be over: nothing of it goes on, nobody is
-told of anything, but errors that were not read go to the error output. Return nothing. Signals
-WRONG-ARGUMENT for what is no fork."
+  "End FORK, a simulation that FORK-SIMULATION returned. Nothing of it continues and no continuation
+is called; unread errors go to the error output. Return nothing. Signals WRONG-ARGUMENT if it is no
+fork."
   (check-argument release-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
   (let ((fork (latest fork)))
@@ -241,9 +242,9 @@ that it is a fork of: see WITH-SIMULATION."
 
 (addition call-in-fork)
 (defun call-in-fork (fork function)
-  "Call FUNCTION, with no arguments, where FORK is the current simulation, with robots bound as in
-WITH-FORK. Return its values. To be done as often as one likes. A fork that was rewound stands for
-the one that goes on in its place."
+  "Call FUNCTION, without arguments, with FORK as the current simulation and robots bound as in
+WITH-FORK. Return its values. May be called repeatedly. A fork that was rewound stands for its
+successor."
   (check-argument call-in-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
   (check-argument call-in-fork function (functionp function) "a function of no arguments")
@@ -279,10 +280,10 @@ task, a fluent or a valve"))))
 
 (addition counterpart)
 (defun counterpart (object &optional (fork (current-simulation)))
-  "Return what OBJECT, of a run, is in FORK, a fork of that or a fork of its fork; or the run that
-goes on since it was rewound, by default the current one. OBJECT may be a robot, a part of one, a
-thing, a designator, an odometer, a task, a fluent or a valve. NIL if FORK does not have it: a thing
-that is destroyed there, a designator that is invalid, a task that is over. Signals WRONG-ARGUMENT."
+  "Return the copy of OBJECT in FORK, a fork of its run or of a fork of it, or in the run that
+replaced its run on REWIND; the default is the current one. OBJECT may be a robot, a part, a thing,
+a designator, an odometer, a task, a fluent or a valve. NIL if FORK does not have it: the thing is
+destroyed there, the designator invalid, the task over. Signals WRONG-ARGUMENT."
   (check-argument counterpart fork
                   (and (simulation-p fork) (or (fork-p fork) (simulation-line fork)))
                   "a fork, as FORK-SIMULATION returns, or a run that was rewound")

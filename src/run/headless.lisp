@@ -99,8 +99,8 @@ has been told is told, or signalled, as its message queue says."
       (signal-trouble queue))))
 
 (defun look-at-end (simulation left-p)
-  "Say so if something was asked for in SIMULATION, whose run is to end, and no tick has passed, or
-too few have; but not if the run is LEFT-P, as by an error, or ticks may have passed in a fork."
+  "Warn if something was requested in SIMULATION, whose run is to end, and no ticks, or too few,
+have passed. Do not if the run is LEFT-P, as by an error, or if ticks may have passed in a fork."
   (let ((text (and (not left-p)
                    (not (simulation-forked-p simulation))
                    (text-at-end simulation))))
@@ -115,7 +115,7 @@ too few have; but not if the run is LEFT-P, as by an error, or ticks may have pa
 over now.")
 
 (defun end-headless (simulation)
-  "Let SIMULATION, or what goes on in its place, be over."
+  "End SIMULATION, or its successor."
   (let ((reason "the headless simulation that it was in has ended") (last (latest simulation)))
     (retire-robots (simulation-robots last) reason)
     (end-simulation last reason)
@@ -140,11 +140,10 @@ over now.")
 
 (addition simulation-errors)
 (defun simulation-errors (&optional (simulation (current-simulation)))
-  "Return the errors that came up in users' code that SIMULATION has called, and the failures of
-plans that were begun, as USER-CODE-ERRORs: at most the latest 1000, the oldest first. Whether they
-were signalled, shown or read makes no difference. A run that was rewound stands for the one that
-goes on in its place. When a simulator starts, those of live runs that are over are forgotten.
-Signals WRONG-ARGUMENT. See WITH-SIMULATION."
+  "Return the errors in user code called by SIMULATION, and the failures of its plans, as
+USER-CODE-ERRORs: at most the latest 1000, the oldest first, whether or not they were signalled,
+shown or read. A run that was rewound stands for its successor. When a simulator starts, the errors
+of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
   (let ((simulation (latest (simulation-meant simulation 'simulation-errors))))
     (errors-in (simulation-messages simulation)
                (lambda (run) (or (null run) (eq simulation (latest run)))))))
@@ -201,29 +200,30 @@ or list of names."
 (define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal keep
                                             (thinking :free) (errors :report))
                                     &body body &environment environment)
-  "Run BODY with ROBOTS, the name of a robot or a list of names, of any package, or an expression
-that returns such, as (list 'a 'b) or a variable that is no robot's, bound to fresh robots in a
-fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. Only the thread of
-BODY sees these bindings: to another one that it starts, a name means the robot that it means at
-top level, so hand the robot to that; a command to the other one says so if it has no run. The
-integer SEED decides all chance. Parameters are bound to what they are here, or as the list
-PARAMETERS of lists (name value) says; with CLEAN, CLEAN-SIMULATION is called then, which takes
-noise away that PARAMETERS asks for. With JOURNAL it keeps a journal, with KEEP forks, so that it
-can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see SET-THINKING.
-Messages go to a queue of its own. When BODY has ended, the run is
-over: what the robots are doing is interrupted, and they take no more commands. Return the values of
-BODY.
+  "Run BODY with ROBOTS bound to fresh robots in a fresh world, headless: ticks pass only when BODY
+calls RUN-TICKS or RUN-UNTIL. Return the values of BODY. ROBOTS is the name of a robot or a list of
+names, of any package, or an expression that returns such, as (list 'a 'b) or a variable that is no
+robot's. Options:
+- SEED, an integer, determines all randomness.
+- PARAMETERS, a list of lists (name value), binds parameters; others keep their current values.
+- CLEAN calls CLEAN-SIMULATION afterwards, which also removes noise that PARAMETERS asks for.
+- JOURNAL keeps a journal; KEEP keeps forks, so that the run can be rewound, see KEEP-FORKS.
+- THINKING says how much time thinking costs, see SET-THINKING.
+- ERRORS says how errors in user code and failures of plans are reported, see below.
+Only the thread of BODY sees the bindings. In another thread a name means the robot at top level, so
+pass it the robot; a command to the robot at top level warns if that has no run. Messages go to a
+queue of the run. When BODY ends, the run is over: commands in progress are interrupted, and the
+robots take no more commands.
 
-ERRORS says what becomes of errors in users' code that the run calls, and of failures of plans that
-were begun; the run goes on in any case. With :REPORT they are messages; those that nobody has read
-when BODY ends are written to the error output, and so are other errors, but for those of commands
-that have a continuation to tell, and warnings that come once in a run, as of degrees for radians,
-and of commands that BODY gives after the last tick.
-With :SIGNAL the first of them is an error of BODY, a USER-CODE-ERROR that RUN-TICKS signals when
-its tick is over, or WITH-SIMULATION at the end. With :COLLECT they are only messages;
-SIMULATION-ERRORS returns them. In any case it is written to the error output if no ticks have
-passed and something was asked for, or a plan that was begun waits for what nothing in the run will
-bring about."
+ERRORS; the run continues in each case:
+- :REPORT makes them messages. Those unread at the end of BODY are written to the error output. So
+  are unread warnings given once in a run, for example about degrees for radians or commands issued
+  after the last tick, and other unread errors, except those of commands with a continuation.
+- :SIGNAL signals the first as a USER-CODE-ERROR, by RUN-TICKS at the end of its tick, or by
+  WITH-SIMULATION at the end.
+- :COLLECT only makes them messages; SIMULATION-ERRORS returns them.
+In each case a line on the error output says so if no ticks have passed although something was
+requested, or if a plan waits for what nothing in the run will bring about."
   (let* ((form-p (robots-form-p robots environment))
          (robots (if form-p robots (unquoted robots)))
          (variables (if form-p '() (variables-among robots))))

@@ -1,4 +1,4 @@
-;;;; journal.lisp -- what was asked of a run, and when, so that it can be repeated exactly.
+;;;; journal.lisp -- the requests to a run and their ticks, so that it can be repeated exactly.
 
 (in-package :ars-magna.run)
 

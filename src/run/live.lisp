@@ -1,4 +1,4 @@
-;;;; live.lisp -- SIMULATOR: runs whose ticks pass by themselves (manual 2.3, A).
+;;;; live.lisp -- SIMULATOR: runs whose ticks pass in real time (manual 2.3, A).
 
 (in-package :ars-magna.run)
 
@@ -216,9 +216,9 @@ MISUSE if the robot no longer fits into its map. See reading 238."
 
 (addition stop-simulator)
 (defun stop-simulator (&optional (simulation (current-simulation)))
-  "Stop the live SIMULATION, which may be given as one of its robots, after its current tick. What
-is under way stays pending. If SIMULATION was rewound, stop what goes on in its place. Return
-nothing. See reading 89."
+  "Stop the live SIMULATION, which may be given as one of its robots, after its current tick.
+Commands in progress stay pending. If SIMULATION was rewound, stop its successor. Return nothing.
+See reading 89."
   (let ((simulation (simulation-meant simulation 'stop-simulator)))
     (stop-clock simulation)
     ;; Somebody may have started it again.

@@ -1,4 +1,4 @@
-;;;; loading.lisp -- a run that goes on from a file.
+;;;; loading.lisp -- continue a run from a file.
 
 (in-package :ars-magna.run)
 
@@ -222,13 +222,15 @@ DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if what is defined is not w
 
 (addition load-simulation)
 (defun load-simulation (file &key anyway)
-  "Return a new headless simulation in the state that SAVE-SIMULATION has saved in FILE: it has the
-same STATE-DIGEST, and goes on from there as the saved one would have, given the same requests. It
-keeps the journal that the saved one kept, if any. Map, robots and all else that it uses must be
-loaded. Signals DAMAGED-SIMULATION if FILE holds none, or a damaged one: nothing in it is ever
-executed; UNKNOWN-NAME if what it uses is not defined, and DIFFERENT-DEFINITIONS, with the restart
-LOAD-ANYWAY, if that is defined differently from what it was, unless ANYWAY is true; and
-WRONG-ARGUMENT unless FILE is a name."
+  "Return a new headless simulation in the state that SAVE-SIMULATION saved in FILE. It has the same
+STATE-DIGEST, continues exactly as the saved run would have, given the same requests, and keeps its
+journal, if any. Map, robots and all else that it uses must be loaded. Nothing in FILE is executed.
+Signals:
+- DAMAGED-SIMULATION if FILE is damaged or no saved run
+- UNKNOWN-NAME if something it uses is not defined
+- DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if that is defined differently now, unless
+  ANYWAY is true
+- WRONG-ARGUMENT unless FILE is a name"
   (values (load-saved file anyway)))
 
 (defun call-with-loaded-simulation (function file &key anyway keep)

@@ -71,10 +71,10 @@ goes on."
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
   "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. A fork
-that was rewound stands for the one that goes on in its place. Signals WRONG-ARGUMENT, and MISUSE if
-SIMULATION runs live or is inside a tick, or if another thread passes its ticks; and where errors
-in users' code are to be signalled, USER-CODE-ERROR after the tick in which one came up, with a
-restart CONTINUE that lets the other ticks pass."
+that was rewound stands for its successor. Signals WRONG-ARGUMENT, and MISUSE if SIMULATION runs
+live or is inside a tick, or if another thread passes its ticks. If errors in user code are to be
+signalled, signals USER-CODE-ERROR after the tick of the first one, with a restart CONTINUE that
+passes the other ticks."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
   (let ((simulation (going-on simulation)))
     (doubt-passing :run-ticks simulation)
@@ -126,10 +126,10 @@ which the program has given if LIMIT-P. If it has not, say so once in the run."
 (addition run-until)
 (define-with-keywords run-until (predicate &key (limit 100000 limit-p)
                                            (simulation (current-simulation)))
-  "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
-true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit, of which
-a warning tells once in a run if none was given. Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS
-does."
+  "Pass ticks of the headless SIMULATION until PREDICATE, a function without arguments, returns
+true, but at most LIMIT. Return its value and the tick reached; NIL means that the limit was
+reached. Without LIMIT, a warning says so once in a run. Signals WRONG-ARGUMENT, and MISUSE as
+RUN-TICKS does."
   (check-argument run-until predicate (or (functionp predicate)
                                         (and (symbolp predicate) (fboundp predicate)))
                   "a function of no arguments, such as (lambda () (< 9 (simulation-tick)))")
@@ -160,11 +160,11 @@ passes them at its pace. Returns nothing."
 
 (addition await-idle)
 (defun await-idle (&optional (simulation (current-simulation)) (seconds 60 given-p))
-  "Wait until nothing that comes to an end is left to do in the live SIMULATION, at most SECONDS.
-True if so; else a warning says what goes on, unless SECONDS are given. Things that have kickers go
-on by themselves, and are not waited for, nor are tracks. Of one that is not live, return at once
-whether nothing is left at all. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and
-MISUSE if the simulator has failed and is paused for that: it would wait in vain."
+  "Wait, at most SECONDS, until the live SIMULATION has nothing left to do that ends. True if so;
+else a warning says what is still in progress, unless SECONDS are given. Kickers and tracks do not
+end, so they are not waited for. If SIMULATION is not live, return at once whether it has nothing
+left to do. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and MISUSE if the
+simulator is paused after a failure: the wait would never end."
   (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
   (let ((simulation (simulation-meant simulation 'await-idle)))

@@ -4,10 +4,10 @@
 
 (export '(note-doing let-fork-be-kept))
 
-;;; A run that is told to keep forks has a PAST: these forks, and as ACTS, in order,
-;;; everything that was done to the run since the oldest fork: what its journal has, and what was
-;;; asked of plans from outside. A fork of the past goes on as the run did if the acts that it does
-;;; not repeat by itself are done to it again (redoing.lisp).
+;;; A run that keeps forks has a PAST: these forks, and its ACTS, everything done to the run since
+;;; the oldest fork, in order: the entries of the journal, and requests to plans from outside. A
+;;; fork of the past goes the same way as the run if the acts that it does not repeat by itself are
+;;; done to it again (redoing.lisp).
 
 (defstruct (act (:constructor make-act (kind tick phase moment own-p operator arguments asker))
                 (:copier nil))
@@ -150,11 +150,11 @@ first."
 
 ;;;; Keeping forks
 
-;;; A fork is made at the end of a tick. When there are too many, each new one ousts the one whose
-;;; loss matters least for its age; so recent forks are close together, old ones are far apart, and
-;;; the first always stays. How often forks are made depends on the clock: keeping them must take no
-;;; more than a small part of the time. No result depends on it, as rewinding repeats what happened
-;;; between two forks.
+;;; A fork is made at the end of a tick. If there are too many, the one is dropped whose loss
+;;; matters least for its age. So recent forks are close together, old ones far apart, and the first
+;;; is always kept. The clock determines how often forks are made: keeping them must take only a
+;;; small part of the time. No result depends on it, as rewinding repeats what happened between two
+;;; forks.
 
 (addition *forks-to-keep*)
 (defvar *forks-to-keep* nil
@@ -281,11 +281,11 @@ until the tick has ended and there is one; not for long, as no tick may pass."
 
 (addition keep-forks)
 (defun keep-forks (&optional (count t) (simulation (current-simulation)))
-  "Let SIMULATION keep forks of itself from now on, so that REWIND can go back as far as here: at
-most COUNT, from 2 to 1000, by default 30, and fewer of a very large world. They are the closer
-together the newer they are, and take about a hundredth of its time. What is asked of the run is
-remembered too. If COUNT is NIL, all that is forgotten. Return nothing. Signals WRONG-ARGUMENT,
-and MISUSE if the run is over."
+  "Make SIMULATION keep forks of itself from now on, so that REWIND can go back to this tick at the
+earliest. COUNT is the most it keeps, from 2 to 1000, by default 30, and fewer for a very large
+world; NIL drops them all and stops keeping. Recent forks are closer together than old ones. Keeping
+them takes about a hundredth of the run's time; requests to the run are kept, too. Return nothing.
+Signals WRONG-ARGUMENT, and MISUSE if the run is over."
   (check-of-type 'keep-forks 'count count 'fork-count)
   (let ((simulation (simulation-meant simulation 'keep-forks)))
     (check-not-over simulation 'keep-forks)

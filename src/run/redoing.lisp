@@ -1,13 +1,12 @@
-;;;; redoing.lisp -- a fork of the past goes on as the run had gone on, up to a tick.
+;;;; redoing.lisp -- bring a fork of the past to a later tick, in the way that the run went.
 
 (in-package :ars-magna.run)
 
-;;; The world, kickers, commands under way and plans repeat by themselves what they did. Everything
-;;; else is done to the fork again, at the same tick and in the same phase. What a plan asks for is
-;;; performed at the same place among the requests as the first time: so the world goes the same way
-;;; even if a live plan had been slow to answer. If a plan does not ask for what it asked for the
-;;; first time, that is asked for in its place: the plan has STRAYED, which can happen if it depends
-;;; on something that forks do not copy.
+;;; The world, kickers, commands in progress and plans repeat by themselves. Everything else is done
+;;; to the fork again, at the same tick and in the same phase. A plan's request is performed at the
+;;; same position among the requests as the first time, so the world goes the same way even if a
+;;; live plan was slow then. If a plan does not repeat a request, it is made in its place: the plan
+;;; has STRAYED, which can happen if it depends on state that forks do not copy.
 
 (defstruct (redoing (:constructor make-redoing (simulation acts)) (:copier nil))
   "That SIMULATION is given again what ACTS, those yet to come, the oldest first, were. HELD are

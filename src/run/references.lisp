@@ -1,4 +1,4 @@
-;;;; references.lisp -- how what is asked of a run is named and remembered, to be done again.
+;;;; references.lisp -- how requests to a run refer to objects, so that they can be repeated.
 
 (in-package :ars-magna.run)
 

@@ -149,15 +149,15 @@ then has been done again."
 
 (addition with-replay)
 (define-user-macro with-replay ((journal &key until anyway keep) &body body)
-  "Run BODY in a fresh headless simulation in which JOURNAL (a journal or a file that holds one) has
-been repeated, up to the tick UNTIL or its end, with robots and parameters bound as in
-WITH-SIMULATION: a run can be rewound so, and go on differently. At UNTIL, what was asked for or
-changed when that tick had passed, also by continuations, has not happened. Commands are repeated
-without their continuations. With KEEP it keeps forks, see KEEP-FORKS, and can be rewound. Return
-the values of BODY. Signals DAMAGED-JOURNAL, WRONG-ARGUMENT for a tick beyond its end, MISUSE
-where nothing happens for ten million ticks and nobody says UNTIL when, UNKNOWN-NAME when the
-world is not loaded, and DIFFERENT-DEFINITIONS when what is loaded is not what the run was
-recorded with, unless ANYWAY is true."
+  "Run BODY in a fresh headless simulation in which JOURNAL (a journal or the name of its file) has
+been repeated, up to the tick UNTIL or its end. Robots and parameters are bound as in
+WITH-SIMULATION. Return the values of BODY.
+- At UNTIL, requests and changes made after that tick, also by continuations, have not happened.
+- Commands are repeated without their continuations.
+- With KEEP the run keeps forks, see KEEP-FORKS, and can be rewound.
+Signals DAMAGED-JOURNAL; WRONG-ARGUMENT for a tick beyond the end; MISUSE without UNTIL if nothing
+happens for ten million ticks; UNKNOWN-NAME if the world is not loaded; and DIFFERENT-DEFINITIONS if
+the definitions are not those of the recording, unless ANYWAY is true."
   `(call-with-replay (lambda () ,@body) ,journal
                      :until ,until :anyway ,anyway :keep ,keep))
 

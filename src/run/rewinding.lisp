@@ -1,11 +1,11 @@
-;;;; rewinding.lisp -- a run goes back to an earlier tick, to go on from there in another way.
+;;;; rewinding.lisp -- take a run back to an earlier tick, to continue from there in another way.
 
 (in-package :ars-magna.run)
 
 (export '(earliest-tick *rewind-hooks*))
 
-;;; To rewind a run is to fork the newest kept fork that is not later than the tick wanted, to let
-;;; the new fork go on to that tick, and to put it in the place of the run, which is then over. The
+;;; Rewinding a run makes a fork of the newest kept fork not later than the wanted tick, passes
+;;; ticks of the new fork up to that tick, and replaces the run by it. The old run is then over. The
 ;;; fork becomes the current simulation and the value of the variables, has the run's observers and
 ;;; messages, and is live if the run was.
 
@@ -226,20 +226,21 @@ and releases NEW."
 
 (addition rewind)
 (defun rewind (ticks &optional (simulation (current-simulation)))
-  "Go back TICKS ticks, to how SIMULATION was at the end of an earlier one, plans included. Return
-the simulation that goes on from there: it is the current one then, its robots are the values of
-their variables, and it is live, at the same rate, if SIMULATION was. That is over, and its robots
-take no more commands. What was asked for or changed after that tick has not happened. Commands and
-plans under way go on, but programs do not: continuations of commands that are under way when this
-is called are told :INTERRUPT now, and those of commands that go on are called no more; so what a
-program was to ask for next, as ROBOT-GO-TO does, is not asked for. The journal is that of
-the past, and says where it was rewound. RUN-PLAN, waiting in another thread, returns :STOPPED.
-Messages stay, and what variables programs have set themselves. A fork that was rewound stands, for
-RUN-TICKS, RUN-UNTIL and CALL-IN-FORK, for what goes on; its digest is of what it came to.
-SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, for what was done since the
-last tick, to how many have passed since it began to. Signals WRONG-ARGUMENT that says how far one
-can go back; MISUSE inside of ticks and plans, in the thread of any clock, and where SIMULATION is
-over."
+  "Take SIMULATION back TICKS ticks, plans included. Return the simulation that continues from
+there. It is the current one then, its robots are the values of their variables, and it is live, at
+the same rate, if SIMULATION was. SIMULATION itself is over; its robots take no more commands. It
+must keep forks, see KEEP-FORKS. TICKS is a number from 0, which undoes what was done since the last
+tick, to how many have passed since it began to keep them.
+- Requests and changes after that tick have not happened. The journal records the rewind.
+- Commands and plans in progress continue. Programs do not: continuations of commands in progress at
+  the call receive :INTERRUPT now, and those of commands that continue are never called. So a
+  program such as ROBOT-GO-TO issues no further commands.
+- RUN-PLAN, waiting in another thread, returns :STOPPED.
+- Messages are kept, and so are variables that programs have set themselves.
+- For RUN-TICKS, RUN-UNTIL and CALL-IN-FORK, a fork that was rewound stands for its successor; its
+  digest is of its last state.
+Signals WRONG-ARGUMENT, with the largest possible number of ticks; MISUSE inside ticks and plans, in
+the thread of any clock, and if SIMULATION is over."
   (let ((simulation (simulation-meant simulation 'rewind)))
     (check-argument rewind ticks (typep ticks 'unsigned-byte)
                     "a whole number of ticks, 0 or more")

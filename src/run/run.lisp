@@ -213,8 +213,8 @@ WRONG-ARGUMENT."
 
 (addition idle-p)
 (defun settled-p (simulation)
-  "True if nothing that comes to an end is under way in SIMULATION, or waits to begin. Kickers and
-tracks go on as long as the run does."
+  "True if SIMULATION has nothing in progress or waiting to begin that ends. Kickers and tracks
+continue as long as the run does."
   (let ((timeline (simulation-timeline simulation)))
     (and (zerop (agenda-pending (timeline-agenda timeline)))
          (null (timeline-inbox timeline))
@@ -251,15 +251,15 @@ SEED. See reading 218."
 
 (addition set-thinking)
 (defun set-thinking (mode &optional (simulation (current-simulation)))
-  "Let thinking in SIMULATION, also if that is under way, cost from now on what MODE says (manual
+  "Set the cost of thinking in SIMULATION from now on, also of thinking in progress, to MODE (manual
 1.2), and return it:
   :FREE                      no ticks: plans react after each tick, as long as it takes them
   :CHARGED                   the ticks that THINK and WITH-CHARGE say
-  (:CHARGED :BUDGET steps)   these, and a tick for each STEPS of plans: what is not done waits
+  (:CHARGED :BUDGET steps)   these, and a tick for each STEPS of plans: the rest waits
   :REAL                      no ticks: where a clock runs, plans have a thread and the clock goes on
-A plan that says so hears of it in its next reaction, mostly in the next tick.
-Free and charged runs are the same on every machine. Without a clock :REAL is as :FREE. The journal
-notes it. Signals WRONG-ARGUMENT."
+If a plan calls it, the mode applies from its next reaction on, mostly in the next tick. Free and
+charged runs are the same on every machine. Without a clock :REAL is the same as :FREE. The journal
+records it. Signals WRONG-ARGUMENT."
   (check-thinking 'set-thinking mode)
   (let ((simulation (simulation-meant simulation 'set-thinking)))
     (changing ((simulation-world simulation) set-thinking mode)
@@ -285,9 +285,8 @@ notes it. Signals WRONG-ARGUMENT."
                (simulation-participants simulation))))
 
 (defun end-simulation (simulation reason)
-  "End the run of SIMULATION for good, for REASON, a sentence without its full stop. Whatever was
-asked of its robots, and is under way or has not even begun, is interrupted; nothing can be asked of
-it any more."
+  "End the run of SIMULATION for good, for REASON, a sentence without its full stop. All requests to
+its robots, begun or not, are interrupted; further ones are refused."
   (let ((timeline (simulation-timeline simulation))
         (robots (simulation-robots simulation)))
     (call-alone
@@ -305,13 +304,15 @@ it any more."
 ;;; One number for its state.
 
 (defun state-digest (&optional (simulation (current-simulation)) participants)
-  "Return a 64-bit number that stands for the state of SIMULATION to the bit: two runs that have the
-same digest at a tick go the same way from there, given the same requests. It covers the world,
-robots and parts, what is under way, parameters and dice: all that is said to be state where the
-kinds are defined. What has been asked for since the last tick counts from the next one on, and who
-is told of the end of a command does not count. What plans are about to do counts if PARTICIPANTS
-is true. Functions, such as SCHEDULE is given, count only as such. SIMULATION may be a robot in one.
-Signals WRONG-ARGUMENT."
+  "Return a 64-bit number computed from the exact state of SIMULATION. Two runs with the same digest
+at a tick go the same way from there, given the same requests. It covers the world, robots and
+parts, commands in progress, parameters and dice: all that the definitions of kinds declare as
+state.
+- Requests since the last tick count from the next one on.
+- Continuations of commands do not count.
+- Plans count if PARTICIPANTS is true.
+- Functions, such as those given to SCHEDULE, count only as such, not by what they do.
+SIMULATION may be one of its robots. Signals WRONG-ARGUMENT."
   (let ((simulation (simulation-meant simulation 'state-digest)))
     (asking (simulation)
       (when (eq simulation *simulation*) (follow-settings simulation))

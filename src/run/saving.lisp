@@ -1,4 +1,4 @@
-;;;; saving.lisp -- the state of a run in a file, from which it goes on exactly as it would have.
+;;;; saving.lisp -- save the state of a run in a file, from which it continues exactly.
 
 (in-package :ars-magna.run)
 
@@ -199,17 +199,20 @@ Return the truename of FILE."
 
 (addition save-simulation)
 (defun save-simulation (file &optional (simulation (current-simulation)))
-  "Write the state of SIMULATION, between two ticks, to FILE, from which LOAD-SIMULATION has it go
-on as it would have: world, things, kickers, robots and their parts, designators, tracks, odometers,
-commands under way and asked for, parameters, seed and dice, of a headless run also those that its
-programs roll by CL:RANDOM; and the journal, so that a replay still repeats all of the run. Who is
-told of the ends of commands and tracks, as programs of
-continuations are, observers and messages are left out. FILE is replaced when all is written and has
-been loaded on trial. Return its truename. Signals UNSAVABLE, with the restart SAVE-WITHOUT, where
-plans or events of SCHEDULE are under way or the journal has functions in it; MISUSE if the run is
-over or inside a tick, has what has no printed form, such as a kicker of PUT-KICKER's, could not be
-loaded again, or cannot be written, as where FILE is something else than a saved run; and
-WRONG-ARGUMENT unless FILE is a name. Whatever it signals, FILE is as it was."
+  "Write the state of SIMULATION, between two ticks, to FILE, from which LOAD-SIMULATION continues
+it exactly. FILE is replaced after all is written and has been loaded on trial. Return its truename.
+- Saved: world, things, kickers, robots and their parts, designators, tracks, odometers, commands in
+  progress and requested, parameters, seed and dice, of a headless run also those of CL:RANDOM in
+  its programs; and the journal, so that a replay still repeats the whole run.
+- Left out: continuations of commands and tracks, as programs have them, observers and messages.
+Signals:
+- UNSAVABLE, with the restart SAVE-WITHOUT, if plans or events of SCHEDULE are in progress or the
+  journal contains functions
+- MISUSE if the run is over or inside a tick, contains something without a printed form, such as a
+  kicker of PUT-KICKER, could not be loaded again, or cannot be written, for example because FILE is
+  something else than a saved run
+- WRONG-ARGUMENT unless FILE is a name
+If it signals, FILE is unchanged."
   (check-argument save-simulation file (typep file '(or string pathname)) "the name of a file")
   (check-argument save-simulation simulation (simulation-p simulation) "a simulation")
   (check-not-foreign file :run "saved run")

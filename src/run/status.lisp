@@ -4,8 +4,8 @@
 
 (export '(designator-status robot-meant))
 
-;;; All is plain data: numbers, symbols, strings and lists of such. Things and places are called as
-;;; they print. A property list says what is what, so that there may be more in it one day.
+;;; All is plain data: numbers, symbols, strings and lists of these. Things and places appear as
+;;; they print. Property lists allow for more entries in the future.
 
 (defun glance (camera)
   "Return what CAMERA sees now. The run does not notice: dice and last view stay as they
@@ -127,15 +127,19 @@ is NIL, the first of the current simulation."
 
 (addition status)
 (defun status (&optional robot)
-  "Return all that the prompt's STATUS shows of ROBOT, a robot or the name of one, or else the first
-robot of the current simulation, as a property list: :ROBOT, :MAP, :TICK; :POSITION, :LAST-MOVE and
-:ESTIMATED-LAST-MOVE, lists (x y) in metres; :ANGLE in radians, :SPEED in metres and :TURN-ANGLE in
-radians a tick; :CAMERAS, :HANDS, :BINS and :SENSORS, a property list for each part; :PLACE, the
-place type it sensed last, or NIL; :THINKING, how much time thinking costs, and :LIVE, true of a
-live run; :UNDER-WAY and :INTERRUPTED, lists of property lists that say whose commands it and its
-parts carry out, and whose were interrupted last by whose; :FAILED, what LAST-FAILURE returns;
-:DESIGNATORS, a property list for each. All of it is plain data, and looking changes nothing in the
-run. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
+  "Return what STATUS shows at the prompt of ROBOT, a robot or its name, by default the first robot
+of the current simulation, as a property list of plain data:
+- :ROBOT, :MAP, :TICK
+- :POSITION, :LAST-MOVE and :ESTIMATED-LAST-MOVE, lists (x y) in metres
+- :ANGLE in radians, :SPEED in metres and :TURN-ANGLE in radians a tick
+- :CAMERAS, :HANDS, :BINS and :SENSORS, a property list for each part
+- :PLACE, the place type it sensed last, or NIL
+- :THINKING, how much time thinking costs; :LIVE, true of a live run
+- :UNDER-WAY and :INTERRUPTED, lists of property lists: the commands in progress on it and its parts
+  and who issued them, and the last interrupted commands and by whose commands
+- :FAILED, what LAST-FAILURE returns
+- :DESIGNATORS, a property list for each
+Nothing in the run changes. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
   (let ((robot (robot-meant robot 'status)))
     (ask robot (lambda () (robot-status robot)))))
 

@@ -5,10 +5,10 @@
 (export '(tick))
 
 ;;; TICK is the order of a tick. While the world changes, no program runs but users' kickers,
-;;; manipulations and events; continuations come after that, and then whoever looks on. So
-;;; whatever else a program does happens between ticks, and a journal can repeat it. Users' code
-;;; may leave a tick, as by THROW; the timeline knows which phases have begun, and the others follow
-;;; first.
+;;; manipulations and events; then come continuations, then observers. So everything else that a
+;;; program does happens between ticks, and a journal can repeat it. User code may leave a tick by a
+;;; non-local exit such as THROW; the timeline records which phases have begun, and the others are
+;;; done first.
 
 (defmacro in-phases ((place) &body phases)
   "Run PHASES, (name form...), in order, but for those that the number in PLACE, which is 0 before
