@@ -1,4 +1,4 @@
-;;;; achieving.lisp -- achieve, perceive, belief: doing what a goal is about, not how.
+;;;; achieving.lisp -- achieve, perceive, belief: working for goals.
 
 (in-package :ars-magna.rpl.constructs)
 

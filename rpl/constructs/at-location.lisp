@@ -1,10 +1,10 @@
-;;;; at-location.lisp -- doing something at a place, and again if it is lost.
+;;;; at-location.lisp -- doing something at a place, and returning there if pushed away.
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; WHEREABOUTS keep a robot where it is for those who stay there. Who comes to stay passes a valve;
-;;; who has to drive first waits, with the valve, until nobody stays. So those whose place fits do
-;;; not drive, and nobody waits for ever because others come and stay after him.
+;;; WHEREABOUTS keep a robot in place for the tasks that stay there. A task that comes to stay
+;;; passes a valve. A task that has to drive first waits, owning the valve, until no task stays. So
+;;; tasks whose place fits do not drive, and a waiting task is not overtaken by later ones.
 
 (defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
   "What keeps the plans of one runner from driving its robot away from each other's places. STAYS is

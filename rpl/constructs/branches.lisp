@@ -1,12 +1,12 @@
-;;;; branches.lisp -- several parts, side by side or one after the other until one succeeds.
+;;;; branches.lisp -- branches in parallel, and alternatives in sequence.
 
 (in-package :ars-magna.rpl.constructs)
 
 ;;; The task that runs one of these starts a child for each branch, in order, and waits. When the
-;;; outcome is known the children that are left evaporate, newest first, and when all are gone the
-;;; task goes on.
+;;; outcome is known, the remaining children evaporate, newest first. When all are gone, the task
+;;; goes on.
 ;;;
-;;; A branch that others than the construct have evaporated counts as ended, neither well nor badly.
+;;; A branch evaporated from outside of the construct counts as ended, neither succeeded nor failed.
 
 (defun branches-code (branches scope)
   `(vector ,@(loop for branch in branches collect (plan-code branch scope))))

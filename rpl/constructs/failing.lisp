@@ -1,4 +1,4 @@
-;;;; failing.lisp -- failures: fail, handlers, retries, and what is done however something ends.
+;;;; failing.lisp -- fail, handlers, retries and cleanups.
 
 (in-package :ars-magna.rpl.constructs)
 

@@ -1,4 +1,4 @@
-;;;; goals.lisp -- def-goal: plans by what they are for, found by patterns.
+;;;; goals.lisp -- def-goal: plans found by patterns of goals.
 
 (in-package :ars-magna.rpl.constructs)
 
@@ -57,10 +57,10 @@ what is in the holes."
     (let ((*print-gensym* nil) (*print-pretty* nil))
       (safe-text (plain pattern) :escape nil))))
 
-;;; A goal is a plan that is found by a pattern. Of those that match, the most specific is chosen:
-;;; one whose pattern matches nothing that the others' do not; of several such, the one defined
-;;; first. So it does not matter in which order files are loaded, as it does for CRAM, which
-;;; takes the first that matches.
+;;; A goal is a plan that is found by a pattern. If several match, the most specific is used: one
+;;; whose pattern matches nothing that the others' patterns do not. Of several such, the one
+;;; defined first is used. So the order in which files are loaded does not matter, as it does in
+;;; CRAM, which takes the first that matches.
 
 (addition goal-p)
 (define-record (goal (:constructor make-goal

@@ -1,4 +1,4 @@
-;;;; named-policies.lisp -- policies by name: what to do first, what to watch, what to do then.
+;;;; named-policies.lisp -- named policies: initialization, check, recovery, cleanup.
 
 (in-package :ars-magna.rpl.constructs)
 

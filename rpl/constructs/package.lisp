@@ -1,4 +1,4 @@
-;;;; package.lisp -- what the plan language has beyond Lisp.
+;;;; package.lisp -- the constructs that the plan language adds to Lisp.
 
 (ars-magna.host:define-package :ars-magna.rpl.constructs
   (:documentation "The constructs of RPL (manual, appendices C and D). Each is one form,

@@ -1,4 +1,4 @@
-;;;; policy.lisp -- with-policy: one part of a plan watching over another.
+;;;; policy.lisp -- with-policy: a part of a plan that watches over another.
 
 (in-package :ars-magna.rpl.constructs)
 

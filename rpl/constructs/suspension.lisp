@@ -1,4 +1,4 @@
-;;;; suspension.lisp -- keeping another task from running, and what a task does about it.
+;;;; suspension.lisp -- stopping another task, and how a task reacts to that.
 
 (in-package :ars-magna.rpl.constructs)
 

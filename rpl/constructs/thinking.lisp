@@ -1,4 +1,4 @@
-;;;; thinking.lisp -- think and with-charge: what takes time where thinking is charged for.
+;;;; thinking.lisp -- think and with-charge: what takes time where thinking is charged.
 
 (in-package :ars-magna.rpl.constructs)
 

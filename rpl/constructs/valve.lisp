@@ -1,4 +1,4 @@
-;;;; valve.lisp -- who owns a resource (manual D).
+;;;; valve.lisp -- valves: who owns a resource, and who waits for it (manual D).
 
 (in-package :ars-magna.rpl.constructs)
 
@@ -6,14 +6,16 @@
 
 ;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted,
 ;;; the newest first. A part of a task that holds a valve may hold it as well, one part at a time.
-;;; So HOLDERS of a valve are the first claim, its owner's, and those of tasks that this is part of;
-;;; between them may be such as parts have lost to parts. Any other claim was preempted: it has LOST
-;;; the valve, and its task does not run. OUTER leads from a claim to those that held a valve when
-;;; it was granted, and are of tasks that its own is part of: they give it back only after it has.
-;;; The claims that wait for a valve queue by priority, by level, then first in first out, in a LINE
-;;; for each priority and level; one that wants several can be overtaken by such as can have what
-;;; they want. To queue, to leave, and to be next take the same time however many wait in a line,
-;;; and grow with the logarithm of the number of lines.
+;;; So the HOLDERS of a valve are its owner's claim, the first one, and those of the tasks around
+;;; the owner; between them may be claims that parts have lost to parts. Any other claim was
+;;; preempted: it has LOST the valve, and its task is suspended. OUTER leads from a claim to the
+;;; claims of tasks around its own that held the valve when it was granted: they give it back only
+;;; after this claim.
+;;;
+;;; Waiting claims queue by priority, then level, then order of arrival, in a LINE for each
+;;; priority and level. A claim to several valves can be overtaken by claims that can be granted.
+;;; The time to enter or leave a queue, and to find the next claim, does not depend on the length
+;;; of a line; it grows with the logarithm of the number of lines.
 
 (addition valve-p)
 (define-record (valve (:include entity) (:constructor %make-valve (name)))
@@ -55,7 +57,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 
 (define-membership turn turn-line :in line :join join-line :leave leave-line)
 
-;; In a fork whose plans did not lead to it, nobody has it.
+;; In a fork whose plans do not refer to it, it is free.
 (defmethod fresh-twin ((valve valve) realm)
   (declare (ignore realm))
   (%make-valve (valve-name valve)))

@@ -1,4 +1,4 @@
-;;;; waiting.lisp -- waiting for time and for fluents, reacting to whatever happens, and deadlines.
+;;;; waiting.lisp -- waiting for time and for fluents, reacting to events, deadlines.
 
 (in-package :ars-magna.rpl.constructs)
 

@@ -1,4 +1,4 @@
-;;;; with-valve.lisp -- with-valve and with-valves: running while one owns a resource (manual D).
+;;;; with-valve.lisp -- with-valve and with-valves: running while owning a resource (manual D).
 
 (in-package :ars-magna.rpl.constructs)
 

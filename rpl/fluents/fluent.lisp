@@ -1,14 +1,14 @@
-;;;; fluent.lisp -- quantities that vary in time, who watches them, what holds them (manual C).
+;;;; fluent.lisp -- fluents, and their watchers (manual C).
 
 (in-package :ars-magna.rpl.fluents)
 
 (export '(make-watcher watcher watcher-p define-membership home-forked-p declare-fluent-variable
           known-pulse-p known-fluent-variable-p known-vector-variable-p robots-fluent-p))
 
-;;; A base fluent is set. A derived fluent is computed from others, its sources. While nobody
-;;; uses it, it is computed on demand and its sources do not know of it; its first user (a watcher,
-;;; or a derived fluent that is itself used) makes it a dependent of its sources and the last one
-;;; to go undoes that, so that nothing leaks. HEIGHT is the longest way down to a base fluent.
+;;; A base fluent is set. A derived fluent is computed from its sources. While it has no user, it is
+;;; computed on demand and its sources have no link to it. Its first user, a watcher or a used
+;;; derived fluent, links it to its sources; when the last user goes, the link is removed, so that
+;;; nothing leaks. HEIGHT is the longest path down to a base fluent.
 
 (public fluent)
 (addition fluent-p)

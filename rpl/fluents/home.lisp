@@ -1,13 +1,13 @@
-;;;; home.lisp -- where fluents are heard: in one thread at a time, to which all others post.
+;;;; home.lisp -- the home of a fluent: the one thread at a time that applies its changes.
 
 (in-package :ars-magna.rpl.fluents)
 
 (export '(*runner* *interface* home-in-use note-outside-change home at-home call-at-home in-use-p
           post next-entry posted-p))
 
-;;; A fluent that somebody waits for has a home, the plan runner of those who wait. One thread at a
-;;; time has a home; what others want to change meanwhile they post, and it is heard in the order of
-;;; posting. The newest entry of the inbox comes first, the oldest of the outbox.
+;;; A fluent that a task waits for has a home, the plan runner of that task. One thread at a time
+;;; works in a home. Other threads post their changes, which are applied in the order of posting.
+;;; The newest entry of the inbox comes first, the oldest of the outbox.
 
 (defstruct (backlog (:constructor make-backlog ()) (:copier nil))
   "Derived fluents to be computed, by height: those of each height in order of arrival."

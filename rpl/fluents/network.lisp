@@ -118,7 +118,7 @@ of fluents."
 a vector of fluents."
   (if (fluent-p object) (current-value (here object)) (one-fluent object)))
 
-;; What says why a command has failed is of use only if somebody looks at it.
+;; An error fluent is of use only if it is read.
 (defun looked-at-p (fluent)
   "True if FLUENT was read since FORGET-LOOKS, or is or was in a network, or is waited for."
   (let ((fluent (here fluent)))
@@ -259,8 +259,8 @@ each other's values.")
     (format stream "fluent ~A~@[ = ~A~]" (fluent-text fluent)
             (unless *inside-fluent* (value-text fluent)))))
 
-;;; The lists of fluents may be in any state. So the fluents that somebody watches are found from
-;;; the watchers, which are known; what the fluents remember of each other is dropped and made anew.
+;;; The lists of fluents may be in any state. So the watched fluents are found from the watchers,
+;;; which are known; the links between fluents are dropped and made anew.
 
 (defun reachable-fluents (watchers)
   "Return the fluents that WATCHERS watch, and those that depend on these or that these depend on."

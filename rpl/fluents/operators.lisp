@@ -1,14 +1,14 @@
-;;;; operators.lisp -- networks as plans make them: views of events, Lisp's operators on fluents.
+;;;; operators.lisp -- networks in plans: views of events, Lisp's operators on fluents.
 
 (in-package :ars-magna.rpl.fluents)
 
 (export '(function-given-p misses-nothing-p lifting))
 
-;;; A view is a network that remembers. To read it, be it by FLUENT-VALUE or by being woken by it,
-;;; uses up what it says; so each reader needs a view of its own. While somebody waits for it, it is
-;;; true for the instant of what happens; its value then is a number that it never had before, so
-;;; that each event is heard. Nothing is missed while nobody waits: fluents count how often they
-;;; were set and pulsed, so that a view costs nothing until it is read.
+;;; A view is a network with a memory. Reading it, by FLUENT-VALUE or by being woken by it, resets
+;;; it; so each reader needs a view of its own. While a task waits for it, it is true for the
+;;; instant of an event; its value then is a number that it never had before, so that each event is
+;;; a change. Nothing is missed while no task waits: fluents count how often they were set and
+;;; pulsed, so that a view costs nothing until it is read.
 
 (defun count-sets (fluents)
   (loop for fluent in fluents sum (fluent-sets fluent)))

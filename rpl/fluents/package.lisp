@@ -1,4 +1,4 @@
-;;;; package.lisp -- quantities that vary in time, and networks of them.
+;;;; package.lisp -- fluents and networks of them.
 
 (defpackage :ars-magna.rpl.lifted
   (:documentation "Lisp's operators as plans understand them, for ordinary code that wants them:

@@ -1,16 +1,17 @@
-;;;; propagation.lisp -- setting and pulsing fluents, and who hears of it.
+;;;; propagation.lisp -- setting and pulsing fluents, and notifying their watchers.
 
 (in-package :ars-magna.rpl.fluents)
 
 (export '(apply-settings give-back-all))
 
-;;; A change is heard by the watchers of what was set, in order of arrival, and then by the
-;;; dependent fluents in order of height, so that none is computed from a mixture of old and new
-;;; values and each at most once. Watchers hear only of true values (and of errors). A watcher that
-;;; has heard of a true value will wake, whatever happens to the fluent afterwards.
+;;; A change notifies first the watchers of the fluent that was set, in order of arrival, and then
+;;; the dependent fluents in order of height. So each is computed at most once, and never from a
+;;; mixture of old and new values. Watchers are called only for true values and for errors. A task
+;;; whose watcher was called for a true value will wake, whatever happens to the fluent afterwards.
 ;;;
-;;; A pulse is heard by the watchers of all dependent fluents that are true at its instant, also of
-;;; those that it does not change. What changes back after that is heard where it was false.
+;;; A pulse notifies the watchers of all dependent fluents that are true at its instant, even if it
+;;; does not change them. The change back afterwards notifies the watchers of what was false at the
+;;; instant.
 
 (defvar *spreading* nil
   "While a change is being spread, when networks must not set fluents, a list of one element: the
@@ -20,7 +21,7 @@ views that are true for the instant at which that change happened.")
   "Return the backlog of the plan runner at work, or one for this change alone."
   (if *runner* (home-backlog *runner*) (make-backlog)))
 
-;; Costs 1 ns where nobody keeps a trace.
+;; Costs 1 ns without a trace.
 (declaim (inline note-change))
 (defun note-change (kind fluent value)
   "Let the plan runner at work, if it keeps a trace, know that FLUENT has VALUE now."

@@ -1,17 +1,16 @@
-;;;; realm.lisp -- whose state a fluent has: that of the runs that are no forks, or of one fork.
+;;;; realm.lisp -- realms: the states of fluents in runs and in forks.
 
 (in-package :ars-magna.rpl.fluents)
 
 (export '(*realm* +root+ fork-realm leave-realm source-realm entity entity-like here fresh-twin
           foreign-p next-token))
 
-;;; A fluent is an identity: plans, vectors, networks and global variables lead to it. A fork has
-;;; states of its own for all of them. So each object that is an ENTITY belongs to a realm, and has
-;;; a twin in each realm that came of that by forking: HERE finds it, by whatever road one has come
-;;; to the entity. Twins have the same TOKEN, a number. Those that a fork's plans lead to are made
-;;; with the fork. Others are made when somebody asks for them, with the state of the moment of the
-;;; fork: before an entity changes, the forks made since its last change (SEEN counts them) get
-;;; their twins.
+;;; Plans, vectors, networks and global variables refer to fluents. A fork needs states of its own
+;;; for all of them. So each object that is an ENTITY belongs to a realm, and has a twin in each
+;;; realm that was forked from that. HERE finds the twin, however the caller got the entity. Twins
+;;; have the same TOKEN, a number. Twins that a fork's plans refer to are made with the fork.
+;;; Others are made on demand, with the state at the moment of the fork: before an entity changes,
+;;; the forks made since its last change (SEEN counts them) get their twins.
 
 (define-record (realm (:constructor make-realm (parent number)))
   "What belongs to one fork, number NUMBER of those of PARENT; or, without one, to all runs that are

@@ -1,4 +1,4 @@
-;;;; branching.lisp -- one thing after the other, and choices: seq, progn, if, cond, case, and, or.
+;;;; branching.lisp -- sequences and choices: seq, progn, if, cond, case, and, or.
 
 (in-package :ars-magna.rpl.language)
 

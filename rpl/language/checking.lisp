@@ -1,4 +1,4 @@
-;;;; checking.lisp -- whether what a plan calls is there, and takes what it is given.
+;;;; checking.lisp -- whether what a plan calls exists, and takes the arguments given.
 
 (in-package :ars-magna.rpl.language)
 
@@ -174,7 +174,7 @@ in a call of which TEST says :NOWHERE."
   "True if FORM is a call of FAIL."
   (operator-in-p form '("FAIL")))
 
-;;; What comes after what goes on for ever.
+;;; Forms after a form that never ends.
 
 (defun may-return-p (form)
   "True if FORM leaves a block, or may stand for one that does."

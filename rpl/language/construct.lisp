@@ -1,12 +1,12 @@
-;;;; construct.lisp -- define-expression and define-construct: a construct whole, in one form.
+;;;; construct.lisp -- define-expression and define-construct.
 
 (in-package :ars-magna.rpl.language)
 
 (export '(define-expression value child how result environment memory next at-once in-state-p
           all-constructs define-construct form build))
 
-;;; A frame is always in one of the states of its node. States have names; that a frame holds their
-;;; number, in its counter, is nobody's business but this file's and FRAME-STATE's.
+;;; A frame is always in one of the states of its node. States have names. Only this file and
+;;; FRAME-STATE use the number that stands for a state, in the frame's counter.
 
 (defun clause (key clauses)
   "Return what follows KEY in that of CLAUSES, (key ...), and true if there is one."

@@ -1,4 +1,4 @@
-;;;; known-fluents.lisp -- where a plan's text gives a fluent to what cannot take one.
+;;;; known-fluents.lisp -- fluents in a plan's text given to functions that need values.
 
 (in-package :ars-magna.rpl.language)
 

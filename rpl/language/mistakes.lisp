@@ -1,4 +1,4 @@
-;;;; mistakes.lisp -- what in a plan's text is right for Lisp, and most likely a mistake.
+;;;; mistakes.lisp -- plan text that is valid Lisp but most likely a mistake.
 
 (in-package :ars-magna.rpl.language)
 
@@ -71,7 +71,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
                                      ((error-fluent-p fluent) (mapcar #'code-doubt words))))))
       (and doubts (format nil "~{~A~^ ~}" doubts)))))
 
-;;; Pulses take no time: between two waits nobody finds them true.
+;;; Pulses take no time: no test between two waits finds them true.
 
 (defun tests-in-loop (form)
   "Return the tests after UNTIL and WHILE in FORM, a call, if that is a LOOP or N-TIMES."

@@ -1,4 +1,4 @@
-;;;; package.lisp -- from a plan's text to nodes, and what of Lisp plans understand.
+;;;; package.lisp -- from a plan's text to nodes, and the Lisp that plans understand.
 
 (ars-magna.host:define-package :ars-magna.rpl.language
   (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros;

@@ -1,4 +1,4 @@
-;;;; repeating.lisp -- loops, and leaving them: block and return-from, tagbody and go.
+;;;; repeating.lisp -- loops, block and return-from, tagbody and go.
 
 (in-package :ars-magna.rpl.language)
 

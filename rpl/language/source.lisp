@@ -1,4 +1,4 @@
-;;;; source.lisp -- reading a plan's text: what its operators are called, what is its own text.
+;;;; source.lisp -- reading a plan's text: names of operators, and which text is the plan's own.
 
 (in-package :ars-magna.rpl.language)
 
@@ -6,13 +6,12 @@
           misplaced-suspension operator-in-p note-own-text note-expansion form-as-written
           in-plans-only))
 
-;;; Inside a plan, IF, AND, < and so on have their plan meaning whether they are read as Common
-;;; Lisp's, the Nisp dialect's or ours: operators are known by name, as long as they are Lisp's or
-;;; belong to a package of this system.
+;;; Inside a plan, IF, AND, < and so on have their plan meaning, whether they are symbols of Common
+;;; Lisp, of Nisp or ours. Operators are known by name, if they are Lisp's or belong to a package
+;;; of this system.
 ;;;
 ;;; That holds for the plan's own text only: an AND that DOTIMES or PUSH expands into stays Lisp's.
-;;; So the conses of the text are remembered, and those of what other macros than Lisp's expand
-;;; into.
+;;; So the conses of the text are recorded, and those of expansions of macros that are not Lisp's.
 
 (defun author ()
   "Return what the text at hand is called in messages."

@@ -1,4 +1,4 @@
-;;;; tags.lisp -- tasks by name: with-tags, (:tag name form), status; and other code for them.
+;;;; tags.lisp -- tasks by name: with-tags, (:tag name form), status; replacing their code.
 
 (in-package :ars-magna.rpl.language)
 

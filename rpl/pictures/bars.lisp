@@ -1,4 +1,4 @@
-;;;; bars.lisp -- the life of a task as a bar over ticks, on any canvas.
+;;;; bars.lisp -- a task as a bar over ticks, on any canvas.
 
 (in-package :ars-magna.rpl-pictures)
 

@@ -1,4 +1,4 @@
-;;;; task-tree.lisp -- the tasks of plans that are under way as a tree, also in a file.
+;;;; task-tree.lisp -- the tree of running tasks as a picture.
 
 (in-package :ars-magna.rpl-pictures)
 

@@ -1,4 +1,4 @@
-;;;; looking.lisp -- a rollout once more, to be looked at, and a projection as a picture.
+;;;; looking.lisp -- repeating a rollout to look at it; a projection as a picture.
 
 (in-package :ars-magna.rpl-projecting)
 

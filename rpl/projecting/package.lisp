@@ -1,4 +1,4 @@
-;;;; package.lisp -- plans that are tried in forks before they are done.
+;;;; package.lisp -- plans that are tried in forks first.
 
 (ars-magna.host:define-package :ars-magna.rpl-projecting
   (:documentation "Projecting plans: what may become of them, in forks of their run or in a world

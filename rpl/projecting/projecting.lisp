@@ -1,4 +1,4 @@
-;;;; projecting.lisp -- project and try-best: what may become of a plan, and doing what goes best.
+;;;; projecting.lisp -- project and try-best.
 
 (in-package :ars-magna.rpl-projecting)
 

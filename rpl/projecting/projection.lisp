@@ -1,4 +1,4 @@
-;;;; projection.lisp -- what came of one trial of a plan, and what may become of it, from many.
+;;;; projection.lisp -- rollouts, and projections made of them.
 
 (in-package :ars-magna.rpl-projecting)
 

@@ -1,4 +1,4 @@
-;;;; rolling-out.lisp -- a trial of a plan, in a fork of its run or in a world that is believed in.
+;;;; rolling-out.lisp -- one rollout of a plan, in a fork of its run or in a believed world.
 
 (in-package :ars-magna.rpl-projecting)
 
@@ -78,11 +78,11 @@ reaction may, or more, since it was called last, or made."
                     (ways-along trails trial (outcome-word how))
                     broken))))
 
-;;; Such a world is made by a function of the user's, WORLD, which is called with a function and a
-;;; seed: it is to call that in a WITH-SIMULATION with that seed, when it has put things where they
-;;; are believed to be. Nothing there leads to the true run: that is not the current one, its robots
-;;; are not bound, and no object of it is taken for an argument. What global variables lead to can
-;;; be read, but not changed or commanded; and fluents have a realm for each rollout.
+;;; Such a world is made by the user's function WORLD. It is called with a function and a seed; it
+;;; must put things where they are believed to be, and call that function in a WITH-SIMULATION with
+;;; that seed. Nothing there leads to the true run: that is not the current one, its robots are not
+;;; bound, and no object of it is accepted as an argument. Objects of it in global variables can be
+;;; read, but not changed or commanded. Fluents have a realm for each rollout.
 
 (defun object-of-run (object)
   "Return OBJECT, or an object in it if it is a list or vector, that belongs to a run; or NIL."

@@ -1,12 +1,12 @@
-;;;; clashes.lisp -- tasks that take the robot from each other, or give command after command.
+;;;; clashes.lisp -- tasks that interrupt each other's commands, or issue commands without waiting.
 
 (in-package :ars-magna.rpl-robot)
 
 (addition *plan-command-limit*)
 
-;;; A plan that hears that its command was interrupted may issue it again, and so interrupt who did
-;;; that, who then does the same. No time passes meanwhile. After *MOST-TAKEOVERS* in a tick
-;;; each further one ends the reaction.
+;;; A plan whose command was interrupted may issue it again, and so interrupt the other plan, which
+;;; then does the same. No time passes meanwhile. After *MOST-TAKEOVERS* in a tick each further one
+;;; ends the reaction.
 
 (defparameter *most-takeovers* 100
   "How often plans may take one part of the robot from each other before time has to pass.")

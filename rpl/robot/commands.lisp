@@ -1,9 +1,9 @@
-;;;; commands.lisp -- commands whose results arrive in fluents: the one table (manual C).
+;;;; commands.lisp -- the table of commands whose results arrive in fluents (manual C).
 
 (in-package :ars-magna.rpl-robot)
 
-;;; A row says what becomes of the fluents when a command ends. All settings of one end are one
-;;; batch: values and errors first, then the pulse, so that whoever sees the pulse sees the rest.
+;;; A row says how the end of a command changes fluents. All settings of one end are one batch:
+;;; values and errors first, then the pulse, so that a task woken by the pulse sees the rest.
 ;;; Success sets the error fluent to NIL.
 
 ;;; The robot.

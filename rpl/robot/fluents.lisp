@@ -1,4 +1,4 @@
-;;;; fluents.lisp -- what plans know of their robot: fluents, and what they may ask (manual C).
+;;;; fluents.lisp -- the robot's fluents and readers for plans (manual C).
 
 (in-package :ars-magna.rpl-robot)
 

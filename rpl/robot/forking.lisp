@@ -4,11 +4,11 @@
 
 (export '(interface-of))
 
-;;; A run that goes on in the place of another has its tasks up to the tick to which that was
-;;; rewound, with the numbers that they had. Later tasks of both are others, though their numbers
-;;; are the same. So an interface knows of which era each task is: a symbol. Its ERAS are a list
-;;; (symbol . number), the newest first; those with greater numbers are of the era. What goes on
-;;; after a rewind begins an era; so does RPL-INIT-ROBOT, after which numbers begin anew.
+;;; After a rewind a new run replaces the old one. It has the old tasks up to that tick, with the
+;;; same numbers. Later tasks of the two runs differ, though they may have the same numbers. So an
+;;; interface records the era of each task, a symbol. ERAS is a list (symbol . number), the newest
+;;; first; tasks with greater numbers belong to that era. A rewind begins an era; so does
+;;; RPL-INIT-ROBOT, after which numbers start again.
 
 (defun era-of (number interface)
   (car (find number (interface-eras interface) :key #'cdr :test #'>)))
@@ -74,9 +74,9 @@ those that have begun in OLD since."
 
 (attend *rewind-hooks* begin-era)
 
-;;; Plans do by themselves what they did. That they were begun and ended, that somebody else set
-;;; their fluents, gave commands by plan functions, or said a word to a task, such as SUSPEND, is in
-;;; no journal; the run remembers it, if it is one that can be rewound.
+;;; When a run is repeated, plans do the same again. But the journal does not record calls from
+;;; outside: that plans were begun and ended, fluents set, commands issued by plan functions, or
+;;; tasks suspended. A run that can be rewound records them itself.
 
 (defun react-again ()
   (let ((interface (usable-interface)))

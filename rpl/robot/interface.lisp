@@ -1,19 +1,18 @@
-;;;; interface.lisp -- one robot, the runner of its plans, and who may touch them.
+;;;; interface.lisp -- one robot, the runner of its plans, and access to them.
 
 (in-package :ars-magna.rpl-robot)
 
 (export '(interface-p holding-p call-with-plans))
 
-;;; Whoever lets plans react holds the interface's lock. Headless that is whoever passes ticks or
-;;; starts plans; live a thread of their own, which exists while there are plans and a clock. The
-;;; simulator only posts to that and never waits for it.
+;;; The thread in which plans react holds the interface's lock. Headless that is the thread that
+;;; passes ticks or starts plans; live it is a thread of their own, which exists while there are
+;;; plans and a clock. The simulator only posts to that thread and never waits for it.
 ;;;
-;;; One rule for what several threads read: timers, ready tasks and all else of the runner are read
-;;; and changed by the thread that holds the lock. When it gives the lock back it publishes, as one
-;;; value, the tick at which plans next need to go on; the clock reads that. Posts, the tasks that
-;;; are to end and those that RUN-PLAN waits for are atomic lists. The list of top-level tasks is
-;;; replaced as a whole, never altered. Whether the plans' thread waits in a debugger is a flag that
-;;; only that thread sets.
+;;; Rule for shared data: timers, ready tasks and everything else of the runner are read and
+;;; changed by the thread that holds the lock. On release it publishes, as one value, the tick at
+;;; which plans next need to run; the clock reads that. Posts, the tasks to end and those that
+;;; RUN-PLAN waits for are atomic lists. The list of top-level tasks is replaced as a whole, never
+;;; altered. A flag that only the plans' thread sets says whether it waits in a debugger.
 
 (addition *trace-plans*)
 (defparameter *trace-plans* nil
@@ -129,12 +128,12 @@ for that, or some plan is ready. For any thread."
     (and calls (user-calls-origin calls) (user-calls-waiting-p calls))))
 
 (defun hog-of (interface)
-  ;; Whoever watches sees only at his next look that it has gone on.
+  ;; The watcher sees only at its next sample that it has gone on.
   (let ((task (interface-hog interface)))
     (and task (eq :running (task-state task)) (not (asks-p interface)) task)))
 
-;; At a plain REPL whoever waits for the plans lets their debugger have the terminal. An editor has
-;; a place for that elsewhere.
+;; At a plain REPL a thread that waits for the plans gives their debugger the terminal. An editor
+;; shows it elsewhere.
 (defun check-not-asking (interface)
   "Signal MISUSE if the plans of INTERFACE, of another thread, have stopped in a debugger."
   (when (and (asks-p interface)
@@ -150,8 +149,8 @@ for that, or some plan is ready. For any thread."
       (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."
                   (task-label (task-top task)) (form-text (task-form task))))))
 
-;; A time limit may come at any moment: the count must come out even, or the plans' thread would
-;; make way for ever.
+;; A time limit may interrupt this at any moment: the count must come out even, or the plans' thread
+;; would yield forever.
 (defun call-wanting-plans (function interface)
   "Call FUNCTION, while this thread counts as one that wants the plans of INTERFACE, with a function
 that is to be called when it has them. Interrupts wait, but for the extent of ALLOWING-INTERRUPTS."

@@ -1,4 +1,4 @@
-;;;; outcomes.lisp -- how plan functions are made of commands (manual C).
+;;;; outcomes.lisp -- making plan functions of commands (manual C).
 
 (in-package :ars-magna.rpl-robot)
 

@@ -1,4 +1,4 @@
-;;;; package.lisp -- where plans meet a robot: the interface of the manual's appendix C.
+;;;; package.lisp -- plans that drive a robot: the interface of the manual's appendix C.
 
 (ars-magna.host:define-package :ars-magna.rpl-robot
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")

@@ -1,14 +1,14 @@
-;;;; reacting.lisp -- the plans of an interface react, and their wishes are served while they rest.
+;;;; reacting.lisp -- reactions of an interface's plans, and serving their wishes in between.
 
 (in-package :ars-magna.rpl-robot)
 
 (export '(wish serve-wish add-wish forget-wish grant-wish wishes-in-tick fork-at-rest
           unwanted-wish-p call-apart))
 
-;;; A run cannot be forked at a plan's own step: what that is about to do is on Lisp's stack. So a
-;;; task that wants it done leaves a wish, waits, and goes on in the same tick with what came of it.
-;;; Wishes are served one at a time, the oldest first, when the reaction has come to rest; after
-;;; each the plans react anew. What a wish is about is in the wish, so that a fork has its twin.
+;;; A run cannot be forked inside a plan's step, since part of its state is on Lisp's stack. So a
+;;; task that wants a fork leaves a wish, waits, and goes on in the same tick with the result.
+;;; Wishes are served one at a time, the oldest first, when the reaction is at rest; after each the
+;;; plans react again. A wish contains all that it is about, so that a fork has its twin.
 
 (define-record wish
   "What TASK of INTERFACE waits for; without a task, what somebody outside wants of a fork."

@@ -181,7 +181,7 @@ wait, and for something else. True if so. Most ticks are like that."
 (defmethod participant-reseed ((interface interface) seed)
   (reseed-runner (interface-runner interface) seed))
 
-;; What a live plan is at right now is nobody's to wait for: then only its being at work counts.
+;; The current step of a live plan cannot be waited for: then only whether it is at work counts.
 (defmethod participant-digest ((interface interface) digest)
   (flet ((add () (digest-runner (interface-runner interface) digest)))
     (if (thread-of interface)
@@ -189,7 +189,7 @@ wait, and for something else. True if so. Most ticks are like that."
           (digest-add digest :at-work))
         (with-plans (interface) (add)))))
 
-;; A thread of plans has nothing to do while no ticks pass; nor is it there for ever.
+;; A thread of plans has nothing to do while no ticks pass, and does not exist forever.
 (defmethod participant-clock-stopped ((interface interface))
   (wake-plans interface))
 

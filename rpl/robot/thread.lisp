@@ -1,12 +1,12 @@
-;;;; thread.lisp -- the thread in which plans of a live simulation react, and what watches it.
+;;;; thread.lisp -- the thread in which plans of a live simulation react, and its watcher.
 
 (in-package :ars-magna.rpl-robot)
 
-;;; A watcher, a thread of its own, looks twice in *HOG-SECONDS* at what the plans' thread is doing.
-;;; If it finds the same step of Lisp code three times in a row, the plan has kept the thread for
-;;; that long: a warning names the plan. The code is aborted if somebody wants the plan to end, or
-;;; the simulator has been stopped. A plan that takes step after step is named by the runner; if it
-;;; goes on after the simulator has stopped, it is ended.
+;;; A watcher thread samples the plans' thread twice in *HOG-SECONDS*. If it finds the same step of
+;;; Lisp code three times in a row, the plan has kept the thread that long, and a warning names the
+;;; plan. The code is aborted if the plan is to end or the simulator has been stopped. For a plan
+;;; that takes step after step the warning comes from the runner; it is ended if it goes on after
+;;; the simulator has stopped.
 
 (defstruct (look (:constructor make-look (rests steps task)) (:copier nil))
   "What the plans' thread was at: how often it had come to rest, how many steps had been taken, and

@@ -1,8 +1,8 @@
-;;;; under-way.lisp -- plans give commands, and hear of their ends.
+;;;; under-way.lisp -- commands of plans in progress, and how plans learn of their ends.
 
 (in-package :ars-magna.rpl-robot)
 
-;;; A command that a plan has issued is a DEED until its last answer has been heard.
+;;; A command that a plan has issued is a DEED until its last answer has been applied.
 
 (defstruct (deed (:constructor make-deed (command resource outcome task cleanup-p issue tick))
                  (:copier nil))
@@ -13,16 +13,16 @@ OUTCOME makes settings of an answer."
   (outcome nil :type function :read-only t)
   (task nil :type (or null task) :read-only t)
   (cleanup-p nil :read-only t)
-  ;; What the trace knows of it, or NIL.
+  ;; Its record in the trace, or NIL.
   (issue nil :read-only t)
   (tick 0 :type fixnum :read-only t)
-  ;; By what the simulator knows it.
+  ;; Its identity in the simulator.
   (continuation nil :type (or null function))
   ;; It goes on in the background, as a track that has begun.
   (begun-p nil)
   ;; Plans have been told that it was interrupted.
   (told-p nil)
-  ;; It has been answered for the last time.
+  ;; Its last answer has come.
   (over-p nil))
 
 (defun deed-name (deed)
@@ -79,11 +79,11 @@ and is carried out first, or goes on in the background."
   (not (or (deed-begun-p deed)
            (command-instant-p (deed-command deed)))))
 
-;;; The simulator answers in its own thread; plans hear an answer, a list of settings of fluents,
-;;; between two reactions. A plan's command that ends older ones on its resource lets the plan hear
-;;; of that at once: of their answers that have come in already, and else :INTERRUPT. So a wait that
-;;; follows a command hears that command. What the simulator answers in the end for what has been
-;;; told so sets only the fluents that say what the robot is or has: no error fluent, no pulse.
+;;; The simulator answers in its own thread. An answer, a list of settings of fluents, is applied
+;;; between two reactions of plans. When a plan's command interrupts older ones on its resource,
+;;; their answers are applied at once: those that have come in already, else :INTERRUPT. So a wait
+;;; after a command gets the end of that command. The simulator's own later answer to an
+;;; interrupted command sets only the fluents for the state of the robot: no error fluent, no pulse.
 
 (defun note-pulses (interface deed settings)
   "Note which fluents SETTINGS, of the end of DEED of INTERFACE, pulse in this tick."

@@ -1,4 +1,4 @@
-;;;; warnings.lisp -- what is said once of plans that wait in vain, do not look, or do not end.
+;;;; warnings.lisp -- warnings of plans that wait in vain, ignore errors, or do not end.
 
 (in-package :ars-magna.rpl-robot)
 

@@ -1,9 +1,9 @@
-;;;; describing.lisp -- the stack and variables of a task, and what DESCRIBE tells of plan objects.
+;;;; describing.lisp -- the stack and variables of a task, and DESCRIBE of plan objects.
 
 (in-package :ars-magna.rpl.seeing)
 
-;;; A node knows the names of the variables that it sees (NODE-NAMES), a frame has the environment
-;;; with their values. Variables without a home package are the compiler's own, and are not shown.
+;;; A node has the names of its visible variables (NODE-NAMES), a frame the environment with their
+;;; values. Variables without a home package are the compiler's own, and are not shown.
 
 (defun note-task-seen (task)
   (when (task-runner task) (note-seen (runner-client (task-runner task)))))

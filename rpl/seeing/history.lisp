@@ -1,4 +1,4 @@
-;;;; history.lisp -- what a trace tells of a task: its failures, its commands, and bars over time.
+;;;; history.lisp -- reading a trace: failures and commands of a task, bars over time.
 
 (in-package :ars-magna.rpl.seeing)
 

@@ -1,4 +1,4 @@
-;;;; package.lisp -- what people see of plans that run, and have run.
+;;;; package.lisp -- inspecting plans that run, and have run.
 
 (ars-magna.host:define-package :ars-magna.rpl.seeing
   (:documentation "Shows plans: tasks with their stacks and variables, what came of them and why,

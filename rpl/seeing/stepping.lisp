@@ -1,11 +1,10 @@
-;;;; stepping.lisp -- plans that stop for somebody: where they fail, or expression by expression.
+;;;; stepping.lisp -- stopping plans in the debugger: at failures, or at each expression.
 
 (in-package :ars-magna.rpl.seeing)
 
 (export '(plan-break-p))
 
-;;; A break is no error. Where nobody is there to answer a debugger it is a message, and the plan
-;;; goes on.
+;;; A break is no error. Without an interactive debugger it is a message, and the plan goes on.
 
 (addition plan-break plan-break-task)
 (define-condition plan-break (condition)
@@ -64,10 +63,9 @@ interactive debugger they are messages.")
 
 (attend *failure-hooks* consider-break)
 
-;;; A runner with plans to be gone through has a STEPPER, which is called before each step of any
-;;; of its tasks (see WATCHED-STEP); without one this costs nothing. Only steps that begin an
-;;; expression count. Leaves have no steps of their own: one stops before those that are steps of a
-;;; body.
+;;; A runner with plans to be stepped has a STEPPER, which is called before each step of any of its
+;;; tasks (see WATCHED-STEP); without one this costs nothing. Only steps that begin an expression
+;;; count. Leaves have no steps of their own: a stop comes before those that are steps of a body.
 
 (addition *step-plans*)
 (defvar *step-plans* nil

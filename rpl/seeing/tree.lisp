@@ -1,4 +1,4 @@
-;;;; tree.lisp -- the tree of tasks: whose it is, as text, and as data for those who draw it.
+;;;; tree.lisp -- the tree of tasks: as text, and as data for pictures.
 
 (in-package :ars-magna.rpl.seeing)
 
@@ -67,9 +67,9 @@ their values, and the valves that tasks have or want."
       (dolist (valve (remove-duplicates (mapcan #'valves-of (all-tasks which)) :from-end t))
         (write-valve valve stream)))))
 
-;;; An image is made where no plan goes on, as between two ticks; whoever draws from it may do so in
-;;; any thread. It has the rows that are to be seen, from top to bottom, and no more than so many of
-;;; them: what is left out, or folded away, is only counted.
+;;; An image is made while no plan runs, as between two ticks; any thread may draw from it. It has
+;;; the visible rows, from top to bottom, up to a given number: rows left out or folded are only
+;;; counted.
 
 (define-record task-image
   "What is to be seen of a task."

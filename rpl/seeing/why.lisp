@@ -1,4 +1,4 @@
-;;;; why.lisp -- in sentences, what brought something where it is: of tasks, from the trace.
+;;;; why.lisp -- explaining in sentences how something got where it is.
 
 (in-package :ars-magna.rpl.seeing)
 

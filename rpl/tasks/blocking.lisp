@@ -1,4 +1,4 @@
-;;;; blocking.lisp -- keeping tasks from starting or from running, and letting them go on.
+;;;; blocking.lisp -- stopping tasks, and letting them go on.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -75,9 +75,9 @@
   (when (task-gate task) (put-gate task))
   task)
 
-;;; A blocked task keeps its place, with all that it consists of: what it waits for still counts,
-;;; and it runs again when nobody blocks it any longer. The expressions that it is at may want to do
-;;; something when that happens: those whose frame's DATA is a HEED.
+;;; A blocked task keeps its place, with its parts: fluents that it waits for still count, and it
+;;; runs again when nothing blocks it any longer. Expressions in progress that need to react to
+;;; blocking have a frame whose DATA is a HEED.
 
 (define-record (heed (:constructor make-heed (function)))
   "What an expression does when its task is blocked: FUNCTION is called with the task and the

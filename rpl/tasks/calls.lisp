@@ -1,4 +1,4 @@
-;;;; calls.lisp -- what arguments plans and functions take, and what plans call for commands.
+;;;; calls.lisp -- arguments that plans and functions take, and what plans call for commands.
 
 (in-package :ars-magna.rpl.tasks)
 

@@ -1,4 +1,4 @@
-;;;; care.lisp -- what becomes of failures, errors and interrupts: of the task, and of its runner.
+;;;; care.lisp -- failures, errors and interrupts: what happens to the task and its runner.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -55,9 +55,9 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
   "BEGIN-PLAN returns the task of a plan that goes on; RUN-PLAN, the values of one that it runs.")
 
 ;;; An interrupt from outside, such as Control-C or a time limit, may leave a reaction at any point,
-;;; also between two changes that belong together. What is true then is what tasks say of
-;;; themselves: their parents, states and frames. All else (who is ready, when who wakes, who hears
-;;; of which fluent) is made anew from that.
+;;; even between two changes that belong together. Only what tasks contain is reliable then: their
+;;; parents, states and frames. Everything else (which are ready, when they wake, which fluents they
+;;; watch) is rebuilt from that.
 
 (defun live-parts (task)
   "Return TASK and its parts that are not over. Make right how they know each other."
@@ -146,10 +146,10 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
         (stop-waiting task)
         (end-parts task)))))
 
-;;; An error in a leaf becomes a failure of its task. While *BREAK-ON-USER-ERROR* is true, and
-;;; somebody is there to answer, the debugger comes first; its restarts are: do the leaf again, let
-;;; it return a value, let the task fail, end the plan. An ABORT ends the plan that it meets. A leaf
-;;; that is left for good, as by THROW, ends its plan too.
+;;; An error in a leaf becomes a failure of its task. While *BREAK-ON-USER-ERROR* is true and an
+;;; interactive debugger is available, the debugger comes first. Its restarts run the leaf again,
+;;; return a value for it, let the task fail, or end the plan. An ABORT ends the plan in which it
+;;; happens. A leaf that is left for good, as by THROW, ends its plan too.
 
 ;;; What happens to the task.
 
@@ -230,10 +230,10 @@ LEAVE and END. A step that is left by another ends its plan, and so cannot be tr
       (let ((*spoilt-by-leaving-p* #'in-step-p))
         (funcall function runner)))))
 
-;;; What a step meets decides the fate of its task, a keyword:
-;;;   :DONE    nothing;
+;;; The fate of a task after a step is a keyword:
+;;;   :DONE    nothing happened;
 ;;;   :FAIL    an error or failure, or the restart FAIL-TASK;
-;;;   :END     the restart ABORT, or a debugger at which nobody sits;
+;;;   :END     the restart ABORT, or a debugger without a user;
 ;;;   :LEAVE   the restart LEAVE-PLAN.
 ;;; There is none if the step is left for good by another way, such as THROW.
 

@@ -1,15 +1,15 @@
-;;;; charging.lisp -- what thinking costs the plans of a runner: steps of a tick's budget, or ticks.
+;;;; charging.lisp -- the cost of thinking: steps of a tick's budget, or ticks.
 
 (in-package :ars-magna.rpl.tasks)
 
 (export '(count-steps set-charges stand-no-longer stand-still standing-still-p))
 
-;;; A runner that is CHARGED-P takes what plans say of their thoughts for true: WITH-CHARGE and
-;;; THINK wait, CHARGE-TICKS and CHARGE-STEPS count. If it has a BUDGET too, that is how many steps
-;;; its tasks may take in a tick, all together, however often it reacts in that; it was ALLOTTED for
-;;; the last time at one. What is charged for beyond it is a DEBT, which is paid from the budgets of
-;;; the ticks that follow. Nobody runs, and nothing posted is heard, before the tick STILL-UNTIL.
-;;; Steps of tasks that are UNCOUNTED-P are given back, but for those of a task that runs away.
+;;; A runner that is CHARGED-P charges what plans state: WITH-CHARGE and THINK wait, CHARGE-TICKS
+;;; and CHARGE-STEPS count. BUDGET is how many steps its tasks may take in a tick, all together, in
+;;; however many reactions; ALLOTTED is the tick at which it was given last. Charges beyond it are
+;;; a DEBT, which is paid from the budgets of the following ticks. Before the tick STILL-UNTIL no
+;;; task runs, and no post is applied. Steps of tasks that are UNCOUNTED-P are given back, except
+;;; those of a task that runs away.
 
 (defun set-charges (runner charged-p budget)
   "Let RUNNER be charged for thoughts from now on if CHARGED-P is true, and have BUDGET steps a

@@ -1,4 +1,4 @@
-;;;; ending.lisp -- how a task ends: well, by a signal that nothing takes care of, by evaporation.
+;;;; ending.lisp -- how a task ends: by success, by an unhandled signal, by evaporation.
 
 (in-package :ars-magna.rpl.tasks)
 

@@ -7,11 +7,11 @@
           react-to-all reseed-runner start-plan stop-plan))
 
 ;;; A reaction runs ready tasks until none is ready. Only then is the next posted batch applied, and
-;;; time passes only when there is none. So a task that gives a command and waits for its pulse has
+;;; time passes only when there is none. So a task that issues a command and waits for its pulse has
 ;;; reached the wait before the pulse can come.
 ;;;
-;;; The engine knows no simulator. Whoever drives it calls REACT-TO-ALL and ADVANCE-TIMERS, in one
-;;; thread at a time; any thread may post.
+;;; The engine is independent of the simulator. Its client calls REACT-TO-ALL and ADVANCE-TIMERS,
+;;; in one thread at a time; any thread may post.
 
 (defun make-plan-runner (&key trace budget charged clock (slow 0.1d0) dice (ticks-per-second 20)
                            (tick 0) client (busy-p (constantly nil)) (on-post #'list)
@@ -61,11 +61,11 @@ Return the task, which runs at the next reaction."
           (tell-listeners *plan-start-hooks* task)
           task)))))
 
-;;; Reacting. In a round every ready task gets its turn, until it waits, ends or has used its slice.
-;;; Only then is the next post heard, and only when nothing is posted do those that have used their
-;;; slices get new ones. So a plan that never waits deafens nobody. Where a tick has a budget,
-;;; slices are shares of that, and a plan may need several from a command to the wait for what comes
-;;; of it: there it is not slices that decide when somebody who has not waited yet is to hear.
+;;; Reacting. In a round every ready task runs until it waits, ends or has used its slice. Then the
+;;; next post is applied. Tasks that have used their slices get new ones only when there are no
+;;; more posts. So a plan that never waits does not keep others from reacting. Where a tick has a
+;;; budget, slices are shares of it. A plan may then need several from a command to its wait, so
+;;; there another limit than slices decides when posts are applied.
 
 (defun run-ready (runner)
   "Run the ready tasks of RUNNER. Return :idle when none is ready that has not used its slice,

@@ -5,10 +5,9 @@
 (export '(+nothing+ +parked+ bundle-p call-leaf completion-p enter escape-p leaf-p make-bundle
           make-completion make-escape make-leaf park required-slot single-value wake))
 
-;;; A signal is what can happen to a task other than going on: a PLAN-FAILURE; an ESCAPE to an
-;;; enclosing node, perhaps of an enclosing task; the word :EVAPORATE; or a COMPLETION, by which
-;;; the construct that the task waits in ends well. A task that has children takes a signal only
-;;; when the last child is gone.
+;;; A signal ends or redirects a task: a PLAN-FAILURE; an ESCAPE to an enclosing node, perhaps of an
+;;; enclosing task; the word :EVAPORATE; or a COMPLETION, by which the construct that the task
+;;; waits in succeeds. A task with children receives a signal only when the last child is gone.
 
 (define-record (escape (:constructor make-escape (target value)))
   "A signal to leave for the node TARGET, which knows what to do with VALUE."

@@ -1,4 +1,4 @@
-;;;; package.lisp -- what runs plans: tasks, how they go on, wait and end, and who runs next.
+;;;; package.lisp -- running plans: tasks, how they run, wait and end, and in which order.
 
 (ars-magna.host:define-package :ars-magna.rpl.tasks
   (:documentation "Plans are cooperative tasks of one thread. A task runs nodes, a plan's

@@ -6,10 +6,10 @@
           anonymous-procedure declare-procedure defined-p ensure-procedure enter-plan
           install-procedure make-procedure procedure check-arguments procedure-name-p node-parts))
 
-;;; A name that a plan calls leads to a cell, whether or not there is a procedure of that name yet.
-;;; So procedures can be defined in any order, and defined anew while plans run: a call takes what
-;;; is in the cell when it happens. Calls go by the very symbol. Who asks for a procedure by name,
-;;; as RUN-PLAN does, need not know the package that it was defined in.
+;;; A name that a plan calls refers to a cell, whether or not a procedure of that name exists yet.
+;;; So procedures can be defined in any order, and redefined while plans run: a call uses what is
+;;; in the cell when it happens. Calls go by the very symbol. Callers by name, such as RUN-PLAN,
+;;; need not know the package that a procedure was defined in.
 
 (addition procedure-p)
 (define-record (procedure (:constructor make-procedure (name)
@@ -249,8 +249,8 @@ plans, mean this one."
             (apply (procedure-entry procedure) arguments))))
 
 ;;; All runs share the plans that were defined by name. But INTERP-LAMBDA makes a plan when it is
-;;; evaluated, and the functions in its nodes, and in those of its local plans, have closed over
-;;; the variables around it. Such nodes belong to one run, and so do the nodes that lead to them; a
+;;; evaluated, and the functions in its nodes, and in those of its local plans, close over the
+;;; variables around it. Such nodes belong to one run, and so do the nodes that refer to them; a
 ;;; fork copies both.
 
 (defun defined-procedure-p (procedure)

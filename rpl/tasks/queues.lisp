@@ -1,4 +1,4 @@
-;;;; queues.lisp -- who runs next, and who is woken at which tick.
+;;;; queues.lisp -- the queue of ready tasks, and timers.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -47,8 +47,8 @@
     (decf (ring-count ring))
     item))
 
-;;; Timers due at the same tick come in the order in which they were set. A timer knows its place
-;;; in the heap, so that one that is no longer wanted leaves at once.
+;;; Timers due at the same tick fire in the order in which they were set. A timer stores its index
+;;; in the heap, so that it can be removed at once.
 
 (define-record (timer (:constructor make-timer (due serial wake client)))
   "At tick DUE, WAKE is to be called with this timer."

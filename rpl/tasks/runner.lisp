@@ -1,4 +1,4 @@
-;;;; runner.lisp -- the plan runner's state: who is ready, the tick, and what was said from outside.
+;;;; runner.lisp -- the state of a plan runner: ready tasks, the tick, calls from outside.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -7,9 +7,9 @@
           call-with-client-still hear-of-trouble note-seen all-tasks task-numbered note-word
           task-now))
 
-;;; Ready tasks queue first-in first-out by level; the highest level runs first. MASK has bit n set
-;;; while somebody of level n may be queued, and the bit +INTERRUPT+, above all of these, when the
-;;; running task is to look at its own signal.
+;;; Ready tasks queue first-in first-out by level; the highest level runs first. Bit n of MASK is
+;;; set while tasks of level n may be queued. The bit +INTERRUPT+, above all of these, is set when
+;;; the running task must check its own signal.
 
 (defconstant +levels+ 8 "How many levels there are: the plan's, and policies above policies.")
 (defconstant +interrupt+ (ash 1 +levels+))
@@ -255,9 +255,9 @@ does to clean up only by what blocks that."
     (and (< (runner-mask runner) (ash 2 (task-level task)))
          (zerop (ring-count (svref (runner-rings runner) (task-level task)))))))
 
-;;; Plans do again by themselves what they did, given what they were told. So whoever is to repeat a
-;;; run must know what was said to its plans from outside: each word that can be notes itself, with
-;;; the task or plan runner that it is said to.
+;;; When a run is repeated, plans do the same again, given the same calls from outside. So each
+;;; function that can be called from outside records its call, with the task or plan runner that it
+;;; is for.
 
 (defgeneric note-word (client word arguments subject)
   (:documentation "Take note that somebody who is not at work in the plans of CLIENT, see

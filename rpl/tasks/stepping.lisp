@@ -1,4 +1,4 @@
-;;;; stepping.lisp -- how a task starts, goes on step by step, and lets others hear something first.
+;;;; stepping.lisp -- how a task starts and runs step by step, and waits until another is at rest.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -69,8 +69,8 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
                              (runner-courtesies runner))
               runner))
 
-;;; Before each step a task gives way if somebody of a higher level has become ready, so that a
-;;; policy reacts to what the last step did before the next one is taken.
+;;; Before each step a task yields to a ready task of a higher level, so that a policy reacts to the
+;;; last step before the next one is taken.
 
 (defun warn-of-slow-step (task frame seconds)
   (let ((form (current-form (frame-node frame) frame)))

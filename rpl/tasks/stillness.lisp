@@ -1,4 +1,4 @@
-;;;; stillness.lisp -- tasks that cannot go on: circles of waits, deadlocks, and advice.
+;;;; stillness.lisp -- tasks that cannot go on: cyclic waits, deadlocks, and advice.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -7,8 +7,9 @@
           text-of-plans text-of-waits advice-on-stillness endless-advice fluents-awaited))
 
 ;;; A task is stuck if what it waits for can only come from tasks that are stuck. A task with parts
-;;; is stuck if all of them are, policies, which only watch, not counted. Where it is not known who
-;;; could help, somebody may: that is left to the report of deadlocks when nothing goes on any more.
+;;; is stuck if all of them are, not counting policies, which only watch. If it is unknown what
+;;; could wake a task, it does not count as stuck; the report of deadlocks covers it when nothing
+;;; runs any more.
 
 (defgeneric hinderers (awaited)
   (:documentation "Return the tasks without which AWAITED cannot come; NIL if that is unknown.")

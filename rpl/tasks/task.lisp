@@ -1,4 +1,4 @@
-;;;; task.lisp -- nodes, frames and tasks: what a running plan is made of.
+;;;; task.lisp -- nodes, frames and tasks: the parts of a running plan.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -7,9 +7,9 @@
           frames-around under-way-p frame-p))
 
 ;;; A plan is a graph of nodes, its expressions. A task runs one of them as a chain of frames, the
-;;; innermost of which is the task's own FRAME. Everything that a task knows is in its frames and
-;;; their environments, on the heap. Children of a task exist only while its innermost frame is
-;;; that of a construct that waits for them.
+;;; innermost of which is the task's own FRAME. All state of a task is in its frames and their
+;;; environments, on the heap. Children of a task exist only while its innermost frame is that of a
+;;; construct that waits for them.
 ;;;
 ;;; An environment is a vector: element 0 is the environment around it, the others are variables.
 

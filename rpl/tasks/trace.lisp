@@ -1,4 +1,4 @@
-;;;; trace.lisp -- what tasks wait for, what happened to which task, and when.
+;;;; trace.lisp -- what tasks wait for, and the trace of events.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -27,7 +27,7 @@ waits for its own parts."
        (awaited-text (task-awaiting task))))
 
 ;;; A trace names tasks by number and holds no clock time, so that it is the same on every replay.
-;;; An entry keeps things, not words: what is written of it is made when somebody reads it.
+;;; An entry stores objects; its text is made when it is read.
 
 (define-record (trace-entry (:constructor make-trace-entry
                                 (tick event task form subject value agent)))

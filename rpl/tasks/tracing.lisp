@@ -1,11 +1,11 @@
-;;;; tracing.lisp -- what a plan runner tells its trace, if it keeps one.
+;;;; tracing.lisp -- recording events in a plan runner's trace.
 
 (in-package :ars-magna.rpl.tasks)
 
 (export '(note-command note-event start-trace stop-trace with-answer note-event))
 
-;;; By whose doing something happens is known by *ASKER*: the task at work, or whoever posted what
-;;; is being applied.
+;;; *ASKER* is the agent of an event: the task at work, or the caller that posted what is being
+;;; applied.
 
 (defmacro note-event (task event &optional subject value)
   "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see

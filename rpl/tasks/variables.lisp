@@ -1,13 +1,13 @@
-;;;; variables.lisp -- task variables: a value for each task, inherited by what it starts.
+;;;; variables.lisp -- task variables: a value for each task, inherited by the tasks it starts.
 
 (in-package :ars-magna.rpl.tasks)
 
 (export '(*speaking-task* install-task-variable make-task-bindings task-variable task-variable-p))
 
-;;; Special variables belong to the thread, which all tasks share. A task variable is looked for
-;;; from the task that asks outwards: in its frames, of which those that bind variables have
-;;; TASK-BINDINGS as their DATA, in what it has set, in the frames of the task around it, and so on.
-;;; Nothing is left of a binding when its frame is gone.
+;;; Special variables belong to the thread, which all tasks share. A task variable is looked up
+;;; from the calling task outwards: in its frames (those that bind variables have TASK-BINDINGS as
+;;; their DATA), in what it has set, in the frames of the task around it, and so on. A binding is
+;;; gone with its frame.
 
 (define-record (task-bindings (:constructor make-task-bindings (cells)))
   "What a frame that binds task variables has as its data: CELLS, conses (name . value)."
