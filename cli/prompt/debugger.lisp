@@ -194,7 +194,7 @@ run, or else all; NIL if its user has left it."
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
 (defmethod serve-while-waiting ((prompts prompts))
   "If this thread has the prompt, and carries out a line, read lines for breaks in other threads,
-until that line continues."
+until those continue."
   (let ((session *session*))
     (when (and session (eq (session-thread session) (current-thread)) (not *showing-p*))
       (loop for breakage = (first (session-breaks session))

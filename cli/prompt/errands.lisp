@@ -93,8 +93,8 @@ if it does not within the limit, when only the waiting lets time pass."
   (remove-if #'errand-over-p (session-errands session)))
 
 (defun await-errands (session &optional (errands (session-errands session)))
-  "Wait until ERRANDS of SESSION, by default all, are done, or its run is paused with nobody to let
-it go on."
+  "Wait until ERRANDS of SESSION, by default all, are done, or its run is paused and nobody can
+resume it."
   (unwind-protect (mapc #'await-errand (reverse errands))
     (setf (session-errands session)
           (if (and *simulation* (held-up-p *simulation*))
@@ -122,17 +122,18 @@ the current simulation."
               (simulation-robots *simulation*)))))
 
 (defun settled-p ()
-  "True if no command but those of plans waits to begin, or goes on, in the current simulation."
+  "True if no command except those of plans waits to begin, or is in progress, in the current
+simulation."
   (not (some-request-p #'awaited-p)))
 
 (defun await-requests (&optional (test #'awaited-p))
-  "Let time pass until no request of which TEST is true waits or is carried out, within patience.
-True if none does."
+  "Let time pass until no request for which TEST is true waits or is in progress, within the limit
+of patience. True if there is none."
   (let ((simulation *simulation*))
     (await (lambda () (let ((*simulation* simulation)) (not (some-request-p test)))))))
 
 (defun waits-p (session)
-  "True if SESSION reads on when what was issued has completed."
+  "True if SESSION reads the next line only after the commands issued so far have completed."
   (and *simulation*
        (null (session-visit session))
        (null (simulation-over *simulation*))
@@ -170,7 +171,7 @@ True if none does."
         (t :ok)))
 
 (defun lisp-goes-on-p (session)
-  "True if time stands still, and Lisp in the line of SESSION that is under way has issued what has
+  "True if time stands still, and Lisp in the running line of SESSION has issued something that has
 not ended."
   (let ((account (session-account session)))
     (and (account-text account)
@@ -187,7 +188,8 @@ function that returns what HOW-ENDED does."
       (lambda () (how-ended errands lisp-p)))))
 
 (defun unended-p (session)
-  "True if what SESSION has issued, itself or by Lisp, has not ended, as time stands still."
+  "True if something that SESSION has issued, itself or by Lisp, has not ended because time stands
+still."
   (and *simulation*
        (or (errands-under-way session)
            (and (session-lisp-p session)

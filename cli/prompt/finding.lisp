@@ -176,8 +176,8 @@ takes."
 ;;; New variables.
 
 (defun tell-of-new-variable (name)
-  "Tell of the variable NAME, which something typed has set and nobody has defined, if it may be a
-slip or is called as defined ones are."
+  "Warn of the variable NAME, which typed Lisp has set and nobody has defined, if its name is near
+that of a defined one, or the same."
   (let ((meant (variable-slip name)))
     (when (or meant (let ((place (position #\* (symbol-name name) :from-end t)))
                       (and place (plusp place) (= place (1- (length (symbol-name name)))))))

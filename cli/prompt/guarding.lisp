@@ -41,9 +41,9 @@ NIL if it carries out none."
     (and name (values robot name))))
 
 (defun what-goes-on (session)
-  "Return sentences that say what goes on in the simulator, though the line of SESSION does not,
-and how it can be ended; if nothing does, how the prompt is left. In a trial, nothing goes on.
-Where a break is answered, return how."
+  "Return sentences that say what continues in the simulator after the line of SESSION has ended,
+and how to end it; or, if nothing does, how to leave the prompt. In a trial, nothing continues.
+During the answer to a break, return how to answer."
   (multiple-value-bind (robot command) (command-going-on session)
     (let ((plans-p (notevery #'plan-ending-p (plans))))
       (cond ((ways-awaited session)
@@ -56,15 +56,15 @@ Where a break is answered, return how."
             (t " QUIT leaves.")))))
 
 (defun whose-code (&optional (calls *user-calls*))
-  "Return in words whose code a thread is in, of which CALLS tells, or which form of a file it
-loads; NIL if neither, or nobody watches."
+  "Return in words whose code a thread runs, by CALLS, or which form of a file it loads; NIL if
+neither, or if that is not recorded."
   (let ((origin (and calls (user-calls-origin calls)))
         (place (and calls (user-calls-place calls))))
     (cond (origin (text-of-origin origin))
           (place (funcall place)))))
 
 (defun say-where (session text)
-  "Say TEXT on the error output, with the place of the line of SESSION that is under way."
+  "Write TEXT to the error output, with the place of the running line of SESSION."
   (let* ((account (session-account session)) (line (line-done-now account)))
     (say-on-error-output (format nil "~@[~A, ~]~@[line ~D: ~]~A"
                                  (and line (account-file account)) line text))))
@@ -75,7 +75,7 @@ loads; NIL if neither, or nobody watches."
           count))
 
 (defun interrupted (session whose)
-  "Tell the user of SESSION that his interrupt has ended the line, in code of WHOSE, a text or NIL.
+  "Tell the user of SESSION that an interrupt has ended the line, in code of WHOSE, a text or NIL.
 Users' code that keeps the simulator waiting is aborted, too."
   (when (session-batch-p session)
     (say-where session (format nil "stopped~@[ in ~A~]." whose))

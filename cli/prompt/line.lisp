@@ -200,5 +200,5 @@ DETAILS, strings, are paragraphs below the parameters."
 (define-line "HAND-GRASP" (session (hand hand "the hand that is to grasp")
                                    (cam camera "the camera that tracks the thing"))
     (:hand)
-    "Let the hand HAND grasp the thing that the camera CAM tracks, in the same location."
+    "Grasp with the hand HAND the thing that the camera CAM tracks, in the same location."
   (send-named session 'hand-grasp-desig hand cam (tracked cam)))

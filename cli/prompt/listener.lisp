@@ -142,24 +142,25 @@ NIL."
 ;;; Commands from others than the prompt, such as plans, end with the same messages.
 
 (defun left-to-program-p (message)
-  "True if MESSAGE tells how a command ended that a program has given, with a continuation: that is
-told, and may recover from an error."
+  "True if MESSAGE reports the end of a command that a program has issued with a continuation, which
+may recover from an error."
   (and (message-robot message)
        (message-told-p message)
        (not (line-asker-p (message-asker message)))))
 
 (defun others-p (message)
-  "True if MESSAGE tells how a command ended that a plan or program has given."
+  "True if MESSAGE reports the end of a command that a plan or program has issued."
   (let ((asker (message-asker message)))
     (not (or (null asker) (equal asker +asker+)))))
 
 (defun ink-of (kind)
-  "Return the ink of what is of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, of others' commands."
+  "Return the ink of messages of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, for others'
+commands."
   (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
 
 (defun message-words (message listener)
-  "Return what LISTENER is shown of MESSAGE: whose command it tells of, if another robot's; and
-if it is an error or warning in a script, with the place of its line."
+  "Return the text of MESSAGE for LISTENER: with the robot's name, if it is about another robot's
+command; and with the place of its line, if it is an error or warning in a script."
   (let* ((own (listener-robot-name listener)) (name (message-robot message))
          (text (format nil "~@[~(~A~): ~]~A" (and own (not (eq own name)) name)
                        (message-text message)))
@@ -185,7 +186,8 @@ if it is an error or warning in a script, with the place of its line."
         (write-fitted console "~A" text))))
 
 (defun count-error (listener message)
-  "Count the error MESSAGE in LISTENER: if it is of an earlier line, not for the line under way."
+  "Count the error MESSAGE in LISTENER: for its own line, if that is an earlier one, and not for the
+running line."
   (let ((account (listener-account listener)))
     (incf (listener-errors listener))
     (when (and account (not (eql (line-of-message account message) (line-under-way account))))
@@ -195,7 +197,7 @@ if it is an error or warning in a script, with the place of its line."
         (when waiting (setf (third waiting) nil))))))
 
 (defgeneric error-counts-p (message listener)
-  (:documentation "True if LISTENER counts the error MESSAGE, and not what has caused it."))
+  (:documentation "True if LISTENER counts the error MESSAGE itself, and not its cause."))
 
 (defun messages-for (listener messages)
   "Count the errors among MESSAGES, and return those that LISTENER is to show."
@@ -208,8 +210,7 @@ if it is an error or warning in a script, with the place of its line."
              (if (listener-quiet-p listener) (remove-if #'others-p messages) messages)))
 
 (defun texts-about (listener messages)
-  "Return what is to be said in LISTENER of MESSAGES, which have been shown there: that some come
-again and again, or are very many."
+  "Return notes for LISTENER on MESSAGES, which it has shown: that some repeat, or are very many."
   (remove nil (append (loop for message in messages
                             collect (repetition-text message (listener-told listener)))
                       (and (listener-terminal-p listener)

@@ -20,7 +20,7 @@
   (with-lock (*sessions-lock*) (copy-list *sessions*)))
 
 (defun hears-p (session simulation)
-  "True if SESSION listens to SIMULATION, or to what it was before it was rewound."
+  "True if SESSION shows messages of SIMULATION, or of the run that it was before a rewind."
   (let ((heard (session-simulation session)))
     (and heard (eq (latest heard) (latest simulation)))))
 
@@ -29,7 +29,7 @@
        (remove-if-not (lambda (session) (hears-p session simulation)) (sessions-at-work))))
 
 (defun session-with-queue (queue)
-  "Return a session at work that listens to a run whose messages come in QUEUE, or NIL."
+  "Return a running session that shows the messages of a run, which come in QUEUE, or NIL."
   (find-if (lambda (session)
              (let ((heard (session-simulation session)))
                (and heard (eq queue (simulation-messages heard)))))
@@ -45,8 +45,8 @@ message. Prints as TEXT. SESSION shows the message, whatever run it is in."
   (write-string (verdict-text verdict) stream))
 
 (defun hearers (message session)
-  "Return the sessions that are to show MESSAGE, which SESSION has taken: the one that it is for,
-and those that listen to its run; or if there is none, SESSION."
+  "Return the sessions that show MESSAGE, which SESSION has taken: the one that it is for, and those
+in its run; or if there is none, SESSION."
   (or (union (let* ((item (first (message-items message)))
                     (meant (and (verdict-p item) (verdict-session item))))
                (and meant (member meant (sessions-at-work)) (list meant)))
@@ -76,8 +76,8 @@ and those that listen to its run; or if there is none, SESSION."
 (defvar *showing-lock* (make-lock "showing messages"))
 
 (defun show-messages (session)
-  "Show all queued messages, in SESSION or in those that listen to the runs that they are of, and
-the prompts again. One whose user is not there any more leaves them to others."
+  "Show all queued messages, in SESSION or in the sessions of their runs, and the prompts again. A
+session without a user leaves them to others."
   (unless *showing-p*
     (with-lock (*showing-lock*)
       (unless (session-abandoned-p session)
@@ -90,7 +90,7 @@ the prompts again. One whose user is not there any more leaves them to others."
   "The messages about the definitions of the program, that the prompt has shown before any run.")
 
 (defun tell-first-messages (session)
-  "Show in SESSION, of a new window, what was said of the definitions before."
+  "Show in SESSION, of a new window, the earlier messages about definitions."
   (when *first-messages* (tell-messages session *first-messages*)))
 
 ;;; Listening to a simulation.
@@ -114,8 +114,8 @@ the prompts again. One whose user is not there any more leaves them to others."
     (show-messages session)))
 
 (defun observer-for (session)
-  "Return an observer that shows what SESSION has not shown. It takes itself back when SESSION has
-another, so that nobody waits for the tick to end, which it may never."
+  "Return an observer that shows the pending messages of SESSION. It removes itself when SESSION has
+another, so that no thread waits for the end of the tick, which may never come."
   (let ((observer nil))
     (setf observer (lambda (simulation)
                      (if (eq observer (session-observer session))
@@ -123,7 +123,7 @@ another, so that nobody waits for the tick to end, which it may never."
                          (remove-observer observer simulation))))))
 
 (defun set-listener (session simulation)
-  "Let SESSION, or nobody if that is NIL, be told when SIMULATION has something to say."
+  "Notify SESSION, or no session if that is NIL, when SIMULATION has messages."
   (setf (message-queue-listener (simulation-messages simulation))
         (and session (lambda () (hear session simulation)))))
 
@@ -160,12 +160,12 @@ another, so that nobody waits for the tick to end, which it may never."
 ;;; A window follows its user into other runs.
 
 (define-event *whereabouts-hooks*
-  "Functions, or their names, of a session, the run that it was in when it read a line last, and the
-one that it is in now, perhaps the same; NIL for none. They are called in its thread before it reads
-a line. A headless run stands still then.")
+  "Functions, or their names, of a session, the run that it was in when it last read a line, and its
+present run, perhaps the same; NIL for none. They are called in its thread before it reads a line,
+while a headless run stands still.")
 
 (defun tell-whereabouts (session)
-  "Let those who want to know hear in which run SESSION is."
+  "Tell the functions that follow sessions in which run SESSION is."
   (let ((old (shiftf (session-whereabouts session) *simulation*)))
     (tell-listeners *whereabouts-hooks* session old *simulation*)))
 
@@ -220,7 +220,7 @@ there, in a list.")
     (and simulation (live-p simulation) (not (simulation-over simulation)) simulation)))
 
 (defun run-after (simulation robot-name)
-  "Return the live run in which a prompt goes on that has commanded the robot ROBOT-NAME of
+  "Return the live run in which a prompt continues that has commanded the robot ROBOT-NAME of
 SIMULATION, which is over, and the name of the robot that it commands there; NIL if there is none."
   (let ((own (run-of-robot robot-name))
         (next (gethash simulation *replacements*)))
@@ -244,8 +244,8 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
     (say-in other text)))
 
 (defun tell-of-run (session simulation robot-name)
-  "Let SESSION, which somebody else leads to the robot ROBOT-NAME of SIMULATION, say so, and listen
-to that. If it listens there already, it knows. Any thread may ask."
+  "Make SESSION, which another session leads to the robot ROBOT-NAME of SIMULATION, report that and
+show messages from there. Do nothing if it does so already. Any thread may ask."
   (unless (eq simulation (session-simulation session))
     (say-in session (format nil "From here on: ~A in ~A.~%" robot-name
                             (words-for-run simulation)))
@@ -255,12 +255,12 @@ to that. If it listens there already, it knows. Any thread may ask."
 ;;; Going there.
 
 (defun go-to-run (simulation)
-  "Let SIMULATION be the current one in this thread."
+  "Make SIMULATION the current one in this thread."
   (setf *simulation* simulation
         *world* (simulation-world simulation)))
 
 (defun move-on (session)
-  "If the run of SESSION, in whose thread this is, is over, go on in another if there is one."
+  "If the run of SESSION, in whose thread this is, is over, continue in another if there is one."
   (when (and *simulation* (simulation-over *simulation*))
     (multiple-value-bind (simulation name) (run-after *simulation* *prompt-robot*)
       (when simulation

@@ -14,8 +14,8 @@
   (or (existing-file name) (reject-line "There is no file ~A." name)))
 
 (defun foreign-text (path)
-  "Return in a sentence what is in the file PATH, and what reads it, if that is neither Lisp nor
-lines; or NIL."
+  "Return a sentence that says what is in the file PATH, and what reads it, if that is neither Lisp
+nor lines; or NIL."
   (let ((advice (file-advice path :lisp)))
     (and advice (format nil "~A: ~A." (native-name path) advice))))
 
@@ -65,7 +65,7 @@ lines; or NIL."
 ;;;; Loading
 
 (defun call-watched-at (place function)
-  "Call FUNCTION, while PLACE, a function, says to whoever watches where in a file that is."
+  "Call FUNCTION, while PLACE, a function, returns the place in the file that is being loaded."
   (let ((calls *user-calls*))
     (if calls
         (let ((outer (shiftf (user-calls-place calls) place)))
@@ -86,8 +86,8 @@ condition, or of NIL."
     (call-watched-at (lambda () (format nil "~A, line ~D" file (funcall line nil))) function)))
 
 (defun line-of-stumble (condition stream start)
-  "Return on which line the reader gave up in STREAM, for which CONDITION came up; that of START,
-where the form begins, if it does not end."
+  "Return the line on which the reader gave up in STREAM, with CONDITION; or the line of START,
+where the form begins, if the form does not end."
   (line-at (grown-text stream)
            (if (typep condition 'end-of-file)
                start

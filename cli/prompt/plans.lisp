@@ -28,7 +28,8 @@ continuing and what could be done, or NIL."
   (over (make-semaphore "plan over") :read-only t)
   (told (make-semaphore "plan's end told") :read-only t))
 
-(defvar *plan-errands* '() "The plans that the prompt has started and not yet told the end of.")
+(defvar *plan-errands* '() "The plans that the prompt has started and whose ends it has not reported
+yet.")
 (defvar *plan-errands-lock* (make-lock "plans of prompts"))
 
 (defun plan-over-p (errand)
@@ -41,7 +42,7 @@ continuing and what could be done, or NIL."
 ;;; A plan may end before BEGIN-PLAN has returned its task.
 
 (defun note-plan-end (task)
-  "Let who waits for TASK, a plan, know that it is over. True if the prompt has started it."
+  "Notify the waiting sessions that TASK, a plan, is over. True if the prompt has started it."
   (flet ((started-p (errand)
            (if (plan-errand-task errand)
                (eq task (plan-errand-task errand))
@@ -81,7 +82,7 @@ continuing and what could be done, or NIL."
                 (plan-errand-session errand)))
 
 (defmacro with-messages-to ((errand) &body body)
-  "Run BODY, whose messages are of the simulation of ERRAND and what its line has asked for."
+  "Run BODY, whose messages belong to the simulation of ERRAND and to its line."
   `(let ((*message-queue* (simulation-messages (plan-errand-simulation ,errand)))
          (*told-of* (plan-errand-asker ,errand)))
      ,@body))
@@ -102,7 +103,7 @@ continuing and what could be done, or NIL."
                          (some #'errand-verdict-p (errands-under-way session))))))))
 
 (defun note-failure (errand failure)
-  "Let PLANS tell of FAILURE, of the plan of ERRAND, wherever that is told."
+  "Make PLANS report FAILURE, of the plan of ERRAND, in each session that shows it."
   (dolist (session (adjoin (plan-errand-session errand)
                            (sessions-hearing (plan-errand-simulation errand))))
     (setf (session-failure session) (list failure (plan-errand-plan errand)))))
@@ -140,7 +141,7 @@ continuing and what could be done, or NIL."
 
 (defun stuck-texts (runner task)
   "Return in words what TASK of RUNNER waits for, and what could be done, if no plan of RUNNER can
-ever go on; else NIL. To be called while no plan reacts."
+ever continue; else NIL. Call it while no plan reacts."
   (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
     (let ((tasks (waiting-parts task)))
       (list (user-text (lambda (tasks)
@@ -155,8 +156,8 @@ ever go on; else NIL. To be called while no plan reacts."
 ;;; Live.
 
 (defun tell-if-stuck (errand runner)
-  "Find out whether the plan of ERRAND is stuck; tell it, unless that has been told last. Return the
-answer to the last such question."
+  "Find out whether the plan of ERRAND is stuck; report it, unless it was reported last. Return the
+answer to the last check."
   (let ((stuck (plan-errand-stuck errand)))
     (unless (or (null stuck) (equal stuck (plan-errand-told-stuck errand)))
       (setf (plan-errand-told-stuck errand) stuck)
@@ -212,7 +213,7 @@ answer to the last such question."
 ;;; A run that was rewound has other running plans.
 
 (defun take-up-plan (session task)
-  "Let SESSION wait for TASK, a plan under way, as if its PLAN had just started that."
+  "Let SESSION wait for TASK, a running plan, as if its PLAN had just started that."
   (let ((errand (make-plan-errand (task-name task) session *simulation*)))
     (setf (plan-errand-task errand) task)
     (with-lock (*plan-errands-lock*) (push errand *plan-errands*))
@@ -220,7 +221,7 @@ answer to the last such question."
     (when (live-p *simulation*) (start-watching-plan errand))))
 
 (defun take-up-plans (session)
-  "Let SESSION, whose plans are of a run that was rewound, wait for those that go on in the place of
+  "Let SESSION, whose plans belong to a run that was rewound, wait for those that have replaced
 them."
   (flet ((let-go-p (errand) (and (plan-errand-p errand) (plan-errand-let-go-p errand))))
     (mapc #'close-errand (remove-if-not #'let-go-p (session-errands session)))

@@ -47,7 +47,7 @@ outline, and the condition that says so."
     (line-too-long (condition) (values (line-outline condition) condition))))
 
 (defun find-place (session)
-  "Let SESSION command the robot that it is for, in a run that goes on, and listen to that."
+  "Make SESSION command its robot, in a run that continues, and show messages of that run."
   (unless (away-p session)
     (when (session-place session) (funcall (session-place session)))
     (move-on session))
@@ -55,7 +55,7 @@ outline, and the condition that says so."
   (follow-simulation session))
 
 (defun next-line (session)
-  "Read a line of SESSION and do what it says; at the end of input, let the session be over."
+  "Read a line of SESSION and run it; at the end of input, end the session."
   (tell-whereabouts session)
   (find-place session)
   (when (session-account session) (account-for-last session))
@@ -69,8 +69,7 @@ outline, and the condition that says so."
                    (not (session-terminal-p session)))))))
 
 (defun next-line-inside (session)
-  "Do what NEXT-LINE does, where the line under way is still another: nothing is asked for or told
-of on its behalf."
+  "Do as NEXT-LINE does, while another line still runs, which this does not affect."
   (let ((*asker* nil) (*told-of* nil)) (next-line session)))
 
 (defun stopped-p (session)
@@ -81,15 +80,15 @@ of on its behalf."
     (plusp (session-errors session))))
 
 (defun account-for-last (session)
-  "Wait until all is done that the last line of SESSION has asked for, and report that it is; or
-that it waits, since time stands still."
+  "Wait until everything requested by the last line of SESSION is done, and report that; or that it
+waits, since time stands still."
   (catch-up session)
   (show-messages session)
   (note-line-ended (session-account session) (session-errors session)
                    (end-of-errands session)))
 
 (defun run-lines (session)
-  "Do what the files and lines of SESSION say until it is over, or goes on with another robot."
+  "Run the files and lines of SESSION until it is over, or continues with another robot."
   (loop while (reader-files (session-reader session))
         do (let ((file (pop (reader-files (session-reader session)))))
              (call-guarded session (lambda () (load-lisp (file-called file))))
@@ -102,7 +101,8 @@ that it waits, since time stands still."
     (tell-of-unended session)))
 
 (defun tell-of-unended (session)
-  "Say so if what SESSION, in which nobody sits, has asked for has not ended, as time stands still."
+  "Report if something that SESSION, without a terminal or window, has requested has not ended
+because time stands still."
   (when (and (unended-p session) (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
     (complain session (format nil "Time stands still, so not all that was asked for has ended. ~
                                    RESUME lets it go on."))
@@ -120,7 +120,7 @@ that it waits, since time stands still."
     (funcall function)))
 
 (defun run-session (session)
-  "Read lines and do what they say until QUIT or the end of input. Return SESSION."
+  "Read and run lines until QUIT or the end of input. Return SESSION."
   (flet ((run ()
            (unwind-protect (call-with-syntax 'double-float (lambda () (run-lines session))
                                              (or (reader-package (session-reader session))
@@ -134,8 +134,8 @@ that it waits, since time stands still."
 ;; A stream of WITH-OUTPUT-TO-STRING lies on this thread's stack: written to by the simulator's
 ;; thread after its extent, it would spoil whatever is there then.
 (defun let-go-of-streams (session output)
-  "Let nothing be written for SESSION, which is over, to OUTPUT, which its user may close now. What
-is yet to be said is left to others."
+  "Write nothing more for SESSION, which is over, to OUTPUT, which its user may close now. Other
+sessions show its pending messages."
   (with-lock (*showing-lock*) (setf (session-abandoned-p session) t))
   (unless (eq output (session-console session)) (let-go (session-console session))))
 
@@ -157,8 +157,8 @@ unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual
 ;;; Each has a thread, a robot and a current simulation of its own.
 
 (defun call-apart (simulation robot-name function)
-  "Call FUNCTION, in whose thread a prompt commands the robot ROBOT-NAME of SIMULATION, whatever
-others do."
+  "Call FUNCTION, in whose thread a prompt commands the robot ROBOT-NAME of SIMULATION,
+independently of other prompts."
   (let ((*session* nil)
         (*prompt-robot* robot-name)
         (*simulation* simulation)
@@ -170,8 +170,8 @@ others do."
       (user-interrupt () nil))))
 
 (defun run-session-apart (session simulation robot-name)
-  "Read lines of SESSION and do what they say to the robot ROBOT-NAME of SIMULATION, in this thread,
-beside other sessions, until QUIT or the end of its input. Return SESSION."
+  "Read lines of SESSION and run them for the robot ROBOT-NAME of SIMULATION, in this thread, beside
+other sessions, until QUIT or the end of its input. Return SESSION."
   (call-apart simulation robot-name
               (lambda ()
                 (call-typing (lambda () (run-session session)) (session-input session))))
@@ -180,43 +180,43 @@ beside other sessions, until QUIT or the end of its input. Return SESSION."
 ;;; What other users than those who type do to it.
 
 (defun heed-in-session ()
-  "Let the session of this thread end the line that is under way, if there is one. What has broken
-in one whose user is lost is not ended: others are asked, as soon as the session is over."
+  "End the running line of this thread's session, if there is one. A break in a session whose user
+is lost is not ended: others are asked, as soon as the session is over."
   (when (and *session* (not (and *asking-p* (session-abandoned-p *session*))))
     (heed-interrupt)))
 
 (defun interrupt-session (session)
-  "Do what control C does in SESSION, from another thread: clear the line that is typed, or end the
-one that is under way."
+  "Act as Control-C in SESSION, from another thread: clear the line being typed, or end the running
+one."
   (cond ((being-typed-p (session-input session)) (press-key (session-input session) :control-c))
         ((session-thread session)
          (interrupt-thread (session-thread session) #'heed-in-session)))
   (values))
 
 (defun abandon-session (session)
-  "Note that SESSION is about to be over though its user has not left it, as when his window is
-lost: others are asked what he cannot answer any more, and told what its run says. Return nothing."
+  "Note that SESSION ends because its user is lost, as when a window is lost, and not by QUIT:
+others get its questions and its run's messages. Return nothing."
   (setf (session-abandoned-p session) t)
   (stop-listening session)
   (values))
 
 (defun asked-of-others-p (session)
-  "True if what has broken in the thread of SESSION, which is lost, others can answer."
+  "True if others can answer a break in the thread of SESSION, which is lost."
   (and (break-state-own (session-break-state session)) (heirs-of session) t))
 
 (defun end-session (session)
-  "Let SESSION be over, from another thread. A line that is under way is interrupted; one that is
-being typed, or has been typed ahead, is not carried out."
+  "End SESSION, from another thread. A running line is interrupted; a line being typed, or typed
+ahead, is not run."
   (setf (session-over-p session) t)
   (interrupt-session session)
   (end-octets (typed-octets (session-input session))))
 
 (defun enter-line (session text)
-  "Let TEXT be a line that was entered in SESSION; what is being typed there stays."
+  "Enter TEXT as a line of SESSION; the line being typed stays."
   (press-key (session-input session) (list :entry text)))
 
 (defun at-work-on (session)
-  "True if a line is under way in SESSION: none is being typed."
+  "True if a line runs in SESSION: none is being typed."
   (and (session-thread session)
        (not (session-over-p session))
        (not (being-typed-p (session-input session)))))

@@ -92,8 +92,8 @@ to the designators, or the plan; or, if there is not enough, a fair share."
         (t (share-with-plan needs height))))
 
 (defun share-with-plan (needs height)
-  "Return shares of HEIGHT, which is not enough for NEEDS. The plan, if it is among them, gets up to
-half if it needs that, since a tree of few lines is useless; the others get fair shares."
+  "Return shares of HEIGHT, which is not enough for NEEDS. The plan, if it is among them, gets at
+least half if it needs that, since a tree of few lines is useless; the others get fair shares."
   (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
     (if (and plan others)
         (let ((share (min (second plan)
