@@ -22,7 +22,7 @@ written with their packages. Manual B.")
                 #:task-runner #:failure-text #:*plan-end-hooks*)
   (:import-from :ars-magna.faces #:editor-server)
   (:import-from :ars-magna.rpl-pictures
-                #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-page #:make-page
+                #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-page #:make-timeline-page
                 #:scale-for #:tick-at)
   (:import-from :ars-magna.cli
                 #:fundamental-character-output-stream

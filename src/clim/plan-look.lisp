@@ -75,7 +75,7 @@ reactions. Return its value, or :BUSY."
                     (if (> count +longest-trace+)
                         :too-long
                         (let ((bars (bars (funcall entries) (plan-runner-tick runner))))
-                          (and bars (make-page bars +most-rows+))))))
+                          (and bars (make-timeline-page bars +most-rows+))))))
             t)))))
 
 (defun see-tree (look interface)
