@@ -1,16 +1,13 @@
-;;;; sources.lisp -- where in a file a definition stands, for its errors and for reading it again.
+;;;; sources.lisp -- where in a file a definition is, for its errors and for reading it again.
 
 (in-package :ars-magna.definitions)
 
 (export '(source-here source-file count-in-file part-in-file-p skip-comment line-of-clause
           form-digest file-digest same-words-p))
 
-;;; A source is a list (file digest): the file that a definition was read from, and a number for
-;;; what was in it then. NIL stands for a definition that was typed. Definitions carry their
-;;; source through compiled files, so it is a plain list.
-;;;
-;;; A file is read here without regard to its packages: words are compared as words, and nothing
-;;; is interned in any package that a user has.
+;;; A source is a list (file digest): the file that a definition was read from, and a number for its
+;;; contents then. NIL stands for a typed definition. Definitions keep their source in compiled
+;;; files, so it is a plain list.
 
 (defun source-here ()
   "Return the source of the form that is being compiled or loaded, or NIL."
@@ -21,14 +18,14 @@
       (ignore-errors (list (native-name (probe-file file)) (file-digest file))))))
 
 (defun source-file (source)
-  "Return what the system calls the file of SOURCE, a string, or NIL."
+  "Return the native name of the file of SOURCE, a string, or NIL."
   (first source))
 
-;;; A map has thousands of clauses, and each may have to be found: what was found last is kept.
+;;; A map has thousands of clauses, each of which may be looked up, so the last result is cached.
 
 (defun call-recalling (function cell &rest keys)
-  "Do what RECALLING does. CELL is a list of a list (value key...), of the last call. That is
-replaced, never altered: any thread may ask."
+  "Do what RECALLING does. CELL is a list of a list (value key...), of the last call. It is
+replaced, never modified: any thread may read it."
   (destructuring-bind (&optional value &rest last-keys) (first cell)
     (if (and last-keys
              (every (lambda (key last)
@@ -39,16 +36,16 @@ replaced, never altered: any thread may ask."
         (first (setf (first cell) (cons (funcall function) keys))))))
 
 (defmacro recalling ((&rest keys) &body body)
-  "Return what BODY does or, if the strings and objects KEYS are as in the last call, did then."
+  "Return the value of BODY, cached while the strings and objects KEYS are those of the last call."
   (apply #'form-calling 'call-recalling body '(load-time-value (list '())) keys))
 
 ;;; Finding a form in a text.
 
 (defmacro with-words ((text) &body body)
-  "Run BODY, in which READ-WORDS of a position reads the form of the string TEXT that begins there
-and returns it and where it ends, or NIL."
+  "Run BODY, in which (READ-WORDS position) returns the form of the string TEXT that begins there
+and its end, or NIL."
   (with-gensyms (words)
-    ;; Other packages go by the nicknames that they have in the current one.
+    ;; Other packages are found by the local nicknames of the current one.
     `(let ((,words (make-package (gensym "WORDS") :use '())))
        (unwind-protect
             (flet ((read-words (position)
@@ -59,7 +56,7 @@ and returns it and where it ends, or NIL."
          (delete-package ,words)))))
 
 (defun same-words-p (a b)
-  "True if the forms A and B look the same, whatever packages their symbols are in."
+  "True if the forms A and B look the same, regardless of the packages of their symbols."
   (cond ((and (symbolp a) (symbolp b)) (string= a b))
         ((and (consp a) (consp b))
          (and (same-words-p (car a) (car b)) (same-words-p (cdr a) (cdr b))))
@@ -69,7 +66,7 @@ and returns it and where it ends, or NIL."
                (and (typep a 'structure-object) (eq (type-of a) (type-of b)))))))
 
 (defun skip-quoted (text start)
-  "Return where the string or |word| that begins in TEXT at START ends."
+  "Return the end of the string or |symbol| that begins in TEXT at START."
   (loop with quote = (char text start)
         for i from (1+ start) below (length text)
         for char = (char text i)
@@ -78,7 +75,7 @@ and returns it and where it ends, or NIL."
         finally (return (length text))))
 
 (defun skip-block-comment (text start)
-  "Return where the comment, perhaps with others in it, that begins in TEXT at START ends."
+  "Return the end of the block comment, perhaps nested, that begins in TEXT at START."
   (loop with depth = 0
         for i from start below (1- (length text))
         do (cond ((string= "#|" text :start2 i :end2 (+ i 2)) (incf depth) (incf i))
@@ -93,13 +90,13 @@ and returns it and where it ends, or NIL."
          (string= prefix text :start2 i :end2 end))))
 
 (defun skip-comment (text i)
-  "Return where the comment that begins in TEXT at I ends; NIL if none does."
+  "Return the end of the comment that begins in TEXT at I; NIL if there is none."
   (cond ((char= #\; (char text i)) (or (position #\Newline text :start i) (length text)))
         ((starts-at-p "#|" text i) (skip-block-comment text i))))
 
 (defun skip-text (text i)
-  "Return where in TEXT what begins at I and is no code, or an escaped character, ends; NIL if it is
-code."
+  "Return the end of the comment, string or escaped character that begins in TEXT at I; NIL if code
+does."
   (cond ((skip-comment text i))
         ((find (char text i) "\"|") (skip-quoted text i))
         ((starts-at-p "#\\" text i) (+ i 3))
@@ -113,7 +110,7 @@ code."
     (nreverse positions)))
 
 (defun word-at-p (text position word)
-  "True if TEXT has WORD at POSITION, perhaps behind the name of a package."
+  "True if TEXT has WORD at POSITION, perhaps after a package prefix."
   (let ((end (position-if (lambda (char) (find char '(#\Space #\Tab #\Newline #\Return)))
                           text :start position))
         (length (length (string word))))
@@ -134,26 +131,26 @@ code."
                          (list (list position end (same-words-p found form)))))))))
 
 (defun definition-positions (text form)
-  "Return a list of lists (start end same) for the forms in TEXT that have operator and name of
-FORM; SAME is true if it is FORM, word by word."
+  "Return a list (start end same) for each form in TEXT that has the operator and name of FORM; SAME
+is true if it equals FORM word by word."
   (recalling (text form) (look-for-definitions text form)))
 
 (defun position-of-definition (positions ordinal)
-  "Return the element of POSITIONS that is the same as it was, or has the number ORDINAL, or is the
-first, and its number."
+  "Return the element of POSITIONS that is unchanged, or has the number ORDINAL, or is the first,
+and its number."
   (let ((number (or (position-if #'third positions)
                     (and ordinal (< ordinal (length positions)) ordinal)
                     0)))
     (values (nth number positions) number)))
 
 (defun forms-in (text start end)
-  "Return conses (position . form) for the forms in parentheses in TEXT between START and END."
+  "Return conses (position . form) for the parenthesized forms in TEXT between START and END."
   (with-words (text)
     (loop for position in (openings text start end)
           collect (cons position (read-words position)))))
 
 (defun forms-between (text start end)
-  "Return what FORMS-IN does, which is asked for again and again."
+  "Return the value of FORMS-IN, cached for repeated calls."
   (recalling (text start end) (forms-in text start end)))
 
 (defvar *last-place* '(())
@@ -161,8 +158,8 @@ first, and its number."
 is replaced, never altered: any thread may ask.")
 
 (defun form-position (text form start end)
-  "Return where FORM, a list, stands in TEXT between START and END, or NIL. What is asked for one
-after the other mostly stands so, too: it is looked for from the one before on, then from START."
+  "Return the position of FORM, a list, in TEXT between START and END, or NIL. Forms are mostly
+looked up in order: the search begins after the last one found, then at START."
   (let ((forms (forms-between text start end)))
     (flet ((look (from)
              (let ((tail (member form from :key #'cdr :test #'same-words-p)))
@@ -172,7 +169,7 @@ after the other mostly stands so, too: it is looked for from the one before on, 
           (look forms)))))
 
 (defun word-position (text form start end)
-  "Return where the first word of FORM, or FORM itself, stands in TEXT, or NIL."
+  "Return the position of the first word of FORM, or of FORM itself, in TEXT, or NIL."
   (let ((word (if (consp form) (first form) form)))
     (and word
          (or (symbolp word) (realp word))
@@ -185,13 +182,13 @@ after the other mostly stands so, too: it is looked for from the one before on, 
   (1+ (count #\Newline text :end position)))
 
 (defun text-of-file (file)
-  "Return the text of FILE, a native name, as FILE-TEXT does, which is asked for again and again."
+  "Return the text of FILE, a native name, as FILE-TEXT does, cached for repeated calls."
   (let ((path (native-path file)))
     (recalling (file (file-write-date path)) (file-text path))))
 
 (defun line-of-clause (text form clause)
-  "Return the line in TEXT on which CLAUSE of the definition FORM begins, that of the definition if
-CLAUSE is not found in it, or NIL; and which of the definitions of that name it is."
+  "Return the line in TEXT of CLAUSE of the definition FORM, or of the definition if CLAUSE is not
+found in it, or NIL; and which of the definitions of that name it is."
   (let ((positions (and form (definition-positions text form))))
     (multiple-value-bind (place number) (position-of-definition positions nil)
       (destructuring-bind (&optional (start 0) (end (length text)) same) place
@@ -205,8 +202,7 @@ CLAUSE is not found in it, or NIL; and which of the definitions of that name it 
   (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
 (defun count-in-file (word file)
-  "Return how often WORD stands in FILE, in whatever case, also in comments; NIL if that cannot be
-read."
+  "Return how often WORD occurs in FILE, in any case, also in comments; NIL if FILE cannot be read."
   (ignore-errors
     (loop with text = (text-of-file file)
           for start = (search word text :test #'char-equal)
@@ -214,7 +210,7 @@ read."
           while start count t)))
 
 (defun part-in-file-p (file form part)
-  "True if a form in FILE, as that is now, has operator and name of FORM, and PART, a list, in it."
+  "True if FILE now has a form with operator and name of FORM that contains PART, a list."
   (ignore-errors
     (let ((text (read-file-into-string (native-path file))))
       (loop for (start end) in (definition-positions text form)
@@ -229,14 +225,14 @@ MISUSE if it is not there."
       (reject-use "~A has no (~(~A ~A~) ...) that can be read." file (first form) (second form)))
     (values (read-from-string text t nil :start (first place)))))
 
-;;; What a text or form says, as a number.
+;;; Digests of texts and forms.
 
 (defun paren-p (char)
   (find char "()"))
 
 (defun code-alone (text)
-  "Return TEXT without comments, and with one space for each run of blanks; none beside parentheses,
-at the beginning and at the end."
+  "Return TEXT without comments, with one space for each run of blanks, and none next to parentheses
+or at either end."
   (with-output-to-string (stream)
     (let ((i 0) (last #\() (blank nil))
       (loop while (< i (length text))
@@ -261,8 +257,8 @@ at the beginning and at the end."
         finally (return (length text))))
 
 (defun code-without (operator text)
-  "Return TEXT, as CODE-ALONE returns it, without the forms at its top level whose OPERATOR, a
-string, is that, perhaps behind the name of a package."
+  "Return TEXT, of CODE-ALONE, without its top-level forms with OPERATOR, a string, perhaps after a
+package prefix."
   (with-output-to-string (stream)
     (loop with i = 0
           while (< i (length text))
@@ -272,9 +268,9 @@ string, is that, perhaps behind the name of a package."
                (setf i end)))))
 
 (defun file-digest (file &optional without)
-  "Return a number for the code in FILE; comments and layout do not count, nor do forms at top level
-whose operator is WITHOUT, a string, if given."
-  ;; Any file can be read so, and what its bytes mean does not matter here.
+  "Return a digest of the code in FILE. Comments and layout do not count, nor top-level forms with
+the operator WITHOUT, a string, if given."
+  ;; Any file can be read this way. The meaning of its bytes does not matter here.
   (let ((text (read-file-into-string file :external-format :latin-1)))
     (recalling (text without)
       (let ((code (code-alone text)) (digest (make-digest)))
@@ -285,7 +281,7 @@ whose operator is WITHOUT, a string, if given."
   (loop for char across text do (digest-add digest char)))
 
 (defun form-digest (form)
-  "Return a number for FORM: for its shape, what its symbols are called, and its data."
+  "Return a digest of FORM: of its shape, the names of its symbols, and its data."
   (let ((digest (make-digest)))
     (add-form form digest (make-hash-table :test 'eq))
     (digest-value digest)))
@@ -304,8 +300,8 @@ whose operator is WITHOUT, a string, if given."
     (t (first (ensure-list (type-of atom))))))
 
 (defun add-atom (atom digest known)
-  "Add ATOM, of a form, to DIGEST. Symbols without a home, whose names macros make up, count by the
-order in which they come up; KNOWN has those that have."
+  "Add ATOM, of a form, to DIGEST. Uninterned symbols, whose names macros invent, count by their
+order of appearance; KNOWN holds those that have appeared."
   (digest-add digest (kind-of-atom atom))
   (typecase atom
     (symbol (digest-add digest (if (symbol-package atom)

@@ -1,16 +1,16 @@
-;;;; user-macros.lisp -- macros that users write: what does not fit them is told as ours.
+;;;; user-macros.lisp -- macros for users: a wrong use is reported as MALFORMED-DEFINITION.
 
 (in-package :ars-magna.definitions)
 
 (export '(define-user-macro advice-on-use strange-keyword test-advice body-advice user-macro-form
           call-blaming-form variable-after))
 
-;;; Macros made by DEFMACRO signal errors of Lisp's where they are not used as they should be, and
-;;; look for the end of a circle. DEFINE-USER-MACRO's do not: whatever is wrong with the form, it is
-;;; a MALFORMED-DEFINITION, where it stands and in forms around it too.
+;;; Macros of DEFMACRO signal Lisp's own errors when they are misused, and do not end on circular
+;;; lists. Those of DEFINE-USER-MACRO signal MALFORMED-DEFINITION for every mistake in the form, at
+;;; its position, also inside other forms.
 
 (defun reject-use-of (form expected &optional condition)
-  "Signal MALFORMED-DEFINITION about FORM, the use of a macro, perhaps because of CONDITION."
+  "Signal MALFORMED-DEFINITION about FORM, a use of a macro, perhaps because of CONDITION."
   (reject-clause (if (consp (rest form))
                      (title (first form) (second form))
                      (string-downcase (first form)))
@@ -20,8 +20,7 @@
                               (abridged (string-right-trim "." (text-of-condition condition)))))))
 
 (defun call-blaming-form (function form)
-  "Call FUNCTION, which expands FORM. Errors that are not ours are mistakes in what the author wrote
-there."
+  "Call FUNCTION, which expands FORM. Errors that are not ours are reported as mistakes in FORM."
   (handler-case
       (call-blaming function (lambda (condition)
                                (reject-use-of form "forms that Lisp can compile" condition)))
@@ -29,15 +28,15 @@ there."
       (reject-use-of form "forms that are less deep, and macros that come to an end"))))
 
 (defgeneric advice-on-use (operator form)
-  (:documentation "Return in words what else to write for FORM, a use of the macro OPERATOR that
+  (:documentation "Return in words what to write instead of FORM, a use of the macro OPERATOR that
 does not fit its lambda list, or NIL.")
   (:method (operator form)
     (declare (ignore operator form))
     nil))
 
 (defun strange-keyword (parameters arguments)
-  "Return in words the first of ARGUMENTS that stands where a keyword of PARAMETERS, of a macro's
-lambda list, should and is none of them; or NIL."
+  "Return in words the first of ARGUMENTS in the place of a keyword that is none of PARAMETERS, of a
+macro's lambda list; or NIL."
   (let* ((keys (member '&key parameters))
          (before (remove '&optional
                          (ldiff parameters
@@ -52,8 +51,8 @@ lambda list, should and is none of them; or NIL."
             return (format nil "~(~S~) has no value" key))))
 
 (defun misfit-text (parameters arguments)
-  "Return in words what it is in ARGUMENTS, forms, that does not fit PARAMETERS, of a macro's lambda
-list: a keyword, or a form where there should be a list. Return NIL if it is something else."
+  "Return in words what in ARGUMENTS, forms, does not fit PARAMETERS, of a macro's lambda list: a
+keyword, or a form in place of a list. Return NIL if it is something else."
   (when (proper-list-p arguments)
     (or (strange-keyword parameters arguments)
         (loop for parameter in parameters
@@ -65,7 +64,7 @@ list: a keyword, or a form where there should be a list. Return NIL if it is som
                                (misfit-text parameter argument)))))))
 
 (defun doubt-readtable (form)
-  "Warn if FORM has in it, as a symbol, what only Nisp's reader reads, such as !>robot.cameras."
+  "Warn if FORM contains, as a symbol, syntax of Nisp's reader, such as !>robot.cameras."
   (let ((slot (part-with (lambda (part)
                            (and part (symbolp part)
                                 (< 2 (length (symbol-name part)))
@@ -76,7 +75,8 @@ list: a keyword, or a form where there should be a list. Return NIL if it is som
                          with (in-readtable :nisp)." slot))))
 
 (defun call-fitting (form usage parse)
-  "Call what PARSE, a function, returns; that takes apart FORM, the use of a macro as USAGE shows."
+  "PARSE takes FORM, a use of a macro, apart and returns a function. Return the value of that.
+Signals MALFORMED-DEFINITION with USAGE if FORM does not fit."
   (when (or (endless-p form) (not (proper-list-p form)))
     (reject-use-of form "a form that ends, in a parenthesis"))
   (doubt-readtable form)
@@ -90,19 +90,19 @@ list: a keyword, or a form where there should be a list. Return NIL if it is som
    form))
 
 (defun expand-fitting (form environment usage parse)
-  "Return what CALL-FITTING does; in other forms or in a file that is compiled, a form that signals
-later what that signals."
+  "Do what CALL-FITTING does. Within other forms or a file that is compiled, return a form that
+signals its error later."
   (first (forms-or-rejection (lambda () (list (call-fitting form usage parse)))
                              (nested-p environment))))
 
 (defun variable-after (key lambda-list)
-  "Return the variable that comes after KEY in LAMBDA-LIST, or NIL; and LAMBDA-LIST without both."
+  "Return the variable after KEY in LAMBDA-LIST, or NIL; and LAMBDA-LIST without both."
   (let ((rest (member key lambda-list)))
     (values (second rest) (append (ldiff lambda-list rest) (cddr rest)))))
 
 (defun user-macro-form (name lambda-list usage body)
-  "Return the form that defines the macro NAME with LAMBDA-LIST and BODY. A use of it that does not
-fit, or which BODY makes nothing of, signals MALFORMED-DEFINITION; USAGE, a form, says what fits."
+  "Return the form that defines the macro NAME with LAMBDA-LIST and BODY. A use that does not fit,
+or for which BODY signals an error, signals MALFORMED-DEFINITION; USAGE, a form, shows what fits."
   (multiple-value-bind (body declarations documentation) (parse-body body :documentation t)
     (multiple-value-bind (environment rest) (variable-after '&environment lambda-list)
       (multiple-value-bind (whole parameters) (variable-after '&whole rest)
@@ -120,8 +120,8 @@ fit, or which BODY makes nothing of, signals MALFORMED-DEFINITION; USAGE, a form
                                      (lambda () ,@body))))))))))))
 
 (defmacro define-user-macro (name lambda-list &body body)
-  "Define the macro NAME, which users write, as DEFMACRO does. A use of it that does not fit
-LAMBDA-LIST, or which BODY makes nothing of, signals MALFORMED-DEFINITION."
+  "Define the macro NAME for users, like DEFMACRO. A use that does not fit LAMBDA-LIST, or for which
+BODY signals an error, signals MALFORMED-DEFINITION."
   (let ((shown (nth-value 1 (variable-after
                              '&whole (nth-value 1 (variable-after '&environment lambda-list))))))
     `(progn
@@ -129,14 +129,14 @@ LAMBDA-LIST, or which BODY makes nothing of, signals MALFORMED-DEFINITION."
        (show-lambda-list ',name ',shown)
        ',name)))
 
-;;; Forms that are tests. A function is true, whatever it would return.
+;;; Forms that are tests. A function is always true, whatever it would return.
 
 (defun body-form (forms)
   (if (= 1 (length forms)) (first forms) (cons 'progn forms)))
 
 (defun test-meant (form)
-  "Return in a list the form whose value is meant where FORM, a test, is quoted or a function; NIL
-if it is neither."
+  "Return a list of the form that is meant if FORM, a test, is quoted or a function; NIL if it is
+neither."
   (typecase form
     ((cons (eql quote) (cons (not null) null))
      (let ((data (second form)))
@@ -156,8 +156,8 @@ if it is neither."
                  (abridged form) (eq 'quote (first form)) (abridged (first meant))))))
 
 (defun body-advice (forms)
-  "Return in sentences that FORMS, a body, is nothing but a function, which is never called, and
-what to write; else NIL."
+  "Return in sentences that FORMS, a body, is only a function, which is never called, and what to
+write; else NIL."
   (let ((form (first forms)) (*print-case* :downcase) (*print-pretty* nil))
     (and (typep form '(cons symbol (cons list)))
          (null (rest forms))
