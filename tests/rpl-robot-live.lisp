@@ -135,7 +135,7 @@ tick."
                        (setf result (multiple-value-list (run-as-plan (rpl:wait-for go)))))
                      'driver::*interface* 'time:*simulation* 'base:*message-queue*)
                     "runner")))
-      (awaiting (find-if (lambda (text) (search "wait for what neither" text))
+      (awaiting (find-if (lambda (text) (search "wait for events that neither" text))
                          (mapcar #'base:message-text (base:take-messages))))
       (rpl:set-value go :ahead)
       (base:join-thread thread)

@@ -52,7 +52,7 @@ a fluent: the stays under way."
       "Return how often the plan went there again.")
 
 (defmethod write-failure ((failure location-lost) stream)
-  (format stream "Not to be kept at ~A: it was gone to anew ~D time~:P"
+  (format stream "The place ~A was lost too often; the plan went there again ~D time~:P"
           (lost-place failure) (lost-attempts failure)))
 
 (defun check-attempts (attempts)

@@ -6,7 +6,7 @@
   (and (member status '(:succeeded :failed :evaporated)) t))
 
 (defun pass-on-outcome (target task frame)
-  "Let TASK at FRAME go on as TARGET ended. Return what a step returns."
+  "Continue TASK at FRAME with the outcome of TARGET. Return what a step returns."
   (let ((result (task-result target)))
     (cond ((eq :failed (task-state target)) (unwind task (frame-up frame) result))
           (t (values (frame-up frame)

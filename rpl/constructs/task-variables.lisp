@@ -11,12 +11,12 @@
 
 (addition define-task-variable)
 (define-user-macro define-task-variable (name value &optional documentation)
-  "Define NAME as a variable with a value for each task: what a task sets is seen by it and by what
-it starts, and by nobody else; WITH-TASK-VARIABLES binds it. Where no task says otherwise its value
-is VALUE, or what was set outside of plans. Special variables belong to the whole thread instead,
-and LET cannot bind them around what waits. Functions that plans call see it too, if they are
-compiled after it. Defining it anew sets that value, as DEFPARAMETER does (CRAM's; what becomes of
-it when a task sets it is ours)."
+  "Define NAME as a variable with a value for each task. What a task sets is visible in it and in
+the tasks that it starts, and nowhere else. WITH-TASK-VARIABLES binds it. In other tasks its value
+is VALUE, or what was set outside of plans. (Special variables belong to the whole thread, and LET
+cannot bind them around forms that wait.) Functions that plans call see it too, if they are compiled
+after it. Defining it again sets its value, as DEFPARAMETER does (CRAM's; what setting in a task
+does is ours)."
   (check-task-variable name)
   (unless (typep documentation '(or null string))
     (reject-clause (title "define-task-variable" name) documentation

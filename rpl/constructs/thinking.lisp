@@ -17,7 +17,7 @@
   (value-lambda `(price-of ',operator ,span (or ,unit :ticks)) scope))
 
 (defun think-for (task ticks alone)
-  "Let TASK think for TICKS; if ALONE is true, nobody else goes on meanwhile."
+  "Make TASK think for TICKS; if ALONE is true, no other task runs meanwhile."
   (when alone (stand-still (task-runner task) ticks))
   (park task (start-timer task ticks))
   +parked+)

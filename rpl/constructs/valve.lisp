@@ -145,7 +145,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
     (block-task (claim-task claim) t)))
 
 (defun take (valve claim)
-  "Let CLAIM have VALVE. Return those who lose it by that, the outermost first, each as a list: of
+  "Grant VALVE to CLAIM. Return the claims that lose it, the outermost first, each as a list of
 VALVE and the rival."
   (let* ((holders (holders valve))
          (rivals (rivals valve (claim-task claim)))

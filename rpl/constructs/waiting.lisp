@@ -62,7 +62,7 @@ number up to 1e15. If it is 0 or less, do not wait."
 ;;;; Waiting for a fluent
 
 (defun wake-waiter (watcher value trouble)
-  "Let the task that WATCHER is for go on with VALUE, or fail of TROUBLE: it heard what it wanted."
+  "Continue the task of WATCHER with VALUE, or fail with TROUBLE: its fluent has become true."
   (let ((task (watcher-client watcher)))
     (unwatch watcher)
     (when (eq watcher (task-awaiting task))

@@ -41,8 +41,8 @@
   (successor nil (or null derived) :writable))
 
 (define-record (watcher (:constructor make-watcher (fluent wake client)))
-  "Somebody who wants to know when FLUENT changes to something true: WAKE is called with the
-watcher, the value, and NIL or the error met in computing it."
+  "A watcher of FLUENT. When that changes to a true value, WAKE is called with the watcher, the
+value, and NIL or the error met in computing it."
   (fluent nil fluent "the fluent that the watcher watches" :export)
   (wake #'list function
         "the function that is called when the fluent is heard to be true: see WATCHER" :export)

@@ -74,8 +74,9 @@
         (when (fluent-p source) (settle source))))))
 
 (defun watch (watcher)
-  "Let WATCHER hear of its fluent from now on, after those who watch it already. Another thread may
-have set the fluent just before; so who waits for it to be true looks at it after this once more."
+  "Register WATCHER with its fluent, after the watchers already there. Another thread may have set
+the fluent just before; so a caller that waits for it to be true must check it once more
+afterwards."
   (let ((fluent (watcher-fluent watcher)))
     (unless (eq *runner* (fluent-home fluent))
       (settle fluent)
@@ -84,7 +85,7 @@ have set the fluent just before; so who waits for it to be true looks at it afte
     (join-watchers watcher)))
 
 (defun unwatch (watcher)
-  "Let WATCHER hear nothing more."
+  "Remove WATCHER from its fluent."
   (leave-watchers watcher)
   (release (watcher-fluent watcher)))
 
@@ -125,7 +126,7 @@ a vector of fluents."
     (and (or (fluent-looked fluent) (fluent-first-watcher fluent)) t)))
 
 (defun forget-looks (fluent)
-  "Let nobody have read FLUENT so far."
+  "Forget that FLUENT was read."
   (let ((fluent (here fluent)))
     (when (eq :once (fluent-looked fluent)) (setf (fluent-looked fluent) nil))))
 
@@ -315,8 +316,8 @@ each other's values.")
                               :format-arguments (list (fluent-text fluent))))))))
 
 (defun repair-fluents (home watchers unwanted-p)
-  "Let WATCHERS, and those in the lists of their fluents for which UNWANTED-P is false, hear what
-they are to in HOME."
+  "Register WATCHERS again, and those in the lists of their fluents for which UNWANTED-P is false,
+in HOME."
   (let* ((fluents (reachable-fluents watchers))
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))

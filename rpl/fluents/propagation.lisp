@@ -24,7 +24,7 @@ views that are true for the instant at which that change happened.")
 ;; Costs 1 ns without a trace.
 (declaim (inline note-change))
 (defun note-change (kind fluent value)
-  "Let the plan runner at work, if it keeps a trace, know that FLUENT has VALUE now."
+  "Record in the trace of the plan runner at work, if it keeps one, that FLUENT has VALUE now."
   (let* ((home *runner*)
          (function (and home (home-on-change home))))
     (when function (funcall function kind fluent value))))
@@ -78,10 +78,10 @@ views that are true for the instant at which that change happened.")
 
 (declaim (inline renew))
 (defun renew (derived how kind)
-  "Compute DERIVED anew if HOW is T, as it is if one of its sources has changed, and not if it is
-:PULSED; and tell its watchers of what is being spread. KIND of that is :PULSE, :BACK after a pulse,
-or else :CHANGE. Return how what depends on DERIVED is to be renewed, NIL if not at all. A view only
-says what has happened."
+  "Recompute DERIVED if HOW is T, because one of its sources has changed; not if it is :PULSED.
+Notify its watchers of the change being spread. Its KIND is :PULSE, :BACK after a pulse, or else
+:CHANGE. Return how the dependents of DERIVED are to be renewed, NIL if not at all. A view only
+reports what has happened."
   (let* ((true-p (fluent-now derived))
          (changed (and (eq t how) (recompute derived))))
     (cond (changed
@@ -137,7 +137,7 @@ says what has happened."
                    (unless how (return)))))))))
 
 (defun spread (fluent kind)
-  "Let everybody concerned know that the base fluent FLUENT has changed, or was pulsed: see RENEW."
+  "Notify all watchers and dependents of the base fluent FLUENT of its change or pulse: see RENEW."
   (announce fluent)
   (when (fluent-first-link fluent)
     (spread-to-dependents fluent kind)))
@@ -268,7 +268,7 @@ it takes effect when the running plans pause (manual C)."
 
 (defun apply-settings (settings)
   "Apply SETTINGS at one instant: first each (:set fluent value), then each (:pulse fluent [value]),
-all together. So whoever sees the pulses sees the values that came with them (reading 177)."
+all together. So a task woken by the pulses sees the values that came with them (reading 177)."
   (let ((changed '()) (pulsed '()) (values '()))
     (loop for (kind given . more) in settings
           for fluent = (progn (check-settable kind given) (here given))

@@ -160,7 +160,7 @@ the place of that."
     (loop for twin being the hash-values of (realm-twins realm) collect twin)))
 
 (defun note-fork (fork realm)
-  "Let REALM know that it has FORK, with a number that it has given before."
+  "Record FORK in REALM, with a number that REALM has given before."
   (with-lock ((realm-lock realm))
     (setf (realm-forks realm)
           (merge 'list (list (cons (realm-number fork) (make-weak fork))) (realm-forks realm)
@@ -179,8 +179,8 @@ the place of that."
       (note-fork realm above))))
 
 (defun leave-realm (realm successor)
-  "Let nothing in SUCCESSOR, a fork of a fork of REALM that goes on in the place of that, lead back
-to what REALM has, nor the other forks of REALM, unless that is no fork itself."
+  "Remove from SUCCESSOR, a fork of a fork of REALM that replaces that, all references to entities
+of REALM and of its other forks, unless REALM is no fork itself."
   (lift-realm successor)
   (when (realm-parent realm)
     (loop for (nil . weak) in (shiftf (realm-forks realm) '())

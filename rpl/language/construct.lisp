@@ -73,18 +73,19 @@
             (row 'child-ended 'child-ended '(child how result) (clause :child-ended clauses)))))
 
 (defmacro define-expression (name documentation &body clauses)
-  "Define NAME as a kind of node, by a structure. DOCUMENTATION says what it does. CLAUSES:
+  "Define NAME as a kind of node, a structure. DOCUMENTATION says what it does. CLAUSES:
 (:parts (name type)...): its slots, besides those of all nodes; all must be given to MAKE-NAME.
-(:steps (state form...)...): what a step does in each state. The first is where a frame begins; the
-others are called after what goes on while a frame is in them, such as an inner expression, and
-their forms run when that is over. They see NODE, TASK, FRAME, the VALUE of what has ended, the
-parts by name, the frame's ENVIRONMENT and its MEMORY, a place for what it has to remember, at first
-NIL. (next state) goes over to that for the next step; (at-once state) takes that step, too. They
-return the frame to go on with and its value: (values (frame-up frame) value) ends the expression,
-(enter part environment frame) runs a part; or +PARKED+ if TASK now waits.
-(:step form...): the same of an expression without states, which may count in (frame-counter frame).
+(:steps (state form...)...): what a step does in each state. A frame begins in the first. The forms
+of the others run when what the frame has started in that state, such as an inner expression, has
+ended. Visible are NODE, TASK, FRAME, the VALUE of what has ended, the parts by name, the frame's
+ENVIRONMENT, and MEMORY, a place for its own data, at first NIL. (next state) is the state of the
+next step; (at-once state) takes that step, too. The forms return the next frame and its value:
+(values (frame-up frame) value) ends the expression, (enter part environment frame) runs a part; or
++PARKED+ if TASK now waits.
+(:step form...): the same for an expression without states, which may use (frame-counter frame).
 (:unwind form...): what is done when SIGNAL passes, see NODE; (in-state-p state) is true if the
-frame is in that. (:child-ended form...): what is done when CHILD has ended as HOW with RESULT.
+frame is in that state. (:child-ended form...): what is done when CHILD has ended as HOW with
+RESULT.
 (:hot): a profile has shown that this one must be fast."
   (check-clauses "define-expression" name clauses
                  '(:parts :steps :step :unwind :child-ended :hot))
@@ -208,23 +209,22 @@ the first one, as arguments come before bodies."
          ,(construct-code-form node clauses)))))
 
 (defmacro define-construct (name lambda-list documentation &body clauses)
-  "Let the plan language have the construct NAME, exported from the package at hand. LAMBDA-LIST has
+  "Add the construct NAME to the plan language, exported from the current package. LAMBDA-LIST has
 no defaults. DOCUMENTATION is for users. CLAUSES:
-(:manual): the manual has it.
-(:command): there is a command of the same name, which is what users see; its documentation says,
-too, what the name means in plans.
-(:waits :MUST, :MAY or NIL): whether it makes its task wait, see SUSPENSION; :MUST if not given.
-(:arguments form...): those of the variables of LAMBDA-LIST, or forms that return parts of their
-values, that stand for ordinary values, which should they wait are had before; the last may be
-&rest and a list of such.
-(:parts (name type form)...): what its node consists of; each form returns code, with the variables
-of LAMBDA-LIST, FORM and SCOPE bound.
+(:manual): it is in the manual.
+(:command): there is a command of the same name, which users see; the command's documentation must
+say what the name means in plans, too.
+(:waits :MUST, :MAY or NIL): whether it makes its task wait, see SUSPENSION; default :MUST.
+(:arguments form...): variables of LAMBDA-LIST, or forms that return parts of their values, that are
+ordinary values. If one of them waits, it is evaluated before. The last may be &rest and a list.
+(:parts (name type form)...): the parts of its node; each form returns code, with the variables of
+LAMBDA-LIST, FORM and SCOPE bound.
 (:code form): the code for the whole, if it is another expression, or if the node needs something
-around it; then (build [scope]) in it is the code for the node.
+around it; (build [scope]) in it is the code for the node.
 (:steps ...), (:step ...), (:unwind ...), (:child-ended ...), (:hot): see DEFINE-EXPRESSION.
-(:in-lisp form): its expansion, as a macro's, in ordinary Lisp, where it is an error otherwise; and
-in plans as well if there is neither :code nor a step.
-(:like construct): what is not said here is as for that one, whose lambda list must be the same."
+(:in-lisp form): its expansion in ordinary Lisp, where it is an error otherwise; in plans as well if
+there is neither :code nor a step.
+(:like construct): take missing clauses from that one, whose lambda list must be the same."
   (check-clauses "define-construct" name clauses
                  '(:manual :command :waits :arguments :parts :code :steps :step :unwind
                    :child-ended :hot :in-lisp :like))

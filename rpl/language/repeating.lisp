@@ -98,7 +98,7 @@ FORM, can be left. There is a node for it only if it is."
 ;;; them out. All of these can be left by RETURN.
 
 (defun give-way (task)
-  "Let others that are ready have their turn before TASK goes on. Return what a step returns."
+  "Run other ready tasks before TASK continues. Return what a step returns."
   (make-ready task)
   +parked+)
 

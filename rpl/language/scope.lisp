@@ -242,8 +242,8 @@ nodes" :writable :export)
   "The innermost form around, of those in the source that is being compiled, or NIL.")
 
 (defun place-made (form)
-  "Let what has been made around parts of the form at hand stand where that does, so that the
-compiler tells of that and not of what was made. Return FORM."
+  "Give code made around parts of the current form the source place of that form, so that the
+compiler reports that. Return FORM."
   (labels ((place (form depth)
              (when (and (consp form) (plusp depth) (not (in-source-p form)))
                (keep-place form *form-at-hand*)

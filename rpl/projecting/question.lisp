@@ -153,7 +153,7 @@ run, the tick, and how many questions plans have asked before in that."
                   (nothing-known question))))
 
 (defun answer-by-rollouts (question)
-  "Answer QUESTION, of a plan, by what rollouts tell. Return :LATER if nobody wants that any more."
+  "Answer QUESTION, of a plan, by rollouts. Return :LATER if the answer is not needed any more."
   (let* ((interface (wish-interface question))
          (moment (and (null (option question :world))
                       (let ((*fork-asker* (question-operator question)))

@@ -173,7 +173,7 @@ it writes is lost unless PRINT is true."
 ;;; The moment.
 
 (defun lighten (moment)
-  "Let MOMENT, a fork, keep no journal and no trace of plans, and tell nobody of errors. Return it."
+  "Make MOMENT, a fork, keep no journal and no trace, and report no errors. Return it."
   (setf (simulation-journal moment) nil
         (message-queue-error-policy (simulation-messages moment)) :collect)
   (dolist (participant (simulation-participants moment))

@@ -34,9 +34,9 @@
          (task-numbered (task-serial task) (interface-runner interface)))))
 
 (defun task-of-now (task simulation)
-  "Return what TASK has become in SIMULATION, a fork of its run or what goes on since that was
-rewound; itself if it is over there. Signals MISUSE if its run was rewound to a tick before it
-began, or plans were begun anew since."
+  "Return the counterpart of TASK in SIMULATION, a fork of its run or the successor of a rewound
+run; TASK itself if it is over there. Signals MISUSE if the run was rewound to before its start, or
+plans were begun again since."
   (let* ((client (runner-client (task-runner task)))
          (interface (interface-of (interface-robot client) simulation)))
     (cond ((and interface (same-era-p task interface))
@@ -61,8 +61,8 @@ began, or plans were begun anew since."
       (car (first (last (interface-eras other))))))
 
 (defun begin-era (old new)
-  "Let the tasks that begin from now on in NEW, which is to go on in the place of OLD, be none of
-those that have begun in OLD since."
+  "Begin an era: tasks that start from now on in NEW, which replaces OLD, are different from those
+that have started in OLD since."
   (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
     (let ((before (interface-of (interface-robot interface) old))
           (number (runner-serial (interface-runner interface))))
@@ -101,9 +101,8 @@ if that is NIL, as somebody did then."
                    (and (task-p subject) (task-serial subject)))))
 
 (defun call-noting-command (interface operator arguments function)
-  "Call FUNCTION, which does what the plan function OPERATOR does with ARGUMENTS. If that is called
-from outside of the plans of INTERFACE, remember that. What it asks for is heard by what goes on in
-forks too."
+  "Call FUNCTION, which does what the plan function OPERATOR does with ARGUMENTS. Record the call
+if it comes from outside of the plans of INTERFACE. Its results reach forks too."
   (note-of-plans interface #'apply operator (mapcar #'fluent-value arguments))
   (let ((*goes-on-in-forks-p* t))
     (funcall function)))
@@ -143,7 +142,7 @@ forks too."
   (cdr (assoc '*realm* (environment-of simulation))))
 
 (defun leave-fluents (old new)
-  "Let no fluent of NEW, which is to go on in the place of OLD, lead back to that."
+  "Remove references to OLD from the fluents of NEW, which replaces OLD."
   ;; The realm may be that of a live run around OLD, too.
   (when (or (eq old (global-value '*simulation*))
             (not (eq (realm-of old) (global-value '*realm*))))

@@ -30,7 +30,7 @@ it."))
     (setf (interface-wishes interface) (append (interface-wishes interface) (list wish)))))
 
 (defun forget-wish (wish)
-  "Let WISH no longer be one of its interface, as if it had never been."
+  "Remove WISH from its interface, as if it had never been there."
   (removef (interface-wishes (wish-interface wish)) wish))
 
 (defmethod withdraw (task (wish wish))
@@ -38,7 +38,7 @@ it."))
   (forget-wish wish))
 
 (defun grant-wish (wish value)
-  "Let the task of WISH go on with VALUE. The caller holds the plans."
+  "Continue the task of WISH with VALUE. The caller holds the plans."
   (forget-wish wish)
   (at-home ((interface-runner (wish-interface wish)))
     (complete (wish-task wish) value)))
@@ -152,7 +152,7 @@ nothing happens."
                 (t outcome))))))
 
 (defun finish-closing (interface)
-  "Let the plans of INTERFACE, which react no more, be over, and nobody drive its robot by it."
+  "Finish the plans of INTERFACE, which react no more, and detach it from its robot."
   (unless (interface-closed-p interface)
     (in-any-case
       (close-runner (interface-runner interface))
@@ -168,7 +168,7 @@ nothing happens."
 ;;; The runner.
 
 (defun busy-p (interface)
-  "True if a command of a plan is under way, or something may still happen that plans hear of."
+  "True if a command of a plan is in progress, or something else may still change fluents of plans."
   (let ((simulation (interface-simulation interface)))
     (or (find nil (interface-deeds interface) :key #'deed-over-p)
         (wish-to-serve interface)

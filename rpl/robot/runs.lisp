@@ -89,8 +89,8 @@ it runs as ticks pass; live in a thread of its own. Signals UNKNOWN-NAME."
   (and (task-over-p task) (not (eq :evaporated (task-state task)))))
 
 (defun pass-until (interface over last)
-  "Let the plans of INTERFACE react and ticks pass, headless, until OVER, a function, returns true.
-Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :LIMIT if it is tick LAST."
+  "Pass ticks, headless, in which the plans of INTERFACE react, until OVER, a function, returns
+true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :LIMIT at tick LAST."
   (let ((simulation (interface-simulation interface)))
     (note-of-plans interface #'react-again)
     (with-plans (interface) (react-fully interface))
@@ -116,8 +116,8 @@ Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :LIMIT 
               (+ (simulation-tick (interface-simulation interface)) *plan-limit*)))
 
 (defun await-over (interface task)
-  "Wait until TASK is over, live. Return its state, or how it came that it is not over. If nothing
-but somebody outside can let plans go on, say so, once."
+  "Wait until TASK is over, live. Return its state, or why it is not over. Warn once if only a call
+from outside can wake the plans."
   (let ((over (make-semaphore "plan over"))
         (simulation (interface-simulation interface))
         (told nil))
@@ -248,14 +248,14 @@ MISUSE, also if the run is over before it begins."
   (end-in (usable-interface) (and (task-p subject) subject)))
 
 (defun plan-ending-p (task)
-  "True if somebody has ended TASK, a plan, which may still be under way."
+  "True if TASK, a plan, was ended from outside; it may still be running."
   (let ((interface (usable-interface)))
     (or (task-over-p task)
         (task-doomed task)
         (and interface (member task (interface-unwanted interface)) t))))
 
 (defun end-task (task)
-  "Let TASK evaporate, whoever runs it: now if it is of the plans of here."
+  "Evaporate TASK, of any runner: at once if it belongs to the current plans."
   (let ((interface (and (task-runner task) (runner-client (task-runner task)))))
     (cond ((or (null (task-runner task)) (task-over-p task)))
           ((null interface) (stop-plan (task-runner task) task))

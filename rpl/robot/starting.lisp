@@ -14,8 +14,8 @@ thing that they do to clean up, at most."
                  (unless (interface-closed-p interface) (end)))))
 
 (defun close-interface (interface)
-  "Let INTERFACE hear no more of its simulation, and its plans end: now, or, if they react in
-another thread or around this call, when they get to it."
+  "Detach INTERFACE from its simulation, and end its plans: now or, if they react in another thread
+or around this call, as soon as they can."
   (unless (interface-closing-p interface)
     (deferring-interrupts
       (setf (interface-closing-p interface) t)

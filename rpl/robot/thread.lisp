@@ -9,8 +9,8 @@
 ;;; the simulator has stopped.
 
 (defstruct (look (:constructor make-look (rests steps task)) (:copier nil))
-  "What the plans' thread was at: how often it had come to rest, how many steps had been taken, and
-TASK, or NIL if it was at none."
+  "A sample of the plans' thread: how often it had come to rest, how many steps had been taken, and
+the running TASK, or NIL."
   (rests 0 :read-only t)
   (steps 0 :read-only t)
   (task nil :read-only t))
@@ -78,7 +78,7 @@ end, until the semaphore ENDED says that the thread has."
 ;;; the plans is ready. The next tick that finds plans starts another.
 
 (defun leave-to-ticks (interface)
-  "Let the plans of INTERFACE, which are to have a thread no longer, go on in the ticks."
+  "Run the plans of INTERFACE in the ticks from now on, without a thread."
   (swap-if (interface-thread interface) (current-thread) nil)
   ;; Somebody may have closed it, and left that to this thread, before it had none.
   (when (interface-closing-p interface) (react-fully interface))

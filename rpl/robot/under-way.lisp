@@ -45,7 +45,7 @@ OUTCOME makes settings of an answer."
     (removef (interface-deeds interface) deed)))
 
 (defun deed-open-p (deed)
-  "True if DEED is under way, and nobody has been told that it is not."
+  "True if DEED is in progress, and its end was not reported."
   (not (or (deed-told-p deed) (deed-over-p deed))))
 
 ;;; Settings. (:error fluent code) sets a fluent as :SET does.
@@ -65,8 +65,8 @@ OUTCOME makes settings of an answer."
     (setf (interface-answers interface) (append (interface-answers interface) (list answer)))))
 
 (defun take-answer (answer interface)
-  "Take ANSWER from those that are not yet heard, and with the last one its deed. True unless
-somebody has done so before."
+  "Remove ANSWER from those not applied yet, and with the last one its deed. True unless another
+thread has done so before."
   (with-lock ((interface-deeds-lock interface))
     (when (member answer (interface-answers interface))
       (removef (interface-answers interface) answer)
@@ -103,7 +103,7 @@ and is carried out first, or goes on in the background."
     (and name (eql plan (task-serial (task-top task))) tick)))
 
 (defun hear (answer interface)
-  "Let plans hear ANSWER, unless they have. The caller holds the plans."
+  "Apply ANSWER, unless that was done. The caller holds the plans."
   (when (take-answer answer interface)
     (let ((deed (answer-deed answer)) (settings (answer-settings answer)))
       (setf (deed-begun-p deed) t)
@@ -116,7 +116,7 @@ and is carried out first, or goes on in the background."
                             (plain-settings settings)))))))
 
 (defun post-answer (interface deed err results)
-  "Let plans hear soon that DEED was answered by ERR and RESULTS. In the simulator's thread."
+  "Post the answer to DEED, with ERR and RESULTS, to its plans. In the simulator's thread."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (deed-outcome deed) (deed-resource deed) err results))
@@ -134,7 +134,7 @@ and is carried out first, or goes on in the background."
 ;;; Telling before the simulator does.
 
 (defun tell-interrupted (deed)
-  "Let plans hear that DEED was interrupted, as soon as who asked for it has come to its wait."
+  "Report to plans that DEED was interrupted, as soon as its task has reached its wait."
   (setf (deed-told-p deed) t)
   (tell-at-rest (deed-task deed)
                 (lambda ()
@@ -157,8 +157,8 @@ and is carried out first, or goes on in the background."
     (and task (eq :running (task-state task)) task)))
 
 (defun take-over (interface resource &key except (test #'ends-by-command-p))
-  "Let plans hear that what was under way on RESOURCE, but for EXCEPT, and for which TEST is true,
-has been ended by the plan that is at work, if one is."
+  "Report to plans that the deeds on RESOURCE, except EXCEPT, for which TEST is true, were ended by
+the plan at work, if there is one."
   (when (reacting-p interface)
     (hear-answers-on resource interface except)
     (dolist (deed (interface-deeds interface))

@@ -144,8 +144,8 @@ supersedes how the same command ended before."
   (let ((deed (first (unawaited-deeds interface task))))
     (when deed
       (tell-once interface (list :unawaited (task-label task))
-                 "The plan ~A succeeded while its command rpl-~(~A~) was under way, which goes ~
-                  on.~@[ ~A~]"
+                 "The plan ~A succeeded while its command rpl-~(~A~) was under way, which ~
+                  continues.~@[ ~A~]"
                  (task-label task) (deed-name deed) (unawaited-advice deed)))))
 
 ;;; Programs may set fluents between two calls of RUN-TICKS. So it is a warning, once for each plan

@@ -167,7 +167,7 @@ function TEXT makes another of an expression."
         (bar-end bar) tick))
 
 (defun note-in-bar (bar entry)
-  "Let BAR know of ENTRY, of its task, but for its start and commands."
+  "Add ENTRY, of its task, to BAR, unless it is the start or a command."
   (let ((tick (trace-entry-tick entry)))
     (case (trace-entry-event entry)
       (:wait (begin-wait bar entry))

@@ -36,7 +36,7 @@ step."))
           do (format stream "~%    ~(~A~) = ~A" name (form-text value 70)))))
 
 (defun enter-break (break)
-  "Let somebody look at BREAK, if there is somebody; return when the plan is to go on."
+  "Enter the debugger for BREAK, if one is available; return when the plan is to go on."
   (if (debugger-p)
       (invoke-debugger break)
       (message-set "Break: " (own-text break))))
@@ -95,7 +95,7 @@ that is a leaf; NIL if it begins none, or one that has a step of its own.")
           nil))))
 
 (defun note-return (course task frame)
-  "Let COURSE know if TASK, about to take a step at FRAME, is back at the frame that it runs to."
+  "Record in COURSE if TASK, about to take a step at FRAME, is back at the frame that it runs to."
   (let ((until (course-until course)))
     (when (and (frame-p until)
                (eq task (course-within course))

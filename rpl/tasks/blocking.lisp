@@ -86,8 +86,8 @@ frame."
 (declaim-final heed)
 
 (defun tell-blocked (task)
-  "Let the parts of TASK, newest first, and then its own expressions, innermost first, know that
-they do not run; but not those that did not run before."
+  "Notify the parts of TASK, newest first, and then its own expressions, innermost first, that they
+are stopped; except those that were stopped before."
   (unless (task-doomed task)
     (dolist (child (reverse (task-children task)))
       (unless (plusp (task-blocked child)) (tell-blocked child)))

@@ -115,7 +115,8 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
                        (mapcar #'frame-data (frame-chain (task-frame task))))))
 
 (defun repair-hearing (runner tasks)
-  "Let TASKS of RUNNER hear of the fluents that they wait for, and of what they have missed."
+  "Register the waits of TASKS of RUNNER with their fluents again, and wake those that missed
+events."
   (repair-fluents runner (mapcan #'own-watchers tasks)
                   (lambda (watcher)
                     (let ((client (watcher-client watcher)))
@@ -186,7 +187,7 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
     (error-set (task-label (task-top task)) " was aborted at " (form-text (task-form task)))))
 
 (defun put-in-order (runner)
-  "Let RUNNER be fit to go on after a step has been left for good: the plan that took it ends."
+  "Repair RUNNER after a step was left for good: the plan that took it ends."
   (let ((task (running-task runner)))
     (when task
       (setf (task-state task) :ready

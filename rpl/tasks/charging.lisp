@@ -65,21 +65,20 @@ tick, or as many as it needs if that is NIL."
 
 (addition exhaust-reaction)
 (defun exhaust-reaction (&optional (runner *runner*))
-  "Let the reaction of RUNNER under way end after this step: what is ready waits for the tick."
+  "End the current reaction of RUNNER after this step: ready tasks wait for the tick."
   (note-from-outside #'exhaust-reaction runner)
   (setf (runner-exhausted runner) t
         (runner-limit runner) 0
         (runner-pause runner) 0))
 
 (defun stand-still (runner ticks)
-  "Let no task of RUNNER go on for TICKS, after those for which that is so already, once the step
-under way has ended."
+  "Stop all tasks of RUNNER for TICKS more once the current step has ended."
   (setf (runner-still-until runner)
         (+ ticks (max (runner-tick runner) (or (runner-still-until runner) 0)))
         (runner-pause runner) 0))
 
 (defun stand-no-longer (runner)
-  "Let tasks of RUNNER go on."
+  "Let tasks of RUNNER run again."
   (setf (runner-still-until runner) nil))
 
 (addition charge-ticks)
@@ -95,7 +94,7 @@ WRONG-ARGUMENT."
   (values))
 
 (defun count-steps (steps runner task)
-  "Let STEPS count as if TASK, or nobody, of RUNNER had taken them, if its steps are counted."
+  "Count STEPS for TASK, or for no task if it is NIL, of RUNNER, if its steps are counted."
   (when (and (runner-charged-p runner)
              (runner-budget runner)
              (not (and task (task-uncounted-p task))))

@@ -45,7 +45,7 @@
                (funcall (runner-on-end runner) task))))))
 
 (defun child-over (parent child how result)
-  "Let PARENT know that its CHILD has ended. Once PARENT has a signal, only the last one matters."
+  "Notify PARENT that its CHILD has ended. Once PARENT has a signal, only the last child matters."
   (cond ((null (task-signal parent))
          (let* ((frame (task-frame parent))
                 (node (frame-node frame)))
@@ -185,7 +185,7 @@ takes effect before that goes on. Signals WRONG-ARGUMENT."
 ;;; Kills from outside, and cleanups that are given up.
 
 (defun doom (task)
-  "Let TASK evaporate as soon as its runner hears of it."
+  "Evaporate TASK as soon as its runner can."
   (let ((runner (task-runner task)))
     (atomic-push (cons task *asker*) (runner-doomed runner))
     (funcall (runner-on-post runner))))

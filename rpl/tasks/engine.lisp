@@ -92,8 +92,8 @@ the end of a tick's budget has broken off goes on in the next tick: each task ge
     outcome))
 
 (defun hear-next (runner)
-  "Apply the next batch if RUNNER, whose round is over, is to hear what was posted before its tasks
-go on. True if there was one."
+  "Apply the next batch if RUNNER, whose round is over, must do so before its tasks run again. True
+if there was one."
   (when (or (null (runner-spent runner))
             (null (runner-budget runner))
             (not (runner-charged-p runner))
@@ -177,9 +177,8 @@ step. For any thread."
   (mapc #'doom (if task (list task) (plan-runner-tasks runner))))
 
 (defun close-runner (runner)
-  "Let all tasks of RUNNER evaporate. What they do to clean up goes on as far as it can without any
-time; the rest is given up, with a warning for each. None is left. Nothing is charged for any more,
-and nothing heard."
+  "Evaporate all tasks of RUNNER. Cleanups run as far as they take no time; the rest is abandoned,
+with a warning for each. No task is left. Charges end, and posts are ignored."
   (set-charges runner nil nil)
   (stop-plan runner)
   (react-to-all runner)
@@ -196,7 +195,7 @@ and nothing heard."
   (setf (runner-tick runner) tick))
 
 (defun advance-timers (runner tick)
-  "Let it be TICK for RUNNER and wake those who waited for it."
+  "Set the time of RUNNER to TICK, and wake the tasks that waited for it."
   (setf (runner-tick runner) tick)
   (at-home (runner) (run-timers (runner-timers runner) tick)))
 
@@ -214,8 +213,7 @@ and nothing heard."
   (not (or (any-ready-p runner) (heard-from-outside-p runner))))
 
 (defun rest-in-tick (runner tick)
-  "Let it be TICK for RUNNER, without a reaction, if none of its tasks would go on in that. True if
-so."
+  "Set the time of RUNNER to TICK, without a reaction, if no task would run in it. True if so."
   (let ((wake (next-wake-time runner)))
     (unless (or (and wake (<= wake tick))
                 (not (runner-idle-p runner))
@@ -227,7 +225,7 @@ so."
       t)))
 
 (defun plan-deadlocked-p (runner)
-  "True if tasks of RUNNER wait and nothing can ever wake them: no timer, and nobody who may post."
+  "True if tasks of RUNNER wait and nothing can wake them: no timer, and no possible post."
   (and (runner-roots runner)
        (runner-idle-p runner)
        (null (next-wake-time runner))
@@ -266,8 +264,8 @@ so."
             (t (advance-timers runner (if idle-p wake (1+ tick))))))))
 
 (defun end-alone (runner task limit)
-  "Let TASK of RUNNER evaporate, if it is not over. It may clean up until tick LIMIT, if that is a
-number, or until nothing goes on; the rest is given up, with a warning for each cleanup."
+  "Evaporate TASK of RUNNER, if it is not over. Its cleanups may run until tick LIMIT, if that is a
+number, or until nothing runs; the rest is abandoned, with a warning for each cleanup."
   (stop-plan runner task)
   (loop (run-until-over runner task limit)
         (let ((part (cleaning-part task)))

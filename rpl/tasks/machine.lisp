@@ -98,7 +98,7 @@ the value. A leaf takes no frame of its own."
   (note-event task :wait (traced-subject awaiting)))
 
 (defun wake (task value &optional (reason (task-awaiting task)))
-  "Let TASK, which waits, go on with VALUE. REASON is what it has heard."
+  "Wake TASK, which waits, with VALUE. REASON is the event."
   (note-event task :wake (traced-subject reason))
   (setf (task-awaiting task) nil
         (task-value task) value)

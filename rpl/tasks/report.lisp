@@ -132,9 +132,9 @@ errors of Lisp; or NIL."
       (call-next-method)))
 
 (defun report-failure (failure &optional awaited-p)
-  "Queue an error message with all that is known of FAILURE, of a plan: where it happened, in which
-task, what was under way, and the Lisp backtrace of an error. If AWAITED-P, somebody is told of it
-besides."
+  "Queue an error message about FAILURE, of a plan: where it happened, in which task, the
+expressions in progress, and the Lisp backtrace of an error. AWAITED-P: the caller learns of the
+failure, too."
   (let ((text (with-output-to-string (stream) (write-failure-report failure stream))))
     (if awaited-p
         (queue-message (make-message :error (list text) :told-p (not (typep failure 'lisp-failure)))

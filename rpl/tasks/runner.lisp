@@ -183,7 +183,7 @@ long. Where steps are counted it is one."
     (and task (eq (task-state task) :running) task)))
 
 (defun first-warning-p (form runner)
-  "True if nobody was warned of FORM, of plans of RUNNER, so far. From now on somebody is."
+  "True the first time that this is called for FORM, of plans of RUNNER."
   (unless (member form (runner-warned runner) :test #'eq)
     (push form (runner-warned runner))))
 

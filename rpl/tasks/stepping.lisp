@@ -16,7 +16,7 @@ HEARER has come to rest."
   (function nil :type function :read-only t))
 
 (defmethod awaited-text ((courtesy courtesy))
-  (format nil "task ~D to hear something" (task-serial (courtesy-hearer courtesy))))
+  (format nil "task ~D to come to rest" (task-serial (courtesy-hearer courtesy))))
 
 (defun at-rest-p (task runner)
   (case (task-state task)
@@ -44,7 +44,7 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
                    (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
 
 (defun give-way-to-hearer (task frame value)
-  "Let TASK wait, to go on with FRAME and VALUE, if it has somebody to tell something. True if so."
+  "Make TASK wait, to continue with FRAME and VALUE, if it must report something first. True if so."
   (let ((courtesy (find task (runner-courtesies (task-runner task)) :key #'courtesy-teller)))
     (when courtesy
       (park task courtesy)
@@ -79,7 +79,7 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
                    " s without a pause: " (form-text form) " in " (task-label task)))))
 
 (defun time-now (runner)
-  "Return the seconds by the clock of RUNNER, or NIL if nobody wants to know."
+  "Return the seconds by the clock of RUNNER, or NIL without one."
   (let ((clock (runner-clock runner)))
     (and clock (funcall clock))))
 
@@ -155,7 +155,7 @@ VALUE are what the last step returned; return what it should have."
              +parked+))))
 
 (defun run-steps (task frame value)
-  "Let TASK go on from FRAME with VALUE until it waits, gives way or ends."
+  "Run TASK from FRAME with VALUE until it waits, yields or ends."
   (declare #.*hot* (type task task))    ; 15 ns a step beyond what the step does
   (let* ((runner (task-runner task))
          (watched (or (time-now runner) (runner-stepper runner) *leaves-offer-restarts*))
@@ -177,7 +177,7 @@ VALUE are what the last step returned; return what it should have."
               (funcall (node-step node) node task frame value)))))))
 
 (defun begin-turn (task runner)
-  "Let TASK take what is left of its slice in this round of RUNNER, a new one if it has had none."
+  "Give TASK what is left of its slice in this round of RUNNER, a new one if it has had none."
   (declare #.*hot* (type task task) (type plan-runner runner))
   (unless (= (task-round task) (runner-round runner))
     (setf (task-round task) (runner-round runner)
@@ -187,7 +187,7 @@ VALUE are what the last step returned; return what it should have."
           (if (task-uncounted-p task) slice (min (runner-limit runner) slice)))))
 
 (defun run-task (task)
-  "Let TASK, just taken from the ready ones, go on, or let its signal happen to it."
+  "Run TASK, just taken from the ready ones, or deliver its signal."
   (let* ((frame (task-frame task))
          (value (shiftf (task-value task) nil))
          (signal (task-signal task))

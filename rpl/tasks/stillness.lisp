@@ -175,8 +175,8 @@ frames, is about.")
                                 (plusp (fluent-pulses subject))))
                          (mapcar (lambda (task) (traced-subject (task-awaiting task))) tasks))))
     (and fluent
-         (format nil "~A has been pulsed ~D time~:P so far, before this wait began; a wait hears ~
-                      only pulses that come later." (fluent-text fluent) (fluent-pulses fluent)))))
+         (format nil "~A has been pulsed ~D time~:P so far, before this wait began; a wait ends ~
+                      only by later pulses." (fluent-text fluent) (fluent-pulses fluent)))))
 
 (defun missed-end-text (tasks)
   (loop for task in tasks
@@ -184,9 +184,9 @@ frames, is about.")
         for tick = (and (fluent-p subject)
                         (last-pulse (runner-client (task-runner task)) task subject))
         when tick
-          return (format nil "~A was pulsed at tick ~D, before this wait began; a wait hears only ~
-                              pulses that come later. To wait for several, write (par (wait-for ~
-                              fluent) (wait-for fluent))."
+          return (format nil "~A was pulsed at tick ~D, before this wait began; a wait ends only ~
+                              by later pulses. To wait for several, write (par (wait-for fluent) ~
+                              (wait-for fluent))."
                          (fluent-text subject) tick)))
 
 ;;; What does not end.
@@ -273,19 +273,19 @@ and which nobody means to wait for."
               "what cannot come")))
 
 (defun text-of-blocks (tasks)
-  "Return in words who has to let parts of TASKS go on that are blocked; NIL if none is."
+  "Return in words that blocked parts of TASKS must be woken; NIL if none is blocked."
   (let ((blocked (remove-if-not #'plusp (mapcan #'all-tasks tasks) :key #'task-blocked)))
     (and blocked
          (format nil "somebody to let ~{~A~^ and ~} go on, as by WAKE-UP"
                  (mapcar #'task-label blocked)))))
 
 (defun report-stillness (runner)
-  "Queue a warning that says that the tasks of RUNNER wait for what only somebody outside of them
-and of the simulator can bring about, and what could be done. Somebody waits for one of them."
+  "Queue a warning that the tasks of RUNNER wait for events that only calls from outside of them
+and of the simulator can cause, with advice. A thread waits for one of them."
   (let ((tasks (mapcan #'waiting-parts (plan-runner-tasks runner))))
-    (warn-notably "At tick " (runner-tick runner) " all plans wait for what neither the robot nor "
-                  "time will bring about, but somebody may, by SET-VALUE or WAKE-UP. Control-C "
-                  "ends this wait." (advice-on-stillness tasks) t (tree-text runner))))
+    (warn-notably "At tick " (runner-tick runner) " all plans wait for events that neither the "
+                  "robot nor time will cause. SET-VALUE, PULSE or WAKE-UP may still wake them. "
+                  "Control-C ends this wait." (advice-on-stillness tasks) t (tree-text runner))))
 
 (defun report-deadlock (runner)
   "Queue an error message that says that no task of RUNNER can go on: the plans, what they wait for,

@@ -51,8 +51,7 @@ TRACE-ENTRY, are evaluated only then."
                 (and (task-parent task) (task-serial (task-parent task))))))
 
 (defun start-trace (runner)
-  "Let RUNNER keep a trace from now on, in which tasks under way seem to start now. Nothing happens
-if it keeps one."
+  "Start a trace of RUNNER, in which running tasks seem to start now. Does nothing if it keeps one."
   (unless (runner-trace runner)
     (setf (runner-trace runner) (make-trace))
     (trace-changes runner)
