@@ -3,8 +3,8 @@
 (in-package :ars-magna.floors)
 
 ;;; The keys and what they mean are those of ROS's map_server (wiki.ros.org/map_server) and of
-;;; nav2_map_server after it. All but mode must be there; others are nobody's business here, unless
-;;; they look like one of these.
+;;; nav2_map_server after it. All but mode are required. Other keys are ignored, unless they look
+;;; like one of these.
 
 (defconstant +most-octets+ 65536 "How many bytes the description of a floor has at most.")
 

@@ -2,15 +2,15 @@
 
 (in-package :ars-magna.floors)
 
-;;; What is written is what ROS's map_saver writes: black walls, white floor, 205 for what is not
-;;; known, and the thresholds that tell these three apart.
+;;; What is written is what ROS's map_saver writes: black walls, white floor, 205 for
+;;; unknown, and the thresholds that tell these three apart.
 
 (define-constant +shades+ #(254 0 205) :test 'equalp
   :documentation "How bright, from 0 to 255, pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+ are.")
 
 (defun number-of-substance (map substance)
   "Return the number that the name SUBSTANCE has in MAP, or NIL if that has no walls of it. Signals
-UNKNOWN-NAME if nobody has defined it either."
+UNKNOWN-NAME if it is not defined either."
   (let ((names (map-substance-types map)))
     (or (position substance names :start 1 :test #'same-name-p)
         (unless (find-substance substance nil)
@@ -18,8 +18,8 @@ UNKNOWN-NAME if nobody has defined it either."
                        (append (rest (coerce names 'list)) (defined-names *substances*)))))))
 
 (defun unknown-wall-test (map unknown)
-  "Return a function that says of a substance's number and a parameter whether walls of these in MAP
-stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals UNKNOWN-NAME."
+  "Return a function of a substance's number and a parameter that is true if such walls of MAP are
+to be written as unknown. UNKNOWN is as for EXPORT-MAP. Signals UNKNOWN-NAME."
   (if (member unknown '(nil :walls))
       (constantly nil)
       (destructuring-bind (name &optional parameter) (ensure-list unknown)
@@ -29,7 +29,7 @@ stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals 
                  (or (null parameter) (= value parameter))))))))
 
 (defun map-grid (map unknown)
-  "Return the cells of MAP as a grid, with those that UNKNOWN says nobody knows as such."
+  "Return the cells of MAP as a grid. UNKNOWN, as for EXPORT-MAP, says which walls are unknown."
   (let* ((grid (make-grid (map-width map) (map-height map)))
          (cells (grid-cells grid)) (unknown-p (unknown-wall-test map unknown)))
     (dotimes (index (length cells) grid)
@@ -60,7 +60,7 @@ stand for what UNKNOWN, as EXPORT-MAP takes it, says that nobody knows. Signals 
 (defun image-name (path)
   "Return how a description beside it calls the image PATH."
   (let ((name (name-in-directory path)))
-    ;; Who reads it might take ~ for a home directory.
+    ;; Readers might take ~ for a home directory.
     (if (char= #\~ (char name 0))
         (concatenate 'string "./" name)
         name)))
@@ -126,15 +126,18 @@ that does not describe IMAGE, a file IMAGE that PATH does not describe, or one t
 (addition export-map)
 (defun export-map (map file &key unknown)
   "Write the walls of MAP, a map or its name, as an occupancy grid for ROS's map_server: the YAML
-file FILE, a string or pathname whose name ends in .yaml or .yml, and beside it an image in PGM that
-is called the same. In a string ~/ is the home directory, and * ? [ and \\ stand for themselves. A
-pixel is a cell, as wide as MAP-FRAME says, and IMPORT-MAP makes the same cells of it. UNKNOWN says,
-as for IMPORT-MAP, which walls are written as what nobody knows: a substance, or a list of that and
-a parameter, such as (glass 5); NIL and :WALLS say none; a substance that MAP has no walls of is for
-no pixel. Substances and things are not written. A description of a map that is there is replaced if
-it names that image, and with it the image. If FILE is a link, both are written where it leads to,
-called as that is. Return the truenames of both. Signals UNUSABLE-FLOOR, as where something else has
-one of these names, and WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they were."
+file FILE, a string or pathname whose name ends in .yaml or .yml, and beside it a PGM image of the
+same name. Return the truenames of both. In a string ~/ is the home directory, and * ? [ and \\
+stand for themselves. A pixel is a cell, as wide as MAP-FRAME says; IMPORT-MAP makes the same cells
+of it. Substances and things are not written.
+
+UNKNOWN, as for IMPORT-MAP, is a substance whose walls are written as unknown, or a list of that and
+a parameter, such as (glass 5); NIL and :WALLS mean none. MAP need not have walls of it.
+
+An existing description of a map that names that image is replaced, and the image with it. If FILE
+is a link, both are written where it leads to, under that name. Signals UNUSABLE-FLOOR, for example
+if another file has one of these names, WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they
+were."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-said-p unknown)
                   "the name of a substance, or a list of that and a parameter, as in (glass 5)")

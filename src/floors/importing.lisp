@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.floors)
 
-;;; A map's y grows downwards and its angles clockwise; elsewhere, as in ROS, y grows upwards and
-;;; angles against the clock. The map's lower left corner is the frame's origin, see MAP-FRAME.
+;;; A map's y grows downwards and its angles clockwise. In the frame, as in ROS, y grows upwards and
+;;; angles counterclockwise. The map's lower left corner is the frame's origin, see MAP-FRAME.
 
 (defun map-from (operator map)
   (unless (typep map '(or map symbol string))
@@ -17,9 +17,9 @@
 
 (addition map-to-frame)
 (defun map-to-frame (map x y &optional (direction 0))
-  "Return what the point (X, Y) of MAP, a map or its name, is in that map's frame (see MAP-FRAME),
-in metres, and how DIRECTION, radians clockwise, is called there, radians against the clock: three
-double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Convert the point (X, Y) of MAP, a map or its name, and DIRECTION, radians clockwise, to that
+map's frame (see MAP-FRAME). Return x and y in metres and the angle in radians counterclockwise:
+three double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-place 'map-to-frame x y direction)
   (let ((map (map-from 'map-to-frame map)))
     (destructuring-bind (size left low yaw) (mapcar #'double (map-frame map))
@@ -30,9 +30,9 @@ double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 (addition frame-to-map)
 (defun frame-to-map (map x y &optional (yaw 0))
-  "Return the point of MAP, a map or its name, that is (X, Y) in that map's frame (see MAP-FRAME),
-in metres, and the direction in MAP, radians clockwise, that is called YAW there, radians against
-the clock: three double-floats. The point may be outside the map. Signals WRONG-ARGUMENT and
+  "Convert the point (X, Y), in metres, and YAW, radians counterclockwise, from the frame of MAP, a
+map or its name (see MAP-FRAME). Return x and y in MAP and the direction, radians clockwise: three
+double-floats. The point may be outside the map. Signals WRONG-ARGUMENT and
 UNKNOWN-NAME."
   (check-place 'frame-to-map x y yaw)
   (let ((map (map-from 'frame-to-map map)))
@@ -45,9 +45,9 @@ UNKNOWN-NAME."
 
 ;;;; Importing
 
-;;; What comes of the files is a DEFMAP form, with a wall for each line of cells and the frame. So a
-;;; map from elsewhere is a map like any other: journals know it by name and by the number of its
-;;; form, which is another if the files say something else at replay.
+;;; The files become a DEFMAP form, with the frame and a wall for each line of cells. So an imported
+;;; map is a map like any other. Journals record its name and the number of its form. The number
+;;; differs if the files have changed at replay.
 
 (define-constant +most-pixels+ 25000000
   :documentation "How many pixels an image has at most, unless :limit says otherwise.")
@@ -69,8 +69,8 @@ UNKNOWN-NAME."
                (and (= 2 (length value)) (quantity-p (second value)))))))
 
 (defun sort-of-wall (option value)
-  "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME if nobody has
-defined the substance."
+  "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME if the
+substance is not defined."
   (check-option option (and value (substance-said-p value)) value
                 "the name of a substance, or a list of that and a parameter, as in (bricks 20)")
   (destructuring-bind (name &optional (parameter nil given)) (ensure-list value)
@@ -113,13 +113,13 @@ package that FILE is called like: letters and digits, with dashes between."
   (loop for (start end) in lines collect `(:wall ,start ,end ,@sort)))
 
 (defun grid-clauses (grid walls unknown)
-  "Return clauses of DEFMAP for the cells of GRID that are occupied, of the sort WALLS, and for
-those that are not known, of the sort UNKNOWN, unless that is NIL."
+  "Return clauses of DEFMAP for the occupied cells of GRID, of the sort WALLS, and for the unknown
+ones, of the sort UNKNOWN, unless that is NIL."
   (flet ((clauses (sort needed &optional (allowed needed))
            (wall-clauses (fewest-lines grid needed allowed) sort)))
     (cond ((null unknown) (clauses walls (list +occupied+)))
           ((equal unknown walls) (clauses walls (list +occupied+ +unknown+)))
-          ;; Later walls are drawn over earlier ones, so what is not known may go on below them.
+          ;; Later walls replace earlier ones, so unknown lines may continue below them.
           (t (append (clauses unknown (list +unknown+) (list +unknown+ +occupied+))
                      (clauses walls (list +occupied+)))))))
 
@@ -133,7 +133,7 @@ those that are not known, of the sort UNKNOWN, unless that is NIL."
                     most (ceiling (max (image-width image) (image-height image)) 32767)))))
 
 (defun warn-of-nothing-free (description grid)
-  "Warn if no cell of GRID is free because DESCRIPTION says that shades are chances."
+  "Warn if no cell of GRID is free though DESCRIPTION has the mode :SCALE."
   (when (and (eq :scale (description-mode description))
              (zerop (count-of +free+ grid)))
     (warn-of-definition "~A: no cell is free. In the mode scale a shade is the chance that ~
@@ -150,8 +150,8 @@ those that are not known, of the sort UNKNOWN, unless that is NIL."
 (addition imported-map-form)
 (defun imported-map-form (file &key name pixels cell (share 0) (substance 'bricks)
                                  (unknown :walls) clauses cache (limit +most-pixels+))
-  "Return the DEFMAP form that IMPORT-MAP would evaluate, given the same arguments, and what it says
-of it. Nothing is defined. Signals the same."
+  "Return the DEFMAP form that IMPORT-MAP would evaluate, given the same arguments, and its
+report. Nothing is defined. Signals the same."
   (check-argument imported-map-form file (typep file '(or string pathname)) "the name of a file")
   (check-argument imported-map-form limit (whole-p limit 1 1000000000) "an integer from 1 to 1e9")
   (check-option :share (probability-p share) share "a number from 0 to 1")
@@ -178,26 +178,26 @@ of it. Nothing is defined. Signals the same."
 (addition import-map)
 (defun import-map (file &rest options &key name pixels cell share substance unknown clauses cache
                                         limit)
-  "Define a map from an occupancy grid as ROS's map_server keeps it: FILE, a string or pathname, is
-the YAML file that names the image, PGM or PNG (not interlaced) by its first bytes. In a string ~/
-is the home directory, and * ? [ and \\ stand for themselves. Colours become grey as in ROS's
-nav2_map_server: the average of red, green and blue; if the image has alpha, the mode
-trinary averages that in as a fourth, in the mode scale a pixel that is not wholly opaque is
-unknown, and the mode raw ignores it. The map is called NAME, by default the file's name as a symbol
-of the current package, and is like one of DEFMAP's from then on. OPTIONS:
-  :pixels -- how many pixels wide a cell is, by default 1; or :cell -- how many metres, instead
-  :share -- which share of its pixels must be occupied for a cell to be, by default 0: any one
+  "Define a map from an occupancy grid as ROS's map_server keeps it. FILE, a string or pathname, is
+the YAML file that names the image: PGM or PNG (not interlaced), by its first bytes. In a string ~/
+is the home directory, and * ? [ and \\ stand for themselves. NAME is the map's name, by default
+the file's name as a symbol of the current package. OPTIONS:
+  :pixels -- width of a cell in pixels, by default 1; or :cell -- its width in metres
+  :share -- share of its pixels that must be occupied to make a cell a wall; by default 0: any one
   :substance -- that of the walls, by default bricks, or a list such as (bricks 20)
-  :unknown -- what cells are that nobody knows: :walls, the default, NIL for nothing, or a
-substance, or a list such as (glass 5)
+  :unknown -- what unknown cells become: :walls, the default, NIL for nothing, a substance, or a
+list such as (glass 5)
   :clauses -- more clauses of DEFMAP, such as things
   :cache -- as for DEFMAP
-  :limit -- how many pixels are too many, by default 25000000
-A robot's metre is a side of a cell, whatever that is elsewhere; MAP-TO-FRAME and FRAME-TO-MAP go
-between the two. Return the map and a plist: :width and :height in cells, the metres elsewhere of a
-:cell, how many cells are :free, :occupied and :unknown, and how many :walls they became, which is
-as few as can be. Signals UNUSABLE-FLOOR, with the file and line, WRONG-ARGUMENT, UNKNOWN-NAME for a
-substance, and MALFORMED-DEFINITION."
+  :limit -- the largest number of pixels accepted, by default 25000000
+Return the map and a plist: :width and :height in cells, the width of a :cell in real metres, the
+numbers of cells that are :free, :occupied and :unknown, and of :walls, which is as small as
+possible. A robot's metre is the side of a cell, whatever that is in reality; MAP-TO-FRAME and
+FRAME-TO-MAP convert. Colours become grey as in ROS's nav2_map_server: the average of red, green and
+blue. If the image has alpha, the mode trinary averages that in as a fourth channel, in the mode
+scale a pixel that is not fully opaque is unknown, and the mode raw ignores it. Signals
+UNUSABLE-FLOOR, with the file and line, WRONG-ARGUMENT, UNKNOWN-NAME for a substance, and
+MALFORMED-DEFINITION."
   (declare (ignore name pixels cell share substance unknown clauses cache limit))
   (multiple-value-bind (form report) (apply #'imported-map-form file options)
     (values (find-map (eval form)) report)))

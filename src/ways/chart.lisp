@@ -2,14 +2,13 @@
 
 (in-package :ars-magna.ways)
 
-;;; A chart belongs to one plan or program. What it shares with others is its terrain, and the
-;;; fields of goals as long as no cell is barred; a copy of the run that it is in gets a chart of
-;;; its own.
+;;; A chart belongs to one plan or program. It shares its terrain with other charts, and the fields
+;;; of goals as long as no cell is barred. A copy of the run gets a copy of the chart.
 
 (addition chart)
 (addition chart-p)
 (define-record (chart (:constructor %make-chart (terrain)))
-  "A map as somebody knows it: a terrain, and which of its cells are barred, or cost more."
+  "A map as one robot knows it: a terrain, and which of its cells are barred, or cost more."
   (terrain nil terrain "the terrain of the chart, which it shares with others of its map" :addition)
   (barred '() list "pairs (node . cost): what a metre costs more than on the terrain" :writable)
   (field nil (or null field) "a field in which cells are barred, or NIL" :writable)
@@ -47,9 +46,9 @@
 
 (addition make-chart)
 (defun make-chart (map &key (clearance 3/4) (costs '((doorway 2))))
-  "Return a new chart of MAP, a map or the name of one, on which no cell is barred. A metre costs 1,
-but 4 nearer to a wall than CLEARANCE, from 0 to 10 metres, and in places of the types in COSTS, a
-list of (name cost), what that says, from 1 to 1000. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Return a new chart of MAP, a map or the name of one, on which no cell is barred. A metre costs 1;
+nearer to a wall than CLEARANCE, from 0 to 10 metres, it costs 4. In places of the types in COSTS, a
+list of (name cost), it costs that, from 1 to 1000. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument make-chart clearance (and (realp clearance) (<= 0 clearance 10))
                   "a number of metres, from 0 to 10")
   (check-argument make-chart costs (costs-p costs)
@@ -90,7 +89,7 @@ point inside the map."
                    (or (cdr (assoc node (chart-barred chart))) 0d0))))
 
 (defun set-extra-cost (chart node cost)
-  "Let the cell NODE of CHART cost COST more than on the terrain, not at all if COST is NIL."
+  "Set the extra cost of the cell NODE of CHART to COST, or to none if COST is NIL."
   (let ((entry (assoc node (chart-barred chart))))
     (unless (eql cost (cdr entry))
       (setf (chart-barred chart)
@@ -100,9 +99,9 @@ point inside the map."
 
 (addition bar-cell)
 (defun bar-cell (chart point &optional cost)
-  "Remember on CHART that the cell with POINT, a PT or a list (x y), cannot be crossed; or, given a
-COST from 0 to 1e6, that a metre in it costs so much more. It replaces what was said of that cell
-before. Return CHART. Signals WRONG-ARGUMENT."
+  "Mark the cell of CHART with POINT, a PT or a list (x y), as one that cannot be crossed. With
+COST, from 0 to 1e6, a metre in it costs so much more instead. This replaces earlier marks of that
+cell. Return CHART. Signals WRONG-ARGUMENT."
   (check-argument bar-cell chart (chart-p chart) "a chart")
   (check-argument bar-cell cost (or (null cost) (and (realp cost) (<= 0 cost 1000000)))
                   "a cost from 0 to 1e6, or NIL for what cannot be crossed")
@@ -114,7 +113,7 @@ before. Return CHART. Signals WRONG-ARGUMENT."
 
 (addition free-cell)
 (defun free-cell (chart point)
-  "Let the cell of CHART with POINT, a PT or a list (x y), be as it is on the map again. Return
+  "Remove what BAR-CELL has set for the cell of CHART with POINT, a PT or a list (x y). Return
 CHART. Signals WRONG-ARGUMENT."
   (check-argument free-cell chart (chart-p chart) "a chart")
   (set-extra-cost chart (node-of-point 'free-cell chart point) nil)
@@ -122,15 +121,15 @@ CHART. Signals WRONG-ARGUMENT."
 
 (addition free-all-cells)
 (defun free-all-cells (chart)
-  "Let all cells of CHART be as they are on the map again. Return CHART. Signals WRONG-ARGUMENT."
+  "Remove what BAR-CELL has set for all cells of CHART. Return CHART. Signals WRONG-ARGUMENT."
   (check-argument free-all-cells chart (chart-p chart) "a chart")
   (loop for (node) in (chart-barred chart) do (set-extra-cost chart node nil))
   chart)
 
 (addition barred-cells)
 (defun barred-cells (chart)
-  "Return a list of (x y cost) for the cells that were barred on CHART, newest first: COST is what a
-metre costs more, or NIL if they cannot be crossed."
+  "Return a list of (x y cost) for the cells that were barred on CHART, newest first. COST is the
+extra cost of a metre, or NIL if the cell cannot be crossed."
   (loop with terrain = (chart-terrain chart)
         for (node . cost) in (chart-barred chart)
         collect (list (node-column terrain node) (node-row terrain node)
@@ -138,7 +137,7 @@ metre costs more, or NIL if they cannot be crossed."
 
 (addition crossing-cost)
 (defun crossing-cost (chart point)
-  "Return what a metre costs in the cell of CHART with POINT, a PT or a list (x y): 1 or more, or
+  "Return the cost of a metre in the cell of CHART with POINT, a PT or a list (x y): 1 or more, or
 NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
   (let ((cost (cost-of-node chart (node-of-point 'crossing-cost chart point))))
     (if (< cost +barred+) cost nil)))
@@ -152,7 +151,7 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
   (find goal (terrain-fields terrain) :key #'field-goal))
 
 (defun forget-older-fields (terrain)
-  "Let TERRAIN keep one field less than it may, so that there is room for another."
+  "Discard the oldest fields of TERRAIN, so that there is room for another."
   (let ((fields (terrain-fields terrain))
         (most (clamp (floor +nodes-kept+ (length (terrain-cells terrain))) 2 50)))
     (setf (terrain-fields terrain) (subseq fields 0 (min (length fields) (1- most))))))
@@ -168,9 +167,9 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
               field)))))
 
 (defun take-over-field (chart goal)
-  "Let CHART have the field of the node GOAL for itself, with nothing barred yet."
+  "Give CHART its own copy of the field of the node GOAL, with nothing barred yet."
   (let* ((shared (shared-field (chart-terrain chart) goal))
-         ;; Where this is broken off it is half of one and half of the other.
+         ;; If interrupted, it would be half of one field and half of the other.
          (old (shiftf (chart-field chart) nil))
          (own (with-lock ((field-lock shared))
                 (if old (copy-into-field old shared) (copy-field shared)))))

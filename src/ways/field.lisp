@@ -4,7 +4,7 @@
 
 ;;;; The queue: nodes that wait, by their keys, a binary heap in two arrays
 
-;;; A node may be in it more than once; who takes one out sees whether it still counts.
+;;; A node may be in it more than once; when it is taken out, check whether it still counts.
 
 (deftype nodes () '(simple-array (unsigned-byte 31) (*)))
 
@@ -16,7 +16,7 @@
 (declaim-final queue)
 
 (defun enlarge-queue (queue)
-  "Give QUEUE room for twice as many."
+  "Double the capacity of QUEUE."
   (flet ((enlarged (array)
            (replace (make-array (* 2 (length array)) :element-type (array-element-type array))
                     array)))
@@ -73,13 +73,13 @@
 ;;;; Crossing the square between the middles of four cells
 
 ;;; Ways run between the middles of cells, the nodes. Four of them are the corners of a square. A
-;;; metre in it costs what it does in the dearest of the four cells; a metre on the line between two
-;;; neighbouring nodes what it does in the dearer one. So there is no way into a square with a wall
-;;; at a corner: ways keep half a metre off all walls, and go through the middle of a doorway that
-;;; is one cell wide.
+;;; metre in it costs what it does in the most expensive of the four cells; a metre on the line
+;;; between two neighbouring nodes, in the more expensive one. So there is no way into a square with
+;;; a wall at a corner: ways keep half a metre off all walls, and go through the middle of a doorway
+;;; that is one cell wide.
 ;;;
-;;; From a node a way may cross a square to any point of the two sides opposite. What the goal
-;;; costs from there is known for the corners, and taken to change evenly between them. That is
+;;; From a node a way may cross a square to any point of the two sides opposite. The cost
+;;; to the goal is known for the corners, and interpolated linearly between them. That is
 ;;; Field D*: D. Ferguson and A. Stentz, "Using interpolation to improve path planning: the Field
 ;;; D* algorithm", Journal of Field Robotics 23(2), 2006.
 
@@ -87,9 +87,9 @@
 
 (declaim (inline crossing-by))
 (defun crossing-by (straight diagonal edge square)
-  "Return what the goal costs from a node by way of the side of a square opposite: STRAIGHT and
-DIAGONAL are what it costs from the ends of that, EDGE and SQUARE what a metre costs on the line to
-the first, and in the square. The result is larger than what it depends on, by a third at least."
+  "Return the cost to the goal from a node through the opposite side of a square. STRAIGHT and
+DIAGONAL are the costs from the ends of that side, EDGE and SQUARE the costs of a metre on the line
+to the first, and in the square. The result is larger than what it depends on, by a third at least."
   (declare (type double-float straight diagonal edge square))
   (let ((drop (- straight diagonal)) (along (+ edge straight)))
     (if (or (<= drop 0d0) (>= square +barred+))
@@ -109,13 +109,13 @@ the first, and in the square. The result is larger than what it depends on, by a
 ;;; neighbours' totals make it now. Nodes whose two differ wait in a queue, by the lesser of the
 ;;; two. When all that is less than a node's total has been dealt with, that total is right.
 ;;;
-;;; Totals are decided by cells and goal alone, to the bit: a total depends on lesser ones only (see
-;;; CROSSING-BY), and whenever a draft might have to rise it is made anew. So neither what was
-;;; asked before, nor cells that were barred once and are free again, nor the order of the queue
-;;; leave a trace. And without a heuristic a field serves robots anywhere.
+;;; Totals depend on cells and goal alone, to the bit: a total depends on lesser ones only (see
+;;; CROSSING-BY), and a draft that might have to rise is computed anew. So earlier queries, cells
+;;; that were barred once, and the order of the queue have no influence. Without a heuristic a field
+;;; serves all starts.
 
 (defstruct (field (:constructor %make-field (goal columns cells totals drafts)) (:copier nil))
-  "What it costs to get to the node GOAL. If there is a lock, threads share the field and CELLS are
+  "The costs to get to the node GOAL. If there is a lock, threads share the field and CELLS are
 the terrain's: totals are found in it, but no cell changes."
   (goal 0 :type node)
   (columns 0 :type (integer 0 40000) :read-only t)
@@ -137,7 +137,7 @@ the terrain's: totals are found in it, but no cell changes."
     field))
 
 (defun copy-field (field)
-  "Return a copy of FIELD that nobody shares."
+  "Return an unshared copy of FIELD."
   (ensure-room (length (field-cells field)) 24)
   (let ((copy (%make-field (field-goal field) (field-columns field) (copy-seq (field-cells field))
                            (copy-seq (field-totals field)) (copy-seq (field-drafts field)))))
@@ -145,7 +145,7 @@ the terrain's: totals are found in it, but no cell changes."
     copy))
 
 (defun copy-into-field (copy field)
-  "Let COPY, a field of the same terrain that nobody shares, be as FIELD is. Return COPY."
+  "Copy FIELD into COPY, an unshared field of the same terrain. Return COPY."
   (setf (field-goal copy) (field-goal field))
   (replace (field-cells copy) (field-cells field))
   (replace (field-totals copy) (field-totals field))
@@ -182,7 +182,7 @@ the terrain's: totals are found in it, but no cell changes."
 
 (declaim (inline best-draft))
 (defun best-draft (field node)
-  "Return what the goal costs from NODE, by what it costs from its neighbours."
+  "Return the cost to the goal from NODE, by those from its neighbours."
   (declare (type field field) (type node node))
   (with-field (field)
     (if (= node (field-goal field))
@@ -195,7 +195,7 @@ the terrain's: totals are found in it, but no cell changes."
 
 (declaim (inline note-draft))
 (defun note-draft (field node draft)
-  "Let DRAFT be that of NODE, which waits if its total is another."
+  "Set the draft of NODE to DRAFT, and queue NODE if its total differs."
   (declare (type field field) (type node node) (type double-float draft))
   (let ((total (aref (field-totals field) node)))
     (setf (aref (field-drafts field) node) draft)
@@ -209,7 +209,7 @@ the terrain's: totals are found in it, but no cell changes."
       (unless (= draft (aref (field-drafts field) node)) (note-draft field node draft)))))
 
 (defun offer (field node)
-  "The total of NODE is known now, and was not before: let the drafts of its neighbours follow."
+  "Update the drafts of the neighbours of NODE, whose total has become known."
   (declare #.*hot* (type field field) (type node node))
   (with-field (field)
     (flet ((lower (other draft)
@@ -241,7 +241,7 @@ the terrain's: totals are found in it, but no cell changes."
         (diagonal -1 (- columns))))))
 
 (defun redraft-neighbours (field node least)
-  "Make the drafts anew of those neighbours of NODE that may depend on it: that are above LEAST."
+  "Compute anew the drafts of neighbours of NODE that may depend on it: those above LEAST."
   (declare #.*hot* (type field field) (type node node) (type double-float least))
   (let ((columns (field-columns field)) (drafts (field-drafts field)))
     (flet ((look (offset)
@@ -284,7 +284,7 @@ the terrain's: totals are found in it, but no cell changes."
     (aref totals node)))
 
 (defun find-total (field node)
-  "Return what the goal of FIELD costs from NODE; that is found out first, if need be."
+  "Return the cost to the goal of FIELD from NODE, computing it if necessary."
   (let ((lock (field-lock field)))
     (if lock
         (with-lock (lock) (settle field node))
@@ -293,7 +293,7 @@ the terrain's: totals are found in it, but no cell changes."
 ;;; Changes.
 
 (defun change-cell (field node cost)
-  "Let the cell NODE of FIELD, which nobody shares, cost COST from now on."
+  "Set the cost of the cell NODE of FIELD, which is unshared, to COST."
   (let ((columns (field-columns field)))
     (setf (aref (field-cells field) node) cost)
     (when (>= cost +barred+) (note-draft field node +barred+))

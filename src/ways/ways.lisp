@@ -36,8 +36,8 @@ near."
 
 (addition nearest-free-point)
 (defun nearest-free-point (chart point)
-  "Return POINT, as a PT, if it is in a cell of CHART that can be crossed; or else the nearest
-middle of one, up to five cells away, or NIL. POINT is a PT or a list (x y), perhaps outside the
+  "Return POINT, as a PT, if its cell on CHART can be crossed. Otherwise return the middle of the
+nearest such cell, up to five cells away, or NIL. POINT is a PT or a list (x y), perhaps outside the
 map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
   (check-argument nearest-free-point point (point-p point) "a PT or a list (x y)")
   (multiple-value-bind (x y) (free-coordinates (chart-from 'nearest-free-point chart)
@@ -85,12 +85,12 @@ first: () if there is none. UNTIL and TURNS are as for DRAW-WAY."
 
 (addition find-way)
 (defun find-way (chart start goal &key until)
-  "Return the way on CHART from START to GOAL, as a list of the points, PTs, where it begins, turns
-and ends; () if there is none. CHART may be a map or the name of one. START and GOAL are PTs or
-lists (x y); for one in a wall the nearest free point stands, up to five cells away. The way ends in
-the first cell, after that of START, that is a place of the type called UNTIL, or for whose column
-and row UNTIL, a function, returns true. A map stands for the chart that MAKE-CHART makes of it
-without options: a metre in a DOORWAY costs 2. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Return the way on CHART from START to GOAL: a list of the points, PTs, where it begins, turns and
+ends; () if there is none. START and GOAL are PTs or lists (x y). For one in a wall the nearest free
+point is taken, up to five cells away. CHART may be a map or the name of one, which stands for
+(make-chart map): a metre in a DOORWAY costs 2. With UNTIL the way ends in the first cell, after
+that of START, that is a place of the type named UNTIL, or for whose column and row the function
+UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument find-way until (or (functionp until) (symbolp until))
                   "the name of a place type, or a function of a column and a row")
   (let* ((chart (chart-from 'find-way chart))
@@ -101,7 +101,7 @@ without options: a metre in a DOORWAY costs 2. Signals WRONG-ARGUMENT and UNKNOW
 
 (addition next-point)
 (defun next-point (chart start goal)
-  "Return to which point, a PT, somebody at START is to go straight on the way to GOAL on CHART:
+  "Return the point, a PT, to go to in a straight line from START, on the way to GOAL on CHART:
 where the way first turns, or GOAL; NIL if there is no way. Signals WRONG-ARGUMENT. See FIND-WAY."
   (let ((chart (chart-from 'next-point chart)))
     (with-ends (next-point chart start goal)
@@ -109,8 +109,8 @@ where the way first turns, or GOAL; NIL if there is no way. Signals WRONG-ARGUME
 
 (addition way-cost)
 (defun way-cost (chart start goal)
-  "Return what the way from START to GOAL on CHART costs, between the middles of their cells:
-metres, each counted as often as where it is costs. NIL if there is no way. Signals WRONG-ARGUMENT.
+  "Return the cost of the way from START to GOAL on CHART, between the middles of their cells: its
+metres, each times the cost of a metre there. NIL if there is no way. Signals WRONG-ARGUMENT.
 See FIND-WAY."
   (let ((chart (chart-from 'way-cost chart)))
     (with-ends (way-cost chart start goal)
@@ -120,7 +120,7 @@ See FIND-WAY."
 
 (addition way-length)
 (defun way-length (way)
-  "Return how long WAY is, a list of PTs or of lists (x y), in metres. Signals WRONG-ARGUMENT."
+  "Return the length of WAY, a list of PTs or of lists (x y), in metres. Signals WRONG-ARGUMENT."
   (check-argument way-length way (and (proper-list-p way) (every #'point-p way))
                   "a list of PTs, or of lists (x y)")
   (loop for (point next) on way
@@ -130,9 +130,9 @@ See FIND-WAY."
 
 (addition straight-cost)
 (defun straight-cost (chart start goal)
-  "Return what the straight line from START to GOAL on CHART costs: metres, each counted as often as
-where it is costs. NIL if it is not free, that is, nearer than half a metre to a wall, or through a
-cell that cannot be crossed. Signals WRONG-ARGUMENT. See FIND-WAY."
+  "Return the cost of the straight line from START to GOAL on CHART: its metres, each times the cost
+of a metre there. NIL if it is not free: it comes nearer than half a metre to a wall, or goes
+through a cell that cannot be crossed. Signals WRONG-ARGUMENT. See FIND-WAY."
   (let ((chart (chart-from 'straight-cost chart)))
     (with-ends (straight-cost chart start goal)
       (let ((cost (free-line-cost (field-to chart (node-at chart goal-x goal-y))
