@@ -193,22 +193,24 @@ the others."
 (define-with-keywords save-run-picture
     (file &key journal until moments (kinds t) (limit 24) part title
                (layers (remove :tracks *picture-layers*)) (in-color t) scale anyway)
-  "Save in FILE, replacing it, a picture of the run that JOURNAL holds (a journal, or a file with
-one; by default that of the current simulation) up to the tick UNTIL or its end: its world as it is
-then, the ways that its robots went, and numbers where something happened that is told of below:
-that they grasped, let go of or stowed something, that a command failed, that a plan or a part of
-one failed or was ended, that there was an error in your code. KINDS, a list, chooses among :GRASP,
-:RELEASE, :STOW, :FAILURE, :PLAN, :PART, :ERROR and :NOTE, which are your own moments and always
-shown. There are LIMIT lines below the map at most, more only if your own moments need them, or any
-number, with all ticks, if it is NIL: where there is more to tell, what matters least is left out,
-and counted; that a robot was blocked or lost a track, as plans expect, before other failures of
-commands and of parts of plans, and these before the rest. MOMENTS, a list of moments or of lists of
-a tick, a string and, if you like, the name of a robot of the run, are told of besides. PART (left
-top right bottom), in cells, is what is wanted of the map, by default all. TITLE stands above. With
-ANYWAY also of a run whose definitions are not those at hand, though it may have gone differently.
-FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
-Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
-PNG needs, or where no journal is kept."
+  "Save in FILE, replacing it, a picture of a run: its world at the end, the ways of its robots, and
+numbers that refer to events listed below the map. Return the file's truename. JOURNAL is a journal
+or a file with one, by default that of the current simulation; UNTIL is the last tick, by default
+that of its end.
+
+Events are that a robot grasped, released or stowed something, that a command failed, that a plan or
+a part of one failed or was ended, and errors in your code. KINDS, a list, chooses among :GRASP,
+:RELEASE, :STOW, :FAILURE, :PLAN, :PART, :ERROR and :NOTE. MOMENTS are your own events, always
+shown: moments, or lists of a tick, a string and, if you like, the name of a robot of the run.
+
+LIMIT is the most lines below the map; your own events may need more. NIL lists all events with all
+ticks. What does not fit is left out and counted, the least important first: that a robot was
+blocked or lost a track, as plans expect; then other failures of commands and of parts of plans.
+
+PART (left top right bottom), in cells, is the part of the map, by default all. TITLE stands above.
+ANYWAY accepts a run whose definitions are not the present ones, though it may have gone
+differently. FILE and the other arguments are those of SAVE-PICTURE. Signals WRONG-ARGUMENT, what
+REPLAY does, and MISUSE without the program that PNG needs or if no journal is kept."
   (let* ((kind (picture-kind 'save-run-picture file))
          (journal (journal-meant journal 'save-run-picture))
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
