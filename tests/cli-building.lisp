@@ -50,6 +50,30 @@ mkdir \"$cache\"
                                              "--batch")
                                  :input in :output :string))))))))
 
+(test cores.know-the-files-of-functions
+  "Else each would be a function typed anew in each Lisp, and tables would not belong together."
+  (with-input-from-string (in "(let ((names '()))
+  (do-external-symbols (name :ars-worlds)
+    (when (and (fboundp name) (not (macro-function name))) (push name names)))
+  (out \"all \" (length names) \" without \"
+       (remove-if (lambda (name) (ars-magna.host:function-file (fdefinition name))) names) t))")
+    (let ((said (nth-value 1 (base:run-command (base:native-name (project-file "cli/ars-magna"))
+                                               '("--batch") :input in :output :string))))
+      (is (search " without NIL" said) "~A" said)
+      (is (null (search "all 0 " said))))))
+
+(test functions.have-their-file-by-their-code-alone
+  "SBCL does not find all of them in a saved core by other means."
+  (let ((count 0))
+    (do-external-symbols (name :ars-worlds)
+      (when (and (fboundp name) (not (macro-function name))
+                 (not (typep (fdefinition name) 'generic-function)))
+        (incf count)
+        (is (equal (multiple-value-list (host:function-file (fdefinition name)))
+                   (multiple-value-list (host::file-of-code (fdefinition name))))
+            "~A" name)))
+    (is (< 20 count))))
+
 (test caches.are-one-for-each-sbcl
   (is (equal '("SBCL-1.2.3-odd" "no-SBCL" "SBCL-1.2.3-odd")
              (lines-of-shell "XDG_CACHE_HOME=$root/caches

@@ -144,10 +144,22 @@ file at that time; NIL if it was typed."
            (values name (or (sb-introspect:definition-source-file-write-date source)
                             (gethash name *dates-of-files*)))))))
 
+(defun file-of-code (function)
+  "Return what FUNCTION-FILE does, by what is kept with the code of FUNCTION alone."
+  (let* ((source (internal (:sb-c #:debug-info-source)
+                           (internal (:sb-kernel #:%code-debug-info) (code-of function))))
+         (name (internal (:sb-c #:debug-source-namestring) source)))
+    (and name
+         (values (native-name (translate-logical-pathname name))
+                 (internal (:sb-c #:debug-source-created) source)))))
+
 (defun function-file (function)
   "Return the native name of the file that FUNCTION was compiled from, and its write date at that
 time; NIL if it was typed."
-  (file-of-source (ignore-errors (sb-introspect:find-definition-source function))))
+  (handler-case (file-of-source (sb-introspect:find-definition-source function))
+    ;; Of a file compiled by the Lisp that saved this core, SBCL may have kept the positions of the
+    ;; first forms only, and looks for those of later ones.
+    (error () (ignore-errors (file-of-code function)))))
 
 (defun files-besides-functions (symbol)
   "Return lists (file written), as of FUNCTION-FILE, for the other definitions of SYMBOL."
