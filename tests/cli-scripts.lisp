@@ -239,7 +239,7 @@ frobnicate")
   (let ((cli::*lines* cli::*lines*)
         (*package* (find-package :ars-magna.cli)))
     (dolist (block (blocks-of-kind "lisp"))
-      (eval (read-from-string (joined (page-block-lines block)))))
+      (load (make-string-input-stream (joined (page-block-lines block)))))
     (is (equal '("5.00") (type-batch "pos 3 4" "how-far 6 8")))
     (is-true (has-words-p (joined (type-batch "help how-far")) "HOW-FAR x y" "how far the robot"))))
 

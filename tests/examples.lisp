@@ -81,6 +81,31 @@
       (unless (or (begins-with-p "|" line) (begins-with-p "![" line))
         (is (<= (length line) 112) "~A: ~A" page line)))))
 
+;;; Files that pages name.
+
+(defun files-named (text)
+  "Return the names of Lisp files in TEXT, a page, without those that its reader writes and loads."
+  (loop for name in (uiop:split-string text :separator "`")
+        when (and (uiop:string-suffix-p name ".lisp")
+                  (not (find-if (lambda (char) (find char " *")) name))
+                  (not (search (format nil "--load ~A" name) text))
+                  (not (search (format nil "--world ~A" name) text)))
+          collect name))
+
+(defun project-file-p (name)
+  "True if a file of the project has this NAME, or one that ends with it."
+  (some (lambda (path)
+          (uiop:string-suffix-p (namestring path) (format nil "/~A" name)))
+        (lisp-files "src/" "rpl/" "worlds/" "cli/" "tests/")))
+
+(test examples.pages-name-files-that-exist
+  (is (equal '("a/b.lisp") (files-named "See `a/b.lisp`, `(load)`; `x.lisp` for --load x.lisp.")))
+  (is-true (project-file-p "world/walls.lisp"))
+  (is-false (project-file-p "world/wall.lisp"))
+  (dolist (page (all-readmes))
+    (dolist (name (files-named (base:read-file-into-string (project-file page))))
+      (is-true (project-file-p name) "~A names ~A, which does not exist" page name))))
+
 ;;; Names without an example.
 
 (defun names-without-examples ()

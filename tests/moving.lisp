@@ -20,6 +20,12 @@ exactly once."
 (defun took (outcome) (first outcome))
 (defun result (outcome) (fourth outcome))
 
+(defun own-commands ()
+  "Return a list of the simulator's own commands, without those that tests have added."
+  (remove (find-package :ars-magna.command) (command:all-commands)
+          :key (lambda (command) (symbol-package (command:command-name command)))
+          :test-not #'eq))
+
 (defun place-rover (x y angle rover) (robot:set-robot-pose rover x y angle))
 
 ;;; Speeds.
@@ -119,6 +125,35 @@ exactly once."
       (let ((before (robot:robot-x rover)))
         (outcome () command:robot-stop)
         (is (= before (robot:robot-x rover)) "a robot at rest does not coast")))))
+
+;; The simulator has no command that drives back; one that you add can use these steps.
+(test movements.go-backwards-where-what-is-left-is-negative
+  (flet ((turn-back (left)
+           (setf (command::operation-left
+                  (time:pending-event (run:simulation-agenda time:*simulation*) rover))
+                 left)))
+    (with-rover (:clean t)
+      (command:robot-go-forward rover 100)
+      (run:run-ticks 7)
+      (let ((start (robot:robot-x rover)))
+        (turn-back -2.5d0)
+        (run:run-ticks 10)
+        (is (< (abs (- (robot:robot-x rover) (- start (* 2.5 0.8d0)))) 1d-9))))
+    (with-rover (:clean t)
+      (command:robot-go-distance rover 100)
+      (run:run-ticks 7)
+      (let ((start (robot:robot-x rover)))
+        (turn-back -1.3d0)
+        (run:run-ticks 10)
+        (is (< (abs (- (robot:robot-x rover) (- start 1.3d0))) 1d-9))))
+    (with-rover (:clean t)
+      (command:robot-go-forward rover 100)
+      (run:run-ticks 7)
+      (turn-back -100d0)
+      (run:run-ticks 1)
+      (let ((start (robot:robot-x rover)))
+        (is (null (code (outcome (:ticks 10) command:robot-stop))))
+        (is (< (abs (- (robot:robot-x rover) (- start (* 2 0.8d0)))) 1d-9) "it coasts on")))))
 
 (test stop.after-a-natural-end-does-not-coast
   (with-rover (:clean t)

@@ -77,11 +77,7 @@ has been answered or was wrong. Once it is over, answers lead on to nothing more
 
 (defvar *ride*)
 
-(defun own-commands ()
-  "Return a list of the simulator's own commands, without those that tests have added."
-  (remove (find-package :ars-magna.command) (command:all-commands)
-          :key (lambda (command) (symbol-package (command:command-name command)))
-          :test-not #'eq))
+(defvar *commands-to-draw* nil "The commands that rides draw from; NIL: all of the simulator's.")
 
 (defun luck (probability) (base:chance probability (ride-dice *ride*)))
 (defun pick (list) (and list (base:roll-element list (ride-dice *ride*))))
@@ -189,10 +185,10 @@ another command, and sometimes fails."
         (remhash call (ride-pending *ride*)))))
 
 (defun command-at-random ()
-  (let ((command (pick (if (luck .2)
-                           (own-commands)
-                           (remove :moving (own-commands)
-                                   :key #'command:command-family)))))
+  (let* ((all (or *commands-to-draw* (own-commands)))
+         (command (pick (if (luck .2)
+                            all
+                            (remove :moving all :key #'command:command-family)))))
     (apply #'issue-command (command:command-name command)
            (argument-for (command:command-resource command))
            (mapcar #'argument-for (command:command-parameters command)))))

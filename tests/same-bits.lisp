@@ -6,10 +6,26 @@
 
 ;;; tests/same-bits has the records of one machine: the digests of 40 set-ups, the journal of one of
 ;;; them, and a saved run. All machines must produce the same. After a change in behaviour, record
-;;; again with (record-same-bits), and give the reason in the commit.
+;;; again with (record-same-bits), and give the reason in the commit. A new command is no reason:
+;;; random rides draw from the commands that were recorded with them.
 
 (defun same-bits-file (name)
   (project-file (format nil "tests/same-bits/~A" name)))
+
+;; The order counts: rides draw from this list.
+(defun record-commands ()
+  (write-lines (mapcar (lambda (command) (string-downcase (command:command-name command)))
+                       (own-commands))
+               (same-bits-file "commands.txt")))
+
+(defun recorded-commands ()
+  (loop for name in (file-lines (same-bits-file "commands.txt"))
+        collect (command:find-command (find-symbol (string-upcase name) :ars-magna.command))))
+
+(defun ride-as-recorded (seed &rest options)
+  "Drive at random by 150 of the recorded commands. Return what DRIVE-AT-RANDOM returns."
+  (let ((*commands-to-draw* (recorded-commands)))
+    (apply #'drive-at-random 150 seed options)))
 
 (defun tour (robot seed clean)
   "Return the digest of a run in which ROBOT, of a shipped world, turns, drives and looks about."
@@ -41,7 +57,7 @@
    (loop for seed from 1 to 20
          collect (let ((seed seed))
                    (cons (format nil "ride ~D" seed)
-                         (lambda () (nth-value 2 (drive-at-random 150 seed))))))))
+                         (lambda () (nth-value 2 (ride-as-recorded seed))))))))
 
 (defun set-up-lines ()
   "Return a line (name and digest) for each set-up."
@@ -82,8 +98,9 @@
 
 (defun record-same-bits ()
   "Write what the tests of this suite compare with."
+  (record-commands)
   (write-lines (set-up-lines) (same-bits-file "digests.txt"))
-  (run:write-journal (nth-value 1 (drive-at-random 150 7 :journal t))
+  (run:write-journal (nth-value 1 (ride-as-recorded 7 :journal t))
                      (same-bits-file "ride.journal"))
   (save-ride)
   (write-lines (list (after-saved)) (same-bits-file "after-saved.txt")))

@@ -4,9 +4,16 @@
 
 ;;; Each movement begins after ROBOT-MOVE-DELAY*, takes at least a tick, and ends in the tick of its
 ;;; last step, without braking. So it does when anything interrupts it but ROBOT-STOP, which lets
-;;; the robot coast.
+;;; the robot coast. What is left of a movement, in ticks or metres, is negative if it goes
+;;; backwards.
 
-(declaim (inline drive-for-tick drive-in-time drive-what-is-left drive-time-over-p))
+(declaim (inline lessen drive-for-tick drive-in-time drive-what-is-left drive-time-over-p))
+(defun lessen (number amount least)
+  "Return NUMBER brought nearer to 0 by AMOUNT; 0 if no more than LEAST would remain."
+  (declare (type double-float number amount least))
+  (let ((rest (- (abs number) amount)))
+    (if (<= rest least) 0d0 (float-sign number rest))))
+
 (defun drive-for-tick (operation)
   "Drive the robot of OPERATION for a tick. Return what blocks it, :WALL, :THING or NIL."
   (drive-tick (operation-resource operation)))
@@ -15,26 +22,22 @@
   "Drive the robot of OPERATION for a tick, or for the rest of its time if that is shorter. Return
 what blocks it, :WALL, :THING or NIL."
   (let* ((robot (operation-resource operation))
-         (left (operation-left operation))
-         (later (- left (the double-float (double tick-quantum*)))))
-    (setf (operation-left operation) later)
-    (if (minusp later)
-        (drive-tick robot (* left (the double-float (robot-speed-now robot))))
-        (drive-tick robot))))
+         (left (operation-left operation)))
+    (setf (operation-left operation) (lessen left (double tick-quantum*) 0d0))
+    (drive-tick robot (* left (the double-float (robot-speed-now robot))))))
 
 (defun drive-what-is-left (operation)
   "Drive the robot of OPERATION for a tick, or as many metres as are left if those are fewer. Return
 what blocks it, :WALL, :THING or NIL."
   (let* ((robot (operation-resource operation))
-         (left (operation-left operation))
-         (later (- left (the double-float (step-now robot)))))
+         (left (operation-left operation)))
     ;; What rounding leaves is not driven.
-    (setf (operation-left operation) (if (< later 1d-9) 0d0 later))
+    (setf (operation-left operation) (lessen left (step-now robot) 1d-9))
     (drive-tick robot left)))
 
 (defun drive-time-over-p (operation)
   "True if the robot of OPERATION, which has driven for a tick, is to drive no longer."
-  (<= (operation-left operation) 0d0))
+  (zerop (operation-left operation)))
 
 (defmacro drive-on ((block operation &optional (drive 'drive-for-tick)) &body body)
   "Drive the robot of OPERATION for a tick, by the function DRIVE, and run BODY with BLOCK bound to
@@ -127,12 +130,15 @@ ticks."
   (begin-movement robot)
   (go-on-now operation 'drive-to-wall))
 
-;; A stop that interrupts another continues it.
+;; A stop that interrupts another continues it. The robot coasts backwards if it went so.
 (defmethod note-cut-short ((name (eql 'robot-stop)) operation rival)
-  (if (eq name (command-name (operation-command rival)))
-      (setf (operation-subject operation) (operation-subject rival)
-            (operation-left operation) (operation-left rival))
-      (call-next-method)))
+  (call-next-method)
+  (let ((command (operation-command rival)) (left (operation-left rival)))
+    (cond ((eq name (command-name command))
+           (setf (operation-subject operation) (operation-subject rival)
+                 (operation-left operation) left))
+          ((and (trait-p :drives command) (minusp left))
+           (setf (operation-left operation) (- (double braking*)))))))
 
 (defun driving-p (robot)
   "True if ROBOT drove in the last tick, or in this."

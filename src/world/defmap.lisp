@@ -230,7 +230,7 @@ cells of one metre, then options:
 - :cache file -- keep the built grid in this file, relative to the file of the DEFMAP; not used
   while a place type has a :checker
 - :frame (size x y yaw) -- ours, see MAP-FRAME
-A string before the clauses, ours, is the map's documentation. Clauses:
+A string before the clauses, ours, is the map's documentation. Clauses of the manual:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
   (rect (x0 y0) (x1 y1) substance parameter [parameter1 parameter2 parameter3]) -- an outline
   (circle (x y) radius substance parameter) -- likewise
