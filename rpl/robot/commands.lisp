@@ -22,9 +22,6 @@
   (:error robot-movement-error*)
   (:pulse robot-stopped*))
 
-;; The manual has no such command.
-(addition rpl-robot-go-distance)
-
 (define-outcome (robot-goto-designator) (camera designator)
   (:when (null err) (:set robot-arrived-at* designator))
   (:error robot-movement-error*)

@@ -23,16 +23,17 @@ part is a symbol, NIL for the robot itself.")
            :key #'first))
 
 (defmacro define-fluents (kind &body definitions)
-  "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation).
-The documentation of those that are pulsed, and never set, begins so. Return their names."
+  "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation),
+with :ADDITION behind it if the manual does not have the name. The documentation of those that are
+pulsed, and never set, begins so. Return their names."
   `(progn
      (fluent-kind ',kind)
-     ,@(loop for (name text) in definitions
-             collect `(public ,name)
+     ,@(loop for (name text mark) in definitions
+             collect `(,(if mark 'addition 'public) ,name)
              collect `(defvar ,name nil ,(format nil "~A~@[~A~]~:[~; (Manual C.)~]" text
                                                  (unless (same-name-p kind 'robot)
                                                    (format nil " A vector, by ~(~A~)." kind))
-                                                 *marking-p*))
+                                                 (and *marking-p* (not mark))))
              collect `(note-fluent-variable ',name ',kind)
              collect `(declare-fluent-variable
                        ',name :kind ,(if (same-name-p kind 'robot) t (string-downcase kind))

@@ -144,7 +144,8 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
              for parameters = (append (unless (same-name-p 'robot (second resource))
                                         (list (first resource)))
                                       (mapcar #'first specifications))
-             collect `(public ,name)
+             for ours = (addition-p command-name)
+             collect `(,(if ours 'addition 'public) ,name)
              collect `(setf (get ',command-name 'result-fluents)
                             ',(remove-duplicates (clause-fluents clauses '(:set :error))))
              collect `(note-twin ',command-name '(,name ,@parameters)
@@ -157,7 +158,8 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
                                       fluents.~:[~; (Manual C.)~]"
-                                 sentence (remove-duplicates (clause-fluents clauses)) *marking-p*)
+                                 sentence (remove-duplicates (clause-fluents clauses))
+                                 (and *marking-p* (not ours)))
                         (command-in-plan ',name (find-command ',command-name)
                                          (lambda (resource err &optional ,@results &rest more)
                                            (declare (ignore more)
