@@ -20,17 +20,14 @@ ends with it and simulations side by side do not meet.")
   "True if SIMULATION is a fork of another."
   (timeline-fork-p (simulation-timeline simulation)))
 
-(defun variables-of (simulation)
-  "Return the symbols that are bound, or set at top level, for SIMULATION."
-  (or (simulation-variables simulation)
-      (append (mapcar #'robot-name (simulation-robots simulation)) *simulation-variables*)))
-
 (defun environment-here (simulation)
   "Return a list (symbol . value) of what the variables of SIMULATION are here."
   (let ((value-of (if (or (headless-p simulation) (eq simulation *simulation*))
                       #'symbol-value
                       #'global-value)))
-    (loop for symbol in (variables-of simulation)
+    (loop for symbol in (or (simulation-variables simulation)
+                            (append (mapcar #'robot-name (simulation-robots simulation))
+                                    *simulation-variables*))
           when (boundp symbol)
             collect (cons symbol (funcall value-of symbol)))))
 
@@ -74,19 +71,16 @@ simulation around it may have bound them."
   (setf (simulation-environment simulation) (environment-here simulation))
   (publish-variables simulation))
 
-(defun environment-with-dice (simulation)
-  "Return what ENVIRONMENT-HERE does, with the dice that SIMULATION has brought with it, if any."
-  (let ((environment (environment-here simulation)) (dice (simulation-dice simulation)))
-    (if (and dice (not (assoc *lisps-dice* environment)))
-        (acons *lisps-dice* dice environment)
-        environment)))
-
 (defun environment-of (simulation)
-  "Return a list (symbol . value) of what the variables of SIMULATION are, wherever this is."
+  "Return a list (symbol . value) of the variables of SIMULATION, wherever this is called. It has
+the dice that SIMULATION was loaded with, if any."
   (or (and (headless-p simulation)
            (not (eq simulation *simulation*))
            (simulation-environment simulation))
-      (environment-with-dice simulation)))
+      (let ((environment (environment-here simulation)) (dice (simulation-dice simulation)))
+        (if (and dice (not (assoc *lisps-dice* environment)))
+            (acons *lisps-dice* dice environment)
+            environment))))
 
 (defun take-up-environment (simulation)
   "Set the variables of SIMULATION, to which this thread comes back, to what they have become."
@@ -94,24 +88,19 @@ simulation around it may have bound them."
     (loop for (symbol . value) in (simulation-environment simulation)
           do (unless (eq value (symbol-value symbol)) (setf (symbol-value symbol) value)))))
 
-(defun keep-environment (simulation environment)
-  "Let what the variables in ENVIRONMENT, a list (symbol . value), have become here be what
-SIMULATION, in which this thread does not work, has."
-  (if (headless-p simulation)
-      (setf (simulation-environment simulation)
-            (loop for (symbol) in environment collect (cons symbol (symbol-value symbol))))
-      (loop for (symbol . value) in environment
-            do (unless (eq value (symbol-value symbol))
-                 (setf (global-value symbol) (symbol-value symbol))))))
-
 (defun call-in-environment (simulation function)
-  "Call FUNCTION with the variables of SIMULATION, in which this thread does not work, bound, and
-keep what they are then."
+  "Call FUNCTION with the variables of SIMULATION, in which this thread does not work, bound. Store
+their last values in SIMULATION, or globally if that is live."
   (let* ((environment (environment-of simulation)) (symbols (mapcar #'car environment)))
     (progv symbols (mapcar #'cdr environment)
       (in-any-case
         (funcall function)
-        (keep-environment simulation environment)))))
+        (if (headless-p simulation)
+            (setf (simulation-environment simulation)
+                  (loop for symbol in symbols collect (cons symbol (symbol-value symbol))))
+            (loop for (symbol . value) in environment
+                  do (unless (eq value (symbol-value symbol))
+                       (setf (global-value symbol) (symbol-value symbol)))))))))
 
 (defun call-elsewhere (simulation function)
   "Call FUNCTION with the parameters and variables of SIMULATION, which is not the current one."

@@ -30,18 +30,12 @@
 
 ;;; What is used. A definition is here a list (kind name).
 
-(defun kickers-at-work (simulation)
+(defun names-on-things (simulation name entries)
+  "Return the NAMEs of all ENTRIES of things in SIMULATION, each once. Both are functions."
   (let ((names '()))
     (do-things (thing (simulation-world simulation))
-      (dolist (attachment (thing-kickers thing))
-        (pushnew (kicker-name (attachment-kicker attachment)) names)))
-    names))
-
-(defun attributes-at-work (simulation)
-  (let ((names '()))
-    (do-things (thing (simulation-world simulation))
-      (dolist (attribute (thing-attributes thing))
-        (pushnew (first attribute) names)))
+      (dolist (entry (funcall entries thing))
+        (pushnew (funcall name entry) names)))
     names))
 
 (defun elements-in-use (numbers elements)
@@ -51,27 +45,20 @@
     (loop for index from 1 below (length elements)
           when (plusp (sbit used index)) collect (aref elements index))))
 
+(defun entries-so-far (simulation)
+  (let ((journal (simulation-journal simulation)))
+    (and journal (journal-newest-first journal))))
+
 (defun asked-for (operator position simulation)
   "Return the arguments at POSITION of the entries for OPERATOR in the journal of SIMULATION."
-  (let ((journal (simulation-journal simulation)))
-    (and journal
-         (remove-duplicates
-          (loop for entry in (journal-newest-first journal)
-                when (eq operator (second entry)) collect (nth (+ 2 position) entry))))))
-
-(defun sensor-kinds (simulation)
-  "Return the names of the kinds of the robots' parts in SIMULATION that are users' own."
   (remove-duplicates
-   (loop for robot in (simulation-robots simulation)
-         append (cl:map 'list #'type-of (robot-sensors robot)))))
+   (loop for entry in (entries-so-far simulation)
+         when (eq operator (second entry)) collect (nth (+ 2 position) entry))))
 
 (defun users-commands (simulation)
-  (let ((journal (simulation-journal simulation)))
-    (and journal
-         (remove-if-not (lambda (name)
-                          (let ((entry (lookup-entry name *commands*)))
-                            (and entry (users-p entry))))
-                        (remove-duplicates (mapcar #'second (journal-newest-first journal)))))))
+  (loop for name in (remove-duplicates (mapcar #'second (entries-so-far simulation)))
+        for entry = (lookup-entry name *commands*)
+        when (and entry (users-p entry)) collect name))
 
 (defun names-in-use (kind simulation)
   (let ((map (world-map (simulation-world simulation))))
@@ -79,11 +66,17 @@
       (:map (list (map-name map)))
       (:map-clause (map-clause-kinds map))
       (:robot (mapcar #'robot-name (simulation-robots simulation)))
-      (:kicker (append (kickers-at-work simulation) (asked-for 'set-kicker 1 simulation)))
+      (:kicker (append (names-on-things simulation
+                                        (lambda (attachment)
+                                          (kicker-name (attachment-kicker attachment)))
+                                        #'thing-kickers)
+                       (asked-for 'set-kicker 1 simulation)))
       (:place-type (loop for type in (elements-in-use (map-places map) (map-place-types map))
                          collect (if (place-type-p type) (place-type-name type) type)))
-      (:attribute (attributes-at-work simulation))
-      (:part (sensor-kinds simulation))
+      (:attribute (names-on-things simulation #'first #'thing-attributes))
+      (:part (remove-duplicates
+              (loop for robot in (simulation-robots simulation)
+                    append (cl:map 'list #'type-of (robot-sensors robot)))))
       (:command (users-commands simulation))
       (:substance (elements-in-use (map-substances map) (map-substance-types map))))))
 
@@ -169,7 +162,7 @@ definitions that are looked at."
 
 (defun undefined-attributes (simulation)
   "Return, as definitions, the attributes that things in SIMULATION have and nobody has defined."
-  (loop for name in (attributes-at-work simulation)
+  (loop for name in (names-in-use :attribute simulation)
         unless (lookup-entry name *attributes*)
           collect (list :attribute (name-string name) :undefined)))
 

@@ -80,7 +80,7 @@ a live run's there are no dice: each of its threads has its own, and plans take 
   (when (<= (phase-number :continuations) phase (phase-number :observers))
     (call-inside fork (lambda ()
                         (deliver-notifications (simulation-timeline fork))
-                        (let-all-participants-act fork)))))
+                        (let-participants-act fork)))))
 
 (defun fork-now (simulation continuations decisions)
   "Return a fork of SIMULATION, which stands still here; see FORK-OPTIONS. Signals MISUSE inside a
@@ -109,22 +109,17 @@ what it returns."
                (lambda () (call-around caller (rest participants) function)))
       (funcall function)))
 
-(defun try-to-fork (simulation continuations decisions)
-  "Return a fork of SIMULATION, see FORK-NOW, or :BUSY if somebody who takes part in it is."
-  (asking (simulation)
-    (call-around #'participant-at-rest (simulation-participants simulation)
-                 (lambda () (fork-now simulation continuations decisions)))))
-
 (defconstant +patience+ 2000 "How often in a row a fork tries to find all at rest, once a tick or
 once in some milliseconds.")
 
-(defun keep-trying-to-fork (simulation continuations decisions)
-  "Return a fork of SIMULATION as soon as one can be made. Signals MISUSE if that takes too long."
+(defun keep-trying-to-fork (simulation try)
+  "Return a fork of SIMULATION as soon as the function TRY does not return :BUSY. Signals MISUSE if
+that takes too long."
   (loop with moment = (make-semaphore "fork")
         repeat +patience+
-        do (let ((fork (try-to-fork simulation continuations decisions)))
-             (unless (eq :busy fork) (return fork)))
-           (wait-a-while moment 0.002)
+        for fork = (funcall try)
+        unless (eq :busy fork) return fork
+        do (wait-a-while moment 0.002)
         finally (refuse-fork "plans of ~A do not come to rest. Let them wait between long calls of ~
                               Lisp functions, or (end-plan :all)."
                              (simulation-name simulation))))
@@ -132,12 +127,15 @@ once in some milliseconds.")
 (defun await-fork (simulation continuations decisions)
   "Return a fork of SIMULATION as soon as it, and all that takes part in it, stands still. See
 FORK-NOW."
-  (let ((fork (try-to-fork simulation continuations decisions)))
-    (if (eq :busy fork)
-        (call-around
-         #'call-as-participant-makes-way (simulation-participants simulation)
-         (lambda () (keep-trying-to-fork simulation continuations decisions)))
-        fork)))
+  (flet ((try ()
+           (asking (simulation)
+             (call-around #'participant-at-rest (simulation-participants simulation)
+                          (lambda () (fork-now simulation continuations decisions))))))
+    (let ((fork (try)))
+      (if (eq :busy fork)
+          (call-around #'call-as-participant-makes-way (simulation-participants simulation)
+                       (lambda () (keep-trying-to-fork simulation #'try)))
+          fork))))
 
 ;; The restarts are established here, in the thread that asked for the fork: another thread may own
 ;; the run.
@@ -206,8 +204,8 @@ CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL.
           (seed (getf options :seed)))
       (when fork
         (setf (message-queue-error-policy (simulation-messages fork))
-              (message-queue-error-policy (simulation-messages simulation))))
-      (when (and fork seed) (call-inside fork (lambda () (set-seed seed fork))))
+              (message-queue-error-policy (simulation-messages simulation)))
+        (when seed (call-inside fork (lambda () (set-seed seed fork)))))
       fork)))
 
 (addition release-fork)

@@ -2,19 +2,17 @@
 
 (in-package :ars-magna.run)
 
-(export '(fresh-simulation *rewound-end-hooks* variables-among undone-text note-lines-typed))
+(export '(fresh-simulation *rewound-end-hooks* variables-among))
 
 ;;; WITH-SIMULATION makes a fresh world, with fresh robots in it, for its extent.
-
-(defun blueprint-of (designator)
-  "Return the blueprint of the robot DESIGNATOR, which may be a robot or its name."
-  (if (robot-p designator) (robot-blueprint designator) (find-blueprint designator)))
 
 (defun fresh-simulation (robots &key (seed 0) journal (thinking :free))
   "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
 ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one. THINKING is its thinking
 mode."
-  (let* ((blueprints (mapcar #'blueprint-of robots))
+  (let* ((blueprints (mapcar (lambda (robot)
+                               (if (robot-p robot) (robot-blueprint robot) (find-blueprint robot)))
+                             robots))
          (maps (remove-duplicates (mapcar #'find-map (mapcar #'blueprint-map blueprints)))))
     (unless (= (length maps) 1)
       (reject-use "One simulation has one map, and these robots are defined in ~

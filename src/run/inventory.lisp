@@ -97,17 +97,12 @@ if it is to have one."
 
 ;;; What cannot be saved.
 
-(defun place-in-run (inventory)
-  "Return in words where INVENTORY is being taken."
-  (let ((holder (inventory-holder inventory)) (field (inventory-field inventory)))
-    (if field
-        (format nil "the slot ~(~A~) of ~A" (kind-slot-name field) (short-text holder))
-        (format nil "~A" (short-text holder)))))
-
 (defun reject-object (object why inventory)
   "Signal MISUSE: OBJECT, met in what INVENTORY looks at, cannot be saved, and WHY."
-  (reject-use "The run cannot be saved: in ~A is ~A, ~A."
-              (place-in-run inventory) (one-line (short-text object)) why))
+  (let ((field (inventory-field inventory)))
+    (reject-use "The run cannot be saved: in ~@[the slot ~(~A~) of ~]~A is ~A, ~A."
+                (and field (kind-slot-name field)) (short-text (inventory-holder inventory))
+                (one-line (short-text object)) why)))
 
 ;;; Shapes.
 

@@ -104,21 +104,26 @@ past."
                    (cons operator (lasting-arguments arguments))))
       (remember simulation operator arguments request))))
 
+(defun settings-by-name (settings)
+  "Return SETTINGS, lists (symbol value), with the names of the parameters as strings."
+  (loop for (symbol value) in settings collect (list (string-downcase symbol) value)))
+
+(defun settings-by-symbol (settings)
+  "Return SETTINGS, lists (name value), with the symbols of the parameters."
+  (loop for (name value) in settings
+        collect (list (parameter-symbol (find-parameter name)) value)))
+
 (defun follow-settings (simulation)
-  "Let the journal of SIMULATION know which parameters somebody has set."
+  "Let the journal of SIMULATION know which parameters somebody has set, and what DIRTY-SIMULATION
+would restore now."
   (follow-parameters (simulation-known-parameters simulation)
                      (and (simulation-thread simulation) t)
                      (lambda (symbol value)
                        (note simulation 'parameter (list (string-downcase symbol) value))))
   (when (and (eq simulation *simulation*)
              (not (eq *noise-before-cleaning* (simulation-known-noise simulation))))
-    (note-cleaning simulation)))
-
-(defun note-cleaning (simulation)
-  "Let the journal of SIMULATION know what DIRTY-SIMULATION would restore there now."
-  (setf (simulation-known-noise simulation) *noise-before-cleaning*)
-  (note simulation 'cleaning (list (loop for (symbol value) in *noise-before-cleaning*
-                                         collect (list (string-downcase symbol) value)))))
+    (setf (simulation-known-noise simulation) *noise-before-cleaning*)
+    (note simulation 'cleaning (list (settings-by-name *noise-before-cleaning*)))))
 
 ;;; Remarks. Plans and programs are not repeated in a replay; so what became of them is remarked, by
 ;;; whatever thread, for people to read. It changes nothing.
@@ -168,8 +173,7 @@ now, of which TEXT tells, to ROBOT, if given. Return the remark, or NIL."
                             :robots (robot-names simulation)
                             :seed (simulation-seed simulation)
                             :thinking (simulation-thinking simulation)
-                            :parameters (loop for (symbol value) in (parameter-settings)
-                                              collect (list (string-downcase symbol) value))
+                            :parameters (settings-by-name (parameter-settings))
                             :definitions (definitions-of simulation)))))
 
 (defun begin-thinking (simulation mode)
@@ -214,10 +218,6 @@ MISUSE if it keeps none."
 ;;; included, is not noted, since a replay does it again. Nor is what is done to a world whose run
 ;;; is over.
 
-(defun note-change (simulation operator arguments)
-  (unless (simulation-over simulation)
-    (note simulation operator arguments)))
-
 (defun check-not-of-past-run (timeline operator)
   "Signal MISUSE if what OPERATOR is to change belongs to TIMELINE, which is over, and this code
 works in another run."
@@ -258,20 +258,20 @@ sense now."
     (doubt-elsewhere world operator))
   (if (owner-p timeline)
       (deferring-interrupts
-        (note-change (world-simulation world) operator arguments)
+        (let ((simulation (world-simulation world)))
+          (unless (simulation-over simulation)
+            (note simulation operator arguments)))
         (writing (world) (funcall function)))
       (let ((by-itself-p (goes-on-in-forks-p)))
         (asking (timeline)
           (let ((*goes-on-in-forks-p* by-itself-p))
             (change-again world operator arguments))))))
 
-(defun own-binding-p (binding)
-  "True if BINDING, (symbol . value), is that of this thread alone."
-  (not (eql (cdr binding) (global-value (car binding)))))
-
 (defmethod parameters-bound ((timeline timeline) world)
   (let ((simulation (world-simulation world)))
     (flet ((changed () (changed-parameters (simulation-known-parameters simulation))))
       (cond ((headless-p simulation) (and (eq simulation *simulation*) (changed)))
             ((and (live-p timeline) (not (owner-p timeline)))
-             (remove-if-not #'own-binding-p (changed)))))))
+             ;; Those that only this thread has bound.
+             (remove-if (lambda (binding) (eql (cdr binding) (global-value (car binding))))
+                        (changed)))))))

@@ -103,12 +103,12 @@ itself at what was under way. What a prompt does for its user always looks at th
 
 (defun left-undone (world)
   "Return the names of what programs have asked for in WORLD that is under way or has not begun."
-  (let ((resources (loop for robot in (world-robots world)
-                         append (cons robot (robot-parts robot)))))
-    (loop for request in (append (mapcar #'resource-event resources)
-                                 (timeline-inbox (world-timeline world)))
-          when (and (typep request 'request) (programs-request-p request))
-            collect (string-downcase (request-name request)))))
+  (loop for request in (append (loop for robot in (world-robots world)
+                                     append (mapcar #'resource-event
+                                                    (cons robot (robot-parts robot))))
+                               (timeline-inbox (world-timeline world)))
+        when (and (typep request 'request) (programs-request-p request))
+          collect (string-downcase (request-name request))))
 
 (defun text-on-leaving (world)
   "Return in sentences what is left undone in WORLD, and a remedy; NIL if there is nothing."

@@ -10,33 +10,20 @@
 (defvar *hook-options* '()
   "The keywords of SIMULATOR that its hooks take, as symbols without the colon.")
 
-(defun call-with-robots (simulation function)
-  "Call FUNCTION with the variables bound that name robots where SIMULATION was begun: those of
-WITH-SIMULATION, around SIMULATOR."
-  (let ((variables (set-difference (simulation-variables simulation)
-                                   (cons *lisps-dice* *simulation-variables*))))
-    (progv variables (robots-meant variables)
-      (funcall function))))
-
 (defun call-as-owner (simulation function)
-  "Call FUNCTION with the bindings under which the thread of SIMULATION runs."
+  "Call FUNCTION with the bindings under which the thread of SIMULATION runs. They include the
+robots' names where it was begun: those of WITH-SIMULATION, around SIMULATOR."
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
         (*standard-output* (or (simulation-output simulation) *standard-output*))
-        (*standard-input* (input-of-programs *front-end* *standard-input*)))
-    (call-with-robots
-     simulation
-     (lambda ()
-       (call-with-parameters
-        '() (lambda () (rolling ((seeded-lisps-dice (simulation-seed simulation)))
-                         (funcall function))))))))
-
-(defun call-in-clock (simulation function)
-  "Call FUNCTION, what a thread of the live SIMULATION does. Whoever takes part hears of its end."
-  (in-any-case
-    (call-as-owner simulation function)
-    (mapc #'participant-clock-stopped (simulation-participants simulation))))
+        (*standard-input* (input-of-programs *front-end* *standard-input*))
+        (variables (set-difference (simulation-variables simulation)
+                                   (cons *lisps-dice* *simulation-variables*))))
+    (progv variables (robots-meant variables)
+      (call-with-parameters
+       '() (lambda () (rolling ((seeded-lisps-dice (simulation-seed simulation)))
+                        (funcall function)))))))
 
 (defun start-clock (simulation &key (rate *default-rate*) (real t) paused-p)
   "Run SIMULATION live, in a thread of its own, at RATE; if PAUSED-P, from when it is told to
@@ -46,8 +33,12 @@ positive number nor :FREE."
   (check-parameters)
   (let ((output (editors-output))
         ;; What users' code reads and prints there, also in a debugger, is as here.
-        (caller (spread-specials (lambda (function) (call-in-clock simulation function))
-                                 '*package*)))
+        (caller (spread-specials
+                 (lambda (function)
+                   (in-any-case
+                     (call-as-owner simulation function)
+                     (mapc #'participant-clock-stopped (simulation-participants simulation))))
+                 '*package*)))
     (asking (simulation)
       (check-not-over simulation 'start-clock)
       (setf (simulation-output simulation) output
@@ -92,42 +83,32 @@ timeline and run of their own. Return the run."
        (not (simulation-over simulation))
        (or (not journal) (simulation-journal simulation))))
 
-(defun start-seed (simulation seed)
-  "Let all chance in SIMULATION, which has passed no tick, come from SEED from the beginning."
-  (seed-world (simulation-world simulation) seed)
-  (when (simulation-journal simulation)
-    (setf (getf (journal-header (simulation-journal simulation)) :seed) seed)))
-
 (defun run-to-start (world seed journal)
   "Return the simulation of WORLD to run live: a new one if the last has passed ticks, or if JOURNAL
 is true and it keeps none. With SEED, all chance in it comes from that."
-  (let ((simulation (world-simulation world)))
+  (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation)))
     (cond ((not (fresh-p simulation journal))
            (end-simulation simulation "it has been started anew")
            (restart-world world (or seed (simulation-seed simulation))))
-          (t (when seed (start-seed simulation seed))
+          (t (when seed
+               (seed-world world seed)
+               (when kept (setf (getf (journal-header kept) :seed) seed)))
              simulation))))
 
-(defun call-as-starter (custody function)
-  "Call FUNCTION, which starts the world in CUSTODY, which this thread has. Signals MISUSE if that
-is what it is doing already, and FUNCTION has been called on the way."
-  (when (eq (current-thread) (custody-starter custody))
-    (reject-use "simulator: this world is being started already."))
-  (in-any-case
-    (progn (setf (custody-starter custody) (current-thread))
-           (funcall function))
-    ;; Another thread may have stopped it meanwhile and be starting it again.
-    (swap-if (custody-starter custody) (current-thread) nil)))
-
 (defun call-starting (world function)
-  "Stop WORLD, and call FUNCTION with it in custody, to start it."
-  (let ((timeline (ensure-timeline world)))
-    (call-alone timeline
-                (lambda ()
-                  (call-as-starter (timeline-custody timeline)
-                                   (lambda ()
-                                     (stop-pacing timeline)
-                                     (funcall function)))))))
+  "Stop WORLD, and call FUNCTION with it in custody, to start it. Signals MISUSE if this thread is
+starting it already, and has come here on the way."
+  (let* ((timeline (ensure-timeline world)) (custody (timeline-custody timeline)))
+    (flet ((start ()
+             (when (eq (current-thread) (custody-starter custody))
+               (reject-use "simulator: this world is being started already."))
+             (in-any-case
+               (progn (setf (custody-starter custody) (current-thread))
+                      (stop-pacing timeline)
+                      (funcall function))
+               ;; Another thread may have stopped it meanwhile and be starting it again.
+               (swap-if (custody-starter custody) (current-thread) nil))))
+      (call-alone timeline #'start))))
 
 (defun make-current (simulation everywhere)
   "Let SIMULATION be the current one; EVERYWHERE, not only where this thread has bound that."
@@ -152,19 +133,15 @@ Return the run."
     (keep-forks keep simulation)
     (start-clock simulation :rate rate :real (eq thinking :real))))
 
-(defun in-replaced-map-p (robot)
-  "True if ROBOT is in the world of a map that another has replaced, perhaps while it was made."
-  (let ((world (robot-world robot)))
-    (and (eq world (map-resident (world-map world)))
-         (not (resident-p world)))))
-
 (defun start-live (robot rate seed journal keep thinking)
   "Run the world of ROBOT as START-WORLD does. True unless ROBOT has been replaced meanwhile."
   (let ((world (robot-world robot))
         ;; This thread may pass the ticks of the current simulation, also if told to stop.
         (everywhere (and *simulation* (pacer-p (simulation-timeline *simulation*)))))
     (call-starting world (lambda ()
-                           (when (in-replaced-map-p robot)
+                           ;; Its map may have been replaced while it was made.
+                           (when (and (eq world (map-resident (world-map world)))
+                                      (not (resident-p world)))
                              (retire-robot robot "its map has been defined anew"))
                            (unless (robot-retired robot)
                              (start-world world rate seed journal keep thinking everywhere))))))

@@ -165,14 +165,6 @@
                                              (if (getf head :kickers-old-p) 1 0)))
     simulation))
 
-(defun check-tick-and-digest (simulation head)
-  "Return SIMULATION. Signals an error unless it has come to what HEAD says."
-  (unless (= (getf head :tick) (simulation-tick simulation))
-    (error "its tick is not what it says"))
-  (unless (= (getf head :digest) (state-digest simulation))
-    (error "what it comes to is not what was saved"))
-  simulation)
-
 (defun simulation-from (reading head octets)
   "Return the simulation whose saved run, of so many OCTETS, READING is, behind its HEAD."
   (let ((loaded (begin-loading octets)))
@@ -198,8 +190,14 @@
 (defun read-simulation (file)
   "Return the simulation that is saved in FILE. Signals DAMAGED-SIMULATION and UNKNOWN-NAME."
   (reading-file (in file :run 'damaged-simulation)
-    (let* ((reading (make-reading in 0 0)) (head (read-head reading)))
-      (check-tick-and-digest (simulation-from reading head (file-length in)) head))))
+    (let* ((reading (make-reading in 0 0))
+           (head (read-head reading))
+           (simulation (simulation-from reading head (file-length in))))
+      (unless (= (getf head :tick) (simulation-tick simulation))
+        (error "its tick is not what it says"))
+      (unless (= (getf head :digest) (state-digest simulation))
+        (error "what it comes to is not what was saved"))
+      simulation)))
 
 (defun check-saved-definitions (head)
   "Signal UNKNOWN-NAME if a robot that HEAD of a saved run names is not defined, and
@@ -216,9 +214,7 @@ DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if what is defined is not w
   (check-argument load-simulation file (typep file '(or string pathname)) "the name of a file")
   (let ((head (saved-head file)))
     (unless anyway (check-saved-definitions head))
-    (values (read-simulation file)
-            (loop for (name value) in (getf head :noise)
-                  collect (list (parameter-symbol (find-parameter name)) value)))))
+    (values (read-simulation file) (settings-by-symbol (getf head :noise)))))
 
 (addition load-simulation)
 (defun load-simulation (file &key anyway)

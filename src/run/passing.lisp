@@ -39,24 +39,19 @@ an error in users' code is to be signalled."
           do (tick simulation)
              (when (custody-questions custody) (answer-questions custody)))))
 
-;; Who lets ticks pass at a gate may wait there, or leave.
-(defun pass-gate (count simulation gate)
-  "Pass COUNT ticks as PASS-FREELY does, as many at a time as the function GATE allows."
-  (loop with left = count
-        until (or (zerop left) (simulation-over simulation)
-                  (message-queue-unsignalled (simulation-messages simulation)))
-        do (let ((now (min left (funcall gate simulation))))
-             (pass-freely now simulation)
-             (decf left now))))
-
 (defun pass-ticks (count simulation)
-  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
-an error in users' code is to be signalled. Nobody else can do that meanwhile, not even
-continuations."
+  "Pass COUNT ticks as PASS-FREELY does, as many at a time as the gate allows, if there is one. No
+other code, not even a continuation, can pass ticks of SIMULATION meanwhile."
   (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
     (setf (timeline-passing-p timeline) t)
     (in-any-case
-      (if gate (pass-gate count simulation gate) (pass-freely count simulation))
+      (loop with left = count
+            until (or (zerop left) (timeline-over timeline)
+                      (message-queue-unsignalled (simulation-messages simulation)))
+            ;; A gate may wait, or leave.
+            do (let ((now (if gate (min left (funcall gate simulation)) left)))
+                 (pass-freely now simulation)
+                 (decf left now)))
       (setf (timeline-passing-p timeline) nil))))
 
 (defun doubt-passing (operator simulation)

@@ -32,17 +32,14 @@ externalized, or a function; they are memorized. ASKER is a note of who asked fo
   (acts '() :type list :read-only t))
 
 (defstruct (kept-past (:conc-name past-)
-                      (:constructor make-past
-                          (limit keeper &key forks acts cost (count (length acts))))
+                      (:constructor make-past (limit &key forks acts cost (count (length acts))))
                       (:copier nil))
   "What is kept of a run's past: at most LIMIT FORKS, and COUNT ACTS, the newest of both first. The
-next fork is to be made at the tick NEXT, not before DUE, a time in seconds; KEEPER, a function of
-the run and its past, is then called. ROLLED is what the dice of programs were when that was last
-looked at, or NIL. PACE is in how many ticks that is looked at again. COST is how
-many seconds a fork takes, on the average. WANTED is since when, in seconds, a fork is due that
-could not be made, as somebody was at work in the run; or NIL."
+next fork is due at the tick NEXT, not before DUE, a time in seconds. If the time has not come then,
+the clock is read again PACE ticks later. ROLLED is the last known state of the dice of programs, or
+NIL. COST is how many seconds a fork takes on average. WANTED is since when, in seconds, a fork is
+due that could not be made, as the run was busy; or NIL."
   (limit 0 :type fixnum)
-  (keeper nil :type function :read-only t)
   (forks '() :type list)
   (acts '() :type t)
   (count 0 :type fixnum)
@@ -103,10 +100,9 @@ roll."
       (if (eq before (past-rolled past)) nil (past-rolled past)))))
 
 (defun note-dice (simulation)
-  "Let SIMULATION, if it has a past, remember what the dice of programs are here and now, if they
+  "Let SIMULATION, which has a past, remember what the dice of programs are here and now, if they
 have been rolled by what a fork may not do again."
-  (let* ((past (simulation-past simulation))
-         (rolled (and past (look-at-dice simulation past))))
+  (let ((rolled (look-at-dice simulation (simulation-past simulation))))
     (when rolled (remember simulation #'roll-back (list rolled)))))
 
 (defun note-doing (simulation function &rest arguments)
@@ -142,11 +138,6 @@ in a list, the newest first, what had been asked for by then and not yet been do
   (let ((tail (member-if (lambda (act) (settled-by-p act tick)) acts)))
     (values tail
             (remove-if-not (lambda (act) (asked-in-tick-p act tick)) (ldiff acts tail)))))
-
-(defun acts-since (kept acts)
-  "Return those of ACTS, the newest first, that were done after KEPT had been made, the oldest
-first."
-  (reverse (ldiff acts (kept-acts kept))))
 
 ;;;; Keeping forks
 
@@ -189,12 +180,6 @@ first and the last are needed."
                (setf best kept least loss)))
         finally (return best)))
 
-(defun thin-out (past room)
-  "Let PAST have at most ROOM forks."
-  (loop while (> (length (past-forks past)) room)
-        do (setf (past-forks past)
-                 (remove (least-needed (past-forks past)) (past-forks past)))))
-
 (defun warn-of-no-fork (simulation past condition)
   "Say, once, that CONDITION keeps SIMULATION, of PAST, from keeping a fork."
   (unless (past-warned-p past)
@@ -236,7 +221,9 @@ work in it, that is to be at the end of the next tick."
          (fork (fork-to-keep simulation past)))
     (when (simulation-p fork)
       (push (make-kept fork tick (past-acts past)) (past-forks past))
-      (thin-out past (room-for-forks simulation past)))
+      (loop with room = (room-for-forks simulation past)
+            while (> (length (past-forks past)) room)
+            do (removef (past-forks past) (least-needed (past-forks past)))))
     (setf (past-pace past) 1
           (past-next past) (1+ tick)
           (past-wanted past) (if (eq :busy fork) began nil))
@@ -270,7 +257,7 @@ until the tick has ended and there is one; not for long, as no tick may pass."
 
 (defun begin-keeping (simulation limit)
   "Let SIMULATION, which this thread has in custody, keep forks, at most LIMIT, from now on."
-  (let ((past (setf (simulation-past simulation) (make-past limit #'keep-fork-in-time))))
+  (let ((past (setf (simulation-past simulation) (make-past limit))))
     (when (eq simulation *simulation*) (look-at-dice simulation past))
     ;; One can go back as far as here: what has been asked for stays so.
     (dolist (request (timeline-inbox (simulation-timeline simulation)))

@@ -192,10 +192,6 @@
   (or (gethash text *homeless*)
       (setf (gethash text *homeless*) (make-symbol name))))
 
-(defmacro with-homeless-symbols (() &body body)
-  "Run BODY, in which each name that Lisp does not know is one symbol."
-  `(let ((*homeless* (make-hash-table :test 'equal))) ,@body))
-
 (defun symbol-called (text)
   "Return the symbol that TEXT, PACKAGE::NAME, stands for, or one without a home."
   (let* ((colons (or (search "::" text) (error "it has a name without its package")))

@@ -28,26 +28,17 @@ tick at which it did not come to what it had come to, or NIL."
         (apply operator arguments)
         (perform-operator operator arguments simulation (or (act-asker act) "the past")))))
 
-;; What was asked for in the midst of a tick is not to be forgotten when the run is rewound to it.
-(defun date-requests (simulation before phase)
-  "Let the requests to SIMULATION that are not in the inbox BEFORE count as made in PHASE."
-  (dolist (request (ldiff (timeline-inbox (simulation-timeline simulation)) before))
-    (setf (request-phase request) phase)))
-
-;; What failed then fails again.
 (defun do-again (act redoing)
-  "Do again what ACT says."
-  (let* ((simulation (redoing-simulation redoing))
-         (before (timeline-inbox (simulation-timeline simulation))))
-    (handler-case (perform-act act simulation)
+  "Do again what ACT says. If it failed then, it fails again."
+  (let* ((timeline (simulation-timeline (redoing-simulation redoing)))
+         (before (timeline-inbox timeline)))
+    (handler-case (perform-act act (redoing-simulation redoing))
       (error () (unless (functionp (act-operator act)) (note-straying redoing))))
-    (date-requests simulation before (act-phase act))))
+    ;; What was asked for inside a tick must not be forgotten when the run is rewound to it.
+    (dolist (request (ldiff (timeline-inbox timeline) before))
+      (setf (request-phase request) (act-phase act)))))
 
 ;;; Requests.
-
-(defun take-own-requests (simulation)
-  "Empty the inbox of SIMULATION. Return the requests that it has come to by itself, oldest first."
-  (remove-if-not #'of-itself-p (take-requests (simulation-timeline simulation))))
 
 (defun same-request-p (request act)
   "True if REQUEST asks for what ACT says. Which of its own commands a plan withdraws is seen only
@@ -97,7 +88,10 @@ acted as often as it has by now."
         while act
         unless (act-own-p act) do (do-again act redoing))
   (setf (redoing-held redoing)
-        (append (redoing-held redoing) (take-own-requests (redoing-simulation redoing))))
+        (append (redoing-held redoing)
+                (remove-if-not #'of-itself-p
+                               (take-requests
+                                (simulation-timeline (redoing-simulation redoing))))))
   (loop for act = (next-act redoing (constantly t))
         while act
         do (if (eq :request (act-kind act))

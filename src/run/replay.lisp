@@ -20,21 +20,16 @@
                      (different-definitions-verb condition))))
   (:documentation "A journal or saved run is of other definitions than those that are loaded."))
 
-(defun map-difference (header blueprints)
-  "Return in words, in a list, which of BLUEPRINTS, robots as they are defined now, are in another
-map than HEADER says."
-  (let ((map (find-map (getf header :map) nil)))
-    (loop for blueprint in blueprints
-          for other = (find-map (blueprint-map blueprint) nil)
-          unless (eq map other)
-            collect (format nil "robot ~(~A~) is in another map, ~(~A~)"
-                            (blueprint-name blueprint) (and other (map-name other))))))
-
 (defun differences-from (header blueprints)
-  "Return in words, in a list, how what is at hand, such as BLUEPRINTS of robots, differs from what
-HEADER says."
+  "Return in words, in a list, how what is at hand differs from what HEADER says: definitions, and
+the maps of BLUEPRINTS, of robots."
   (append (differences (getf header :definitions))
-          (map-difference header blueprints)))
+          (loop with map = (find-map (getf header :map) nil)
+                for blueprint in blueprints
+                for other = (find-map (blueprint-map blueprint) nil)
+                unless (eq map other)
+                  collect (format nil "robot ~(~A~) is in another map, ~(~A~)"
+                                  (blueprint-name blueprint) (and other (map-name other))))))
 
 (defun check-definitions (header blueprints)
   "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if HEADER is of a run with other

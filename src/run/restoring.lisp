@@ -52,12 +52,6 @@ the fields, or NIL for what is beside the run."
   ;; No line follows.
   (incf (loaded-next loaded)))
 
-(defun take-elements (dimensions loaded)
-  "Note that an array of DIMENSIONS is to be made. Signals an error if there is no room."
-  (let ((size (reduce #'* dimensions)))
-    (when (minusp (decf (loaded-elements-left loaded) size))
-      (error "its arrays would take more room than there is"))))
-
 (defun new-array (element-type dimensions growth loaded)
   (unless (and (member element-type *element-types* :test #'equal)
                (typep dimensions '(cons unsigned-byte list))
@@ -66,16 +60,14 @@ the fields, or NIL for what is beside the run."
                (member growth '(nil :adjustable :growing))
                (or (not (eq :growing growth)) (null (rest dimensions))))
     (error "one of its arrays makes no sense"))
-  (take-elements dimensions loaded)
-  (let ((initial (if (eq t element-type) '(:initial-element nil) '())))
-    (ecase growth
-      ((nil) (apply #'make-array dimensions :element-type element-type initial))
-      (:adjustable
-       (apply #'make-array dimensions :element-type element-type :adjustable t initial))
-      (:growing
-       (apply #'make-array (max 4 (first dimensions))
-              :element-type element-type :adjustable t
-              :fill-pointer (first dimensions) initial)))))
+  (when (minusp (decf (loaded-elements-left loaded) (reduce #'* dimensions)))
+    (error "its arrays would take more room than there is"))
+  (let ((growing-p (eq :growing growth)))
+    (apply #'make-array (if growing-p (max 4 (first dimensions)) dimensions)
+           :element-type element-type
+           :adjustable (and growth t)
+           :fill-pointer (and growing-p (first dimensions))
+           (if (eq t element-type) '(:initial-element nil) '()))))
 
 (defun new-object (shape fields loaded)
   "Return a new object of SHAPE, (kind argument ...), perhaps with FIELDS, in which nothing is as it
@@ -178,15 +170,6 @@ NAMES."
   (when (< count (loaded-position loaded)) (error "it says too much of an object"))
   (= count (loaded-position loaded)))
 
-(defun fill-list (list values)
-  (unless (consp values) (error "one of its lists has nothing in it"))
-  (setf (car list) (car values)
-        (cdr list) (cdr values)))
-
-(defun fill-dice (dice values)
-  (unless (typep values '(cons (unsigned-byte 64) null)) (error "its dice make no sense"))
-  (setf (dice-state dice) (first values)))
-
 (defun fill-from (object shape fields values loaded)
   "Put what a line says, VALUES, into OBJECT. True if it says all that was left to be said."
   (ecase (first shape)
@@ -200,8 +183,13 @@ NAMES."
     (:agenda (when (collect-values values (1+ (second shape)) loaded)
                (setf (loaded-agenda loaded) (cons object (reverse (loaded-values loaded))))
                t))
-    (:dice (fill-dice object values) t)
-    (:list (fill-list object values) t)))
+    (:dice (unless (typep values '(cons (unsigned-byte 64) null)) (error "its dice make no sense"))
+     (setf (dice-state object) (first values))
+     t)
+    (:list (unless (consp values) (error "one of its lists has nothing in it"))
+     (setf (car object) (car values)
+           (cdr object) (cdr values))
+     t)))
 
 (defun fill-next (line loaded)
   "Take in LINE, a list of an object and what is said of it. It must be the next of those LOADED."

@@ -38,19 +38,18 @@
                       it is: in the body of WITH-SIMULATION, or in CALL-IN-FORK."
                      (simulation-name simulation)))))
 
-(defun check-past (simulation)
-  "Signal MISUSE if SIMULATION has no past to go back to."
-  (let ((past (simulation-past simulation)))
-    (unless (and past (past-forks past))
-      (reject-use "rewind: nothing is kept of ~A that one could go back to. Ask for that at its ~
-                   beginning, (with-simulation (ROBOT :keep t) ...) or (simulator ROBOT :keep t), ~
-                   or from now on by (keep-forks)."
-                  (simulation-name simulation)))))
-
 (defun earliest-tick (simulation)
   "Return the tick that SIMULATION can go back to, or NIL if it keeps no forks."
   (let ((past (simulation-past simulation)))
     (and past (past-forks past) (kept-tick (first (last (past-forks past)))))))
+
+(defun check-past (simulation)
+  "Signal MISUSE if SIMULATION has no past to go back to."
+  (unless (earliest-tick simulation)
+    (reject-use "rewind: nothing is kept of ~A that one could go back to. Ask for that at its ~
+                 beginning, (with-simulation (ROBOT :keep t) ...) or (simulator ROBOT :keep t), ~
+                 or from now on by (keep-forks)."
+                (simulation-name simulation))))
 
 (defun check-how-far (ticks simulation)
   "Signal WRONG-ARGUMENT unless SIMULATION can go back TICKS."
@@ -70,7 +69,7 @@ had been asked of it by then and not yet been done."
     (when (= tick (simulation-tick simulation))
       (setf acts (append (pending-acts simulation) acts)))
     (multiple-value-bind (done asked) (acts-until tick acts)
-      (values (make-past (past-limit past) (past-keeper past)
+      (values (make-past (past-limit past)
                          :forks (remove-if (lambda (kept) (> (kept-tick kept) tick))
                                            (past-forks past))
                          :acts done
@@ -88,7 +87,7 @@ had been asked of it by then and not yet been done."
 it, and the tick at which plans strayed on the way, or NIL."
   (let* ((kept (first (past-forks past)))
          (run (await-fork (kept-fork kept) nil '()))
-         (acts (acts-since kept (append asked (past-acts past))))
+         (acts (reverse (ldiff (append asked (past-acts past)) (kept-acts kept))))
          (done-p nil))
     (unwind-protect
          (let ((strayed (call-inside run (lambda () (redo run acts tick)))))
@@ -167,7 +166,8 @@ it, and the tick at which plans strayed on the way, or NIL."
 are told that OLD is over; wherever they throw, and whatever interrupts this thread, NEW goes on."
   (check-not-over old 'rewind)
   (let ((from (simulation-tick old)))
-    (share-custody (simulation-timeline new) (simulation-timeline old))
+    ;; A thread waiting for custody gets it once NEW has replaced OLD.
+    (setf (timeline-custody (simulation-timeline new)) (timeline-custody (simulation-timeline old)))
     (deferring-interrupts
       (in-any-case
         (hand-over-looks new old)

@@ -270,11 +270,6 @@ records it. Signals WRONG-ARGUMENT."
 
 ;;; The end.
 
-(defun interrupt-all (timeline robots)
-  "Interrupt whatever ROBOTS of TIMELINE, which is over, do or were to do."
-  (call-each (lambda (request) (perform request timeline)) (take-requests timeline))
-  (abandon timeline (mapcan #'robot-resources robots)))
-
 ;; A time limit may come at any moment: that must not keep plans from hearing of the end.
 (defun tell-of-end (simulation)
   "Let the robots and participants of SIMULATION, which is over, know that. Interrupts wait."
@@ -299,7 +294,9 @@ its robots, begun or not, are interrupted; further ones are refused."
              (in-any-case
                (stop-pacing timeline)
                (tell-of-end simulation)
-               (interrupt-all timeline robots)))))))))
+               (progn (call-each (lambda (request) (perform request timeline))
+                                 (take-requests timeline))
+                      (abandon timeline (mapcan #'robot-resources robots)))))))))))
 
 ;;; One number for its state.
 

@@ -11,15 +11,6 @@
 ;;; then at least one line for each that is new: its number, and what is in it. Of arrays that is
 ;;; how often an element stands there, the element, and so on.
 
-(defun write-saved-number (number out)
-  (write-char #\@ out)
-  (prin1 number out))
-
-(defun write-tail (tail inventory out)
-  (when tail
-    (write-string " . " out)
-    (write-value tail inventory out)))
-
 (defun write-elements (list inventory out &optional (beginning #\Space))
   "Write the elements of LIST, BEGINNING before the first and a space before each other, up to where
 it has a number or ends."
@@ -29,12 +20,14 @@ it has a number or ends."
                    (or (eq tail list) (null (number-of tail inventory))))
         do (write-char separator out)
            (write-value (car tail) inventory out)
-        finally (write-tail tail inventory out)))
+        finally (when tail
+                  (write-string " . " out)
+                  (write-value tail inventory out))))
 
 (defun write-value (value inventory out)
   "Write VALUE to OUT: its number in INVENTORY, if it has one."
   (let ((number (and (not (typep value '(or symbol fixnum))) (number-of value inventory))))
-    (cond (number (write-saved-number number out))
+    (cond (number (format out "@~D" number))
           ((consp value) (write-elements value inventory out #\()
            (write-char #\) out))
           (t (write-datum value out)))))
@@ -102,8 +95,7 @@ was left before: values, or where in an array."
                 (array 0)
                 (t (values-in object fields)))))
     (loop do (funcall seal (with-output-to-string (out)
-                             (write-char #\( out)
-                             (write-saved-number (number-of object inventory) out)
+                             (format out "(@~D" (number-of object inventory))
                              (setf more (write-line-of object more inventory out))
                              (write-char #\) out)))
           while more)))

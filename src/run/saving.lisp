@@ -89,13 +89,6 @@ WITHOUT-P with a copy of SIMULATION without that. Signals UNSAVABLE otherwise."
         for value across (simulation-known-parameters simulation)
         collect (list (parameter-name parameter) value)))
 
-(defun noise-to-come-back (simulation)
-  "Return as settings what DIRTY-SIMULATION would do, if SIMULATION is the one that it would do it
-to."
-  (and (eq simulation *simulation*)
-       (loop for (symbol value) in *noise-before-cleaning*
-             collect (list (string-downcase symbol) value))))
-
 (defun commands-under-way (simulation)
   "Return, as definitions, the users' commands that are under way or wait in SIMULATION."
   (loop for request in (append (events-waiting simulation) (requests-waiting simulation))
@@ -104,18 +97,14 @@ to."
         when (and entry (users-p entry))
           collect (definition-of :command entry)))
 
-(defun dice-to-go-on (simulation)
-  "Return what is in the dice that programs of SIMULATION roll, as numbers, or NIL. A live run has
-none: each of its threads has its own."
+(defun programs-head (simulation)
+  "Return, as a part of the head, what programs of SIMULATION go on with: the noise that
+DIRTY-SIMULATION would restore there, and their dice. A live run has none: each of its threads has
+its own."
   (let ((dice (and (headless-p simulation)
                    (cdr (assoc *lisps-dice* (environment-of simulation))))))
-    (and dice (lisps-dice-numbers dice))))
-
-(defun programs-head (simulation)
-  "Return, as a part of the head, what programs of SIMULATION go on with."
-  (let ((dice (dice-to-go-on simulation)))
-    (list* :noise (noise-to-come-back simulation)
-           (and dice (list :dice dice)))))
+    (list* :noise (and (eq simulation *simulation*) (settings-by-name *noise-before-cleaning*))
+           (and dice (list :dice (lisps-dice-numbers dice))))))
 
 (defun head-of (simulation programs journal)
   "Return the head of the file in which SIMULATION is saved, with PROGRAMS, see PROGRAMS-HEAD."
@@ -131,12 +120,6 @@ none: each of its threads has its own."
            :definitions (remove-duplicates used :test #'same-definition-p :from-end t)
            programs)))
 
-(defun journal-lines-of (journal seal)
-  "Call SEAL with each line of JOURNAL in a saved run."
-  (funcall seal (datum-text (list :journal (journal-full-p journal) (journal-end journal)
-                                  (journal-header journal))))
-  (dolist (entry (journal-entries journal)) (funcall seal (datum-text (entry-datum entry)))))
-
 (defun write-saved (simulation journal programs out)
   "Write to OUT what SIMULATION is and its JOURNAL, or NIL. PROGRAMS is for the head."
   (let* ((requests (requests-waiting simulation))
@@ -151,7 +134,10 @@ none: each of its threads has its own."
         (dolist (request requests)
           (seal (format nil "(waiting @~D)" (number-of request inventory)))))
       (seal (datum-text '(:waiting)))
-      (when journal (journal-lines-of journal #'seal))
+      (when journal
+        (seal (datum-text (list :journal (journal-full-p journal) (journal-end journal)
+                                (journal-header journal))))
+        (dolist (entry (journal-entries journal)) (seal (datum-text (entry-datum entry)))))
       (seal (datum-text (list :end (simulation-tick simulation)))))))
 
 ;;; Files, none of which LOAD-SIMULATION would refuse.
@@ -184,19 +170,7 @@ Return the truename of FILE."
                                  (check-loadable path (simulation-name simulation)))))
      simulation without-p)))
 
-;; The restart is here, where whoever saves the run can see it: another thread may have the run in
-;; its hands.
-(defun save-deciding (simulation file)
-  "Do what SAVE-SIMULATION says."
-  (flet ((save (without-p)
-           (asking (simulation) (write-simulation simulation file without-p))))
-    (handler-case (save nil)
-      (unsavable (condition)
-        (restart-case (error condition)
-          (save-without ()
-            :report "Save the run without them."
-            (save t)))))))
-
+;; The restart is established in the thread that saves the run: another thread may own the run.
 (addition save-simulation)
 (defun save-simulation (file &optional (simulation (current-simulation)))
   "Write the state of SIMULATION, between two ticks, to FILE, from which LOAD-SIMULATION continues
@@ -216,4 +190,11 @@ If it signals, FILE is unchanged."
   (check-argument save-simulation file (typep file '(or string pathname)) "the name of a file")
   (check-argument save-simulation simulation (simulation-p simulation) "a simulation")
   (check-not-foreign file :run "saved run")
-  (save-deciding simulation file))
+  (flet ((save (without-p)
+           (asking (simulation) (write-simulation simulation file without-p))))
+    (handler-case (save nil)
+      (unsavable (condition)
+        (restart-case (error condition)
+          (save-without ()
+            :report "Save the run without them."
+            (save t)))))))

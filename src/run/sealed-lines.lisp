@@ -52,9 +52,6 @@ before."
 
 ;;; Reading.
 
-(defun ascii-p (text)
-  (every (lambda (char) (char< char #.(code-char 128))) (the simple-string text)))
-
 (defun read-short-line (in)
   "Return the next line of IN, or NIL; of one that is too long, no more than its beginning."
   (let* ((last nil)
@@ -64,7 +61,9 @@ before."
                        until (member last '(nil #\Newline))
                        do (write-char last out)))))
     (when (or last (plusp (length line)))
-      (string-right-trim '(#\Return) (if (ascii-p line) line (decoded line))))))
+      (string-right-trim '(#\Return) (if (every (lambda (char) (< (char-code char) 128)) line)
+                                         line
+                                         (decoded line))))))
 
 (defun comment-line-p (line)
   "True if LINE is a comment or empty; an editor may have put a byte order mark before it."
@@ -103,7 +102,8 @@ file of bytes, or too long."
   (with-open-file (in file :external-format :latin-1)
     (when (< +longest-file+ (file-length in))
       (error "it has ~D bytes, more than such files have" (file-length in)))
-    (with-homeless-symbols () (funcall function in))))
+    (let ((*homeless* (make-hash-table :test 'equal)))
+      (funcall function in))))
 
 (defun call-reading-file (function file kind damage)
   "Do as CALL-WITH-SAVED-TEXT does; if that signals an error other than UNKNOWN-NAME, signal one of

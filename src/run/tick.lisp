@@ -50,32 +50,19 @@ journal has that in the same place."
 
 (defun set-cleaning (settings)
   "Let DIRTY-SIMULATION restore SETTINGS, lists (name value), as in the run that is repeated."
-  (setf *noise-before-cleaning*
-        (loop for (name value) in settings
-              collect (list (parameter-symbol (find-parameter name)) value)))
+  (setf *noise-before-cleaning* (settings-by-symbol settings))
   (follow-settings *simulation*))
 
 (define-operator 'cleaning '(datum) #'set-cleaning)
 
-(defun note-request (simulation request)
-  (destructuring-bind (operator . arguments) (request-entry request)
-    (note simulation operator arguments request)))
-
-(defun perform-all (simulation timeline)
+(defun perform-requests (simulation timeline)
+  "Perform the requests made of SIMULATION since the last tick, oldest first."
   (call-each (lambda (request)
-               (when (noting-p simulation) (note-request simulation request))
+               (when (noting-p simulation)
+                 (destructuring-bind (operator . arguments) (request-entry request)
+                   (note simulation operator arguments request)))
                (perform request timeline))
              (take-requests timeline)))
-
-(declaim (inline perform-requests run-due-events settle prolong-journal tell-observers
-                 let-participants-act))
-(defun perform-requests (simulation timeline)
-  "Perform what has been asked of SIMULATION since the last tick, in the order of asking."
-  (when (timeline-inbox timeline) (perform-all simulation timeline)))
-
-(defun run-due-events (timeline)
-  "Let the tick begin that TIMELINE is to pass, and run what is due in it."
-  (advance-agenda (timeline-agenda timeline)))
 
 (defun settled-robot-p (robot)
   "True if a tick has nothing to settle for ROBOT, as WORLD-SETTLED-P says."
@@ -86,31 +73,26 @@ journal has that in the same place."
              (some #'camera-location (robot-cameras robot))
              (some #'unsettled-hand-p (robot-hands robot))))))
 
-(defun settle-all (world)
+(defun settle (world)
+  "Settle what is inside of what in WORLD, tracks and grips."
   (settle-robots world)
   (tend-tracks world)
   (check-grips world)
   (setf (world-settled-p world) (every #'settled-robot-p (world-robots world))))
 
-(defun settle (world)
-  "Settle what is inside of what in WORLD, tracks and grips, unless there is known to be none."
-  (unless (world-settled-p world) (settle-all world)))
-
+(declaim (inline prolong-journal))
 (defun prolong-journal (simulation)
   "Let the journal of SIMULATION, if it keeps one that is not full, reach to now."
   (let ((journal (simulation-journal simulation)))
     (when (and journal (not (journal-full-p journal)))
       (setf (journal-end journal) (simulation-tick simulation)))))
 
-(defun tell-all-observers (simulation)
+(defun tell-observers (simulation)
   (let ((*tick-dice* nil))
     (call-each (lambda (observer) (call-user-code observer "an observer" simulation))
                (simulation-observers simulation))))
 
-(defun tell-observers (simulation)
-  (when (simulation-observers simulation) (tell-all-observers simulation)))
-
-(defun let-all-participants-act (simulation)
+(defun let-participants-act (simulation)
   (let ((*tick-dice* nil))
     (flet ((act (participant)
              (call-user-code #'participant-after-tick (participant-origin participant)
@@ -118,21 +100,15 @@ journal has that in the same place."
       (declare (dynamic-extent #'act))
       (call-each #'act (simulation-participants simulation)))))
 
-(defun let-participants-act (simulation)
-  (when (simulation-participants simulation) (let-all-participants-act simulation)))
-
-(declaim (inline note-rolls keep-fork-if-due))
-(defun note-rolls (simulation)
-  "Let SIMULATION, if it has a past, remember what programs have rolled that a fork does not."
-  (when (simulation-past simulation) (note-dice simulation)))
-
+(declaim (inline keep-fork-if-due))
 (defun keep-fork-if-due (simulation)
   "Let SIMULATION, whose tick has ended, keep a fork of itself if it is to, and it is time."
   (let ((past (simulation-past simulation)))
-    ;; What plans have rolled they will roll again.
-    (when past (look-at-dice simulation past))
-    (when (and past (>= (simulation-tick simulation) (past-next past)))
-      (funcall (past-keeper past) simulation past))))
+    (when past
+      ;; What plans have rolled they will roll again.
+      (look-at-dice simulation past)
+      (when (>= (simulation-tick simulation) (past-next past))
+        (keep-fork-in-time simulation past)))))
 
 (defun tick (simulation)
   "Pass one tick of SIMULATION, or what is left of one. To be called by its owner only."
@@ -143,18 +119,19 @@ journal has that in the same place."
     (let ((*tick-dice* (timeline-tick-dice timeline)))
       (unwind-protect
            (in-phases ((timeline-phase timeline))
-             (:requests (note-rolls simulation)
+             (:requests (when (simulation-past simulation) (note-dice simulation))
                         (begin-changing timeline world)
                         (notice-parameters simulation timeline)
-                        (perform-requests simulation timeline))
-             (:events (run-due-events timeline))
+                        (when (timeline-inbox timeline) (perform-requests simulation timeline)))
+             (:events (advance-agenda (timeline-agenda timeline)))
              (:kickers (run-kickers world))
-             (:settling (settle world))
+             (:settling (unless (world-settled-p world) (settle world)))
              (:continuations (end-changing timeline world)
                              (prolong-journal simulation)
                              (deliver-notifications timeline))
-             (:observers (tell-observers simulation)
-                         (note-rolls simulation))
-             (:participants (let-participants-act simulation))
+             (:observers (when (simulation-observers simulation) (tell-observers simulation))
+                         (when (simulation-past simulation) (note-dice simulation)))
+             (:participants (when (simulation-participants simulation)
+                              (let-participants-act simulation)))
              (:keeping (keep-fork-if-due simulation)))
         (unless (zerop (timeline-phase timeline)) (tick simulation))))))

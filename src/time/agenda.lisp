@@ -217,11 +217,7 @@ interrupted."
         (map nil #'note-bucket (agenda-near agenda))
         (map nil #'note-bucket (agenda-far agenda))
         (note-bucket (agenda-beyond agenda))))
-    (stable-sort (nreverse events)
-                 (lambda (a b)
-                   (or (< (event-time a) (event-time b))
-                       (and (= (event-time a) (event-time b))
-                            (> (event-priority a) (event-priority b))))))))
+    (stable-sort (stable-sort (nreverse events) #'> :key #'event-priority) #'< :key #'event-time)))
 
 (defmethod digest-state ((agenda agenda) digest)
   (digest-add digest (agenda-tick agenda))

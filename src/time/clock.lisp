@@ -80,16 +80,15 @@
                     (unless (clock-standing-still-p pacing)
                       (pass-tick pacing))))))
 
-(defun tell-of-ending ()
-  (let ((text "The simulator's thread was ended from outside. (simulator ROBOT) starts another."))
-    (trouble-set :ended text text)))
-
 (defun let-go (custody pacing)
   "Give back what the thread of PACING has, which ends, perhaps unasked."
   (in-any-case
     (unless (pacing-stopping-p pacing)
       (setf (pacing-stopping-p pacing) t)
-      (unless *leaving-p* (tell-of-ending)))
+      (unless *leaving-p*
+        (let ((text (format nil "The simulator's thread was ended from outside. (simulator ROBOT) ~
+                                 starts another.")))
+          (trouble-set :ended text text))))
     (when (eq pacing (custody-pacing custody))
       (setf (custody-pacing custody) nil))
     (give-up-custody custody)

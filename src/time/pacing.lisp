@@ -197,16 +197,15 @@ interrupted."
 (defun call-alone (timeline function)
   "Stop the thread that paces the world of TIMELINE; call FUNCTION in custody and return its value."
   (let ((custody (timeline-custody timeline)))
-    (flet ((make-free ()
-             (let ((pacing (custody-pacing custody)))
-               (if pacing
-                   (stop pacing)
-                   (ask-holder custody (constantly nil))))))
-      (loop
-        (block busy
-          (return (call-with-custody custody function (lambda ()
-                                                        (make-free)
-                                                        (return-from busy)))))))))
+    (loop
+      (block busy
+        (return (call-with-custody custody function
+                                   (lambda ()
+                                     (let ((pacing (custody-pacing custody)))
+                                       (if pacing
+                                           (stop pacing)
+                                           (ask-holder custody (constantly nil))))
+                                     (return-from busy))))))))
 
 ;;; Users' code that keeps a live simulation waiting is named while it does.
 

@@ -5,7 +5,7 @@
 (export '(timeline make-timeline timeline-p timeline-of timeline-tick phase-here begin-moment
           check-not-over check-own-run check-not-secluded secluded wake-owner post post-again
           take-requests asked-inside-p owner-p *repeated* untold-p notify-later
-          deliver-notifications share-custody check-thinking thinking-modes-text thinking-mode-p
+          deliver-notifications check-thinking thinking-modes-text thinking-mode-p
           timeline-thinking set-timeline-thinking give-threads thinking-charged-p thinking-budget))
 
 ;;; The thread in custody of the timeline passes its ticks. Other threads use it in two ways. POST
@@ -66,11 +66,6 @@ it follows another in the same world.")
 (defmethod print-object ((timeline timeline) stream)
   (print-unreadable-object (timeline stream :type t)
     (format stream "~A at tick ~D" (timeline-name timeline) (timeline-tick timeline))))
-
-(defun share-custody (new old)
-  "Put the timeline NEW, which no other thread has yet, into the custody of OLD, its predecessor. A
-thread waiting for custody gets it once NEW has replaced OLD."
-  (setf (timeline-custody new) (timeline-custody old)))
 
 (defgeneric timeline-of (object)
   (:documentation "Return the timeline of OBJECT: a run, a world with robots in it, a robot or a
@@ -200,10 +195,8 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
   (loop for inbox = (timeline-inbox timeline)
         when (swap-if (timeline-inbox timeline) inbox '())
           return (let ((requests (reverse inbox)))
-                   (if (some #'asked-inside-p requests)
-                       (append (remove-if-not #'asked-inside-p requests)
-                               (remove-if #'asked-inside-p requests))
-                       requests))))
+                   (append (remove-if-not #'asked-inside-p requests)
+                           (remove-if #'asked-inside-p requests)))))
 
 ;;; Notifications.
 
