@@ -5,7 +5,7 @@
 (export '(gcontext gcontext-p create-gcontext with-gcontext canvas canvas-p canvas-color-p
           paint-rectangles paint-arc paint-path paint-segments paint-string call-with-clipping
           with-clipping call-with-origin with-origin call-with-subject with-subject subject-title
-          call-on-canvas with-canvas +character-width+ +line-height+))
+          call-on-canvas with-canvas with-dashes +character-width+ +line-height+))
 
 ;;; A graphics context is changed only for the extent of a body, as WITH-GCONTEXT of CLX does.
 ;;; Whatever starts to draw on a canvas binds a fresh one, so threads that draw share nothing.
@@ -95,6 +95,14 @@ in black if the display has no colours (manual B.1). Signals WRONG-ARGUMENT."
   "Run BODY drawing lines WIDTH pixels wide in STYLE, one of CLX's: :SOLID, :DASH or :DOUBLE-DASH
 (manual B.1). Signals WRONG-ARGUMENT."
   `(with-gcontext (draw-gcontext* :line-width ,width :line-style ,style) ,@body))
+
+(defmacro with-dashes ((dashes &key (width 1)) &body body)
+  "Run BODY drawing lines WIDTH pixels wide with DASHES, a list (dash gap ...), or solid if NIL."
+  (with-gensyms (value)
+    `(let ((,value ,dashes))
+       (with-gcontext (draw-gcontext* :line-width ,width :line-style (if ,value :dash :solid)
+                                      :dashes (or ,value '(4)))
+         ,@body))))
 
 ;;;; Canvases
 

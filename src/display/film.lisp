@@ -118,20 +118,16 @@ a vector of such numbers."
                                       ("2" "twice") ("4" "4 times") ("10" "10 times"))
                 append (list value (if (string= value "1") " selected" "") text))))
 
-(defun write-moments-list (moments several-p out)
-  (format out "<ol id=\"moments\">~%")
+(defun write-aside (legend moments several-p out)
+  "Write what stands beside the picture: the moments, and LEGEND, items of a list."
+  (format out "<aside>~%<details~:[ hidden~;~] open><summary>What happened</summary>~%~
+               <ol id=\"moments\">~%" moments)
   (dolist (moment moments)
     (format out "<li><button><i class=\"~(~A~)\"></i>tick ~A: " (moment-kind moment)
             (number-text (moment-tick moment)))
     (write-text (moment-words moment several-p) out)
     (format out "</button></li>~%"))
-  (format out "</ol>~%"))
-
-(defun write-aside (legend moments several-p out)
-  "Write what stands beside the picture: the moments, and LEGEND, items of a list."
-  (format out "<aside>~%<details~:[ hidden~;~] open><summary>What happened</summary>~%" moments)
-  (write-moments-list moments several-p out)
-  (format out "</details>~%<details~:[~; hidden~] open><summary>Legend</summary>~%~
+  (format out "</ol>~%</details>~%<details~:[~; hidden~] open><summary>Legend</summary>~%~
                <ul id=\"legend\">~%~A</ul></details>~%</aside>~%"
           (string= "" legend) legend))
 
@@ -208,13 +204,6 @@ these, the images of robots, and the entries of lines, of both the latest first.
                                                  #'< :key #'image-serial))
                     layers :lines (reverse (cast-lines cast)))))
 
-(defun write-whole-name (entry out)
-  "Write, as an attribute in HTML, what ENTRY is short for, if it is."
-  (when (entry-whole entry)
-    (format out " title=\"")
-    (write-text (entry-whole entry) out)
-    (format out "\"")))
-
 (defun legend-text (cast layers in-color)
   "Return the legend of a film as items of a list in HTML."
   (with-output-to-string (out)
@@ -222,17 +211,15 @@ these, the images of robots, and the entries of lines, of both the latest first.
       (with-canvas (canvas)
         (dolist (entry (cast-entries cast layers))
           (format out "<li")
-          (write-whole-name entry out)
+          (when (entry-whole entry)
+            (format out " title=\"")
+            (write-text (entry-whole entry) out)
+            (format out "\""))
           (format out "><svg width=\"20\" height=\"18\" viewBox=\"0 0 20 18\">~%")
           (funcall (entry-sample entry) canvas 10 9)
           (format out "</svg> ")
           (write-text (entry-text entry) out)
           (format out "</li>~%"))))))
-
-(defun film-scale (scale snapshot layers)
-  "Return how many pixels a cell has in a film that begins as SNAPSHOT shows. The page magnifies the
-picture itself, as far as there is room: more than suits the map would only make its text small."
-  (min (suitable-scale scale snapshot layers) (fitting-scale snapshot layers)))
 
 (defun shoot (journal every until watch part layers in-color scale)
   "Replay JOURNAL. Return the reel of it, the ticks of its frames, stills of the first and the last
@@ -242,8 +229,11 @@ frame, and the cast; WATCH is called with the simulation after each tick."
         (shown (set-difference layers '(:legend :title))))
     (call-with-frames (lambda (snapshot)
                         (unless cast
+                          ;; The page magnifies the picture as far as there is room: a larger
+                          ;; scale would only make its text small.
                           (setf cast (make-cast snapshot)
-                                scale (film-scale scale snapshot shown)))
+                                scale (min (suitable-scale scale snapshot shown)
+                                           (fitting-scale snapshot shown))))
                         (add-to-cast snapshot layers cast)
                         (setf last (movers-text snapshot shown in-color scale)
                               first (or first last))

@@ -103,35 +103,30 @@ known; NIL if none of it is. Where a fork has gone nobody notes, but it came to 
 
 ;;; Looks.
 
-(declaim (inline ray-end))
-(defun ray-end (map opaque-p x y angle)
-  "Return, as two values, where what a camera at X, Y can see of MAP in direction ANGLE ends.
-OPAQUE-P is a function of the index of a cell."
-  (declare (type function opaque-p))
-  (let* ((dx (cosine angle)) (dy (sine angle))
-         (end (walk-grid (lambda (index at column)
-                           (declare (ignore at column))
-                           (funcall opaque-p index))
-                         (map-width map) (map-height map) x y dx dy +no-limit+)))
-    (values (+ x (* end dx)) (+ y (* end dy)))))
-
-(defun world-ray-end (world x y angle)
-  (let ((flags (world-flags world)))
-    (ray-end (world-map world) (lambda (index) (logtest +opaque+ (aref flags index))) x y angle)))
+(defun ray-ends (map opaque-p x y first step count)
+  "Return a list x y ... of where COUNT rays of sight from X, Y end in MAP: one in direction FIRST,
+each other STEP radians further. OPAQUE-P is a function of the index of a cell."
+  (loop for ray below count
+        for angle = (+ first (* ray step))
+        for dx = (cosine angle) and dy = (sine angle)
+        for end = (walk-grid (lambda (index at column)
+                               (declare (ignore at column))
+                               (funcall opaque-p index))
+                             (map-width map) (map-height map) x y dx dy +no-limit+)
+        collect (+ x (* end dx)) collect (+ y (* end dy))))
 
 (defun look-of (camera)
   "Return the look that CAMERA's last view comes from, if it was taken where CAMERA is now."
   (let* ((robot (camera-robot camera))
          (x (robot-x robot)) (y (robot-y robot))
          (count (min 60 (camera-resolution camera)))
-         (width (camera-field-of-view camera))
-         (first (- (+ (robot-angle robot) (camera-angle camera))
-                   (* 0.5d0 (- width (/ width count))))))
+         (width (camera-field-of-view camera)) (step (/ width count))
+         (first (- (+ (robot-angle robot) (camera-angle camera)) (* 0.5d0 (- width step))))
+         (flags (world-flags (robot-world robot))))
     (make-look (camera-last-view camera) x y
-               (loop for ray below count
-                     append (multiple-value-list
-                             (world-ray-end (robot-world robot) x y
-                                      (+ first (* ray (/ width count)))))))))
+               (ray-ends (world-map (robot-world robot))
+                         (lambda (index) (logtest +opaque+ (aref flags index)))
+                         x y first step count))))
 
 (defun note-look (history camera)
   (declare #.*hot* (type history history) (type camera camera))

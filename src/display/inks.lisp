@@ -7,14 +7,6 @@
 ;;; Lines are dark and have a light halo: on light ground the line is seen, on dark ground the halo,
 ;;; on what is between both. So nobody need know what is below.
 
-(defmacro with-dashes ((dashes &key (width 1)) &body body)
-  "Run BODY drawing lines WIDTH pixels wide with DASHES, a list (dash gap ...), or solid if NIL."
-  (with-gensyms (value)
-    `(let ((,value ,dashes))
-       (with-gcontext (draw-gcontext* :line-width ,width :line-style (if ,value :dash :solid)
-                                      :dashes (or ,value '(4)))
-         ,@body))))
-
 (defun call-inked (function color width dashes)
   (with-gcontext (draw-gcontext* :foreground white* :line-width (+ width 2))
     (funcall function))
@@ -90,10 +82,6 @@ wide, with DASHES."
   "Draw over what is in a box. Return NIL."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* x y width height t)))
-
-(defun draw-text-on-plate (canvas x y text)
-  (wipe canvas (- x 1) (- y 10) (+ 2 (words-width text)) 13)
-  (draw-text canvas x y text))
 
 (define-constant +ray-inks+ '(#x10308C #x4A2480 #x801850 #x8A3010 #x604800)
   :test #'cl:equal

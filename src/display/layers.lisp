@@ -46,22 +46,15 @@
   :documentation "How far robots at the edges of the map are seen beyond these, in pixels: no more
 than all margins have.")
 
-(defun call-on-map (function canvas map beyond)
-  (with-clipping (canvas (- beyond) (- beyond)
-                  (+ (to-pixels (map-width map)) (* 2 beyond))
-                  (+ (to-pixels (map-height map)) (* 2 beyond)))
-    (funcall function)))
-
-(defmacro on-map ((canvas map &optional (beyond 0)) &body body)
-  "Run BODY; what it draws on CANVAS more than BEYOND pixels outside of MAP stays invisible."
-  `(call-on-map (lambda () ,@body) ,canvas ,map ,beyond))
-
 (defun draw-movers (canvas snapshot layers)
   "Draw what is not terrain of SNAPSHOT on CANVAS: things, robots, and what LAYERS lists of them."
-  (let ((map (snapshot-map snapshot)))
-    (on-map (canvas map) (draw-shown canvas (shown-below-things snapshot layers)))
-    (on-map (canvas map +beyond+) (draw-robots canvas (snapshot-robots snapshot)))
-    (on-map (canvas map)
+  (let* ((map (snapshot-map snapshot)) (around (* 2 +beyond+))
+         (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
+    (with-clipping (canvas 0 0 width height)
+      (draw-shown canvas (shown-below-things snapshot layers)))
+    (with-clipping (canvas (- +beyond+) (- +beyond+) (+ width around) (+ height around))
+      (draw-robots canvas (snapshot-robots snapshot)))
+    (with-clipping (canvas 0 0 width height)
       (draw-things canvas (snapshot-things snapshot))
       (draw-shown canvas (shown-above-things snapshot layers))
       (when (member :names layers) (draw-names canvas snapshot layers)))))

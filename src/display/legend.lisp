@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(grouped sample-of robot-entry sample-of-name jump-entry))
+(export '(grouped sample-of robot-entry sample-of-name jump-entries))
 
 ;;; An entry is a text with a function of a canvas and a place, X and Y in pixels, that draws the
 ;;; sample around there, no more than 16 pixels high and as wide as the entry says.
@@ -77,30 +77,28 @@ that they are the names of."
 
 ;;; Walls: the substances, with the range of their parameters.
 
-(defun call-with-cells-shown (function snapshot)
+(defun map-cells-shown (function snapshot)
+  "Call FUNCTION with the index of each cell that SNAPSHOT shows of its map."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (loop with width = (map-width (snapshot-map snapshot))
           for row from top below bottom
           do (loop for index from (+ left (* row width)) below (+ right (* row width))
                    do (funcall function index)))))
 
-(defmacro do-cells-shown ((index snapshot) &body body)
-  "Run BODY with INDEX bound to that of each cell that is to be shown of the map of SNAPSHOT."
-  `(call-with-cells-shown (lambda (,index) ,@body) ,snapshot))
-
 (defun parameter-ranges (snapshot)
   "Return lists (number least greatest) of the substances of the walls that SNAPSHOT shows, by their
 numbers."
   (let ((map (snapshot-map snapshot)) (ranges '()))
-    (do-cells-shown (index snapshot)
-      (when (logtest +wall+ (aref (map-flags map) index))
-        (let* ((substance (aref (map-substances map) index))
-               (parameter (aref (map-parameters map) index))
-               (range (assoc substance ranges)))
-          (if range
-              (setf (second range) (min parameter (second range))
-                    (third range) (max parameter (third range)))
-              (push (list substance parameter parameter) ranges)))))
+    (flet ((note (index)
+             (when (logtest +wall+ (aref (map-flags map) index))
+               (let* ((substance (aref (map-substances map) index))
+                      (parameter (aref (map-parameters map) index))
+                      (range (assoc substance ranges)))
+                 (if range
+                     (setf (second range) (min parameter (second range))
+                           (third range) (max parameter (third range)))
+                     (push (list substance parameter parameter) ranges))))))
+      (map-cells-shown #'note snapshot))
     (sort ranges #'< :key #'first)))
 
 (defun range-text (least greatest)
@@ -134,8 +132,7 @@ numbers."
 
 (defun place-types-of (snapshot)
   (let ((map (snapshot-map snapshot)) (numbers '()))
-    (do-cells-shown (index snapshot)
-      (pushnew (aref (map-places map) index) numbers))
+    (map-cells-shown (lambda (index) (pushnew (aref (map-places map) index) numbers)) snapshot)
     (loop for type across (map-place-types map) for number from 0
           when (and (member number numbers) (plusp number) (drawn-place-type-p type))
             collect type)))
@@ -213,16 +210,17 @@ than the line."
 
 ;;; Lines.
 
-(defun jump-entry (color)
-  "Return the entry for that something was put elsewhere, in COLOR."
-  (sample-of (canvas x y) "put elsewhere"
-    (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))
+(defun jump-entries (ways snapshot color)
+  "Return a list of the entry for jumps, drawn in COLOR, if SNAPSHOT shows a jump of WAYS: lists of
+pieces, lists x y ... in pixels."
+  (and (jumps-seen-p ways (pixels-of (shown-part snapshot)))
+       (list (sample-of (canvas x y) "put elsewhere"
+               (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))))
 
 (defun trail-jump-entries (snapshot)
-  "Return the entry that says how jumps look, as a list, if one is to be seen in SNAPSHOT."
-  (let ((trails (mapcar #'robot-image-trail (snapshot-robots snapshot))))
-    (and (jumps-seen-p (mapcar #'pieces-of-trail trails) (pixels-of (shown-part snapshot)))
-         (list (jump-entry (turn-ink 0))))))
+  (jump-entries (loop for robot in (snapshot-robots snapshot)
+                      collect (pieces-of-trail (robot-image-trail robot)))
+                snapshot (turn-ink 0)))
 
 (defun reading-entries (snapshot)
   (declare (ignore snapshot))

@@ -79,18 +79,13 @@ suits the map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is no scale."
       (users-scale)
       (fitting-scale snapshot layers)))
 
-(defun magnification (scale snapshot layers)
-  "Return how much a picture of SNAPSHOT with SCALE pixels to a cell is magnified as a whole, text
-and lines included, 1 at least: as far as SCALE is more than suits the map and than is needed to
-read all."
-  (max 1 (/ (rational scale)
-            (max +readable-scale+ (fitting-scale snapshot layers)))))
-
 (defun drawn-scale (scale snapshot layers)
   "Return how many pixels a cell has where a picture of SNAPSHOT with SCALE (see SUITABLE-SCALE) and
-LAYERS is drawn, and how much that is then to be magnified as a whole."
+LAYERS is drawn, and how much that is then magnified as a whole, text and lines included: by 1, or
+more if SCALE is larger than suits the map and than +READABLE-SCALE+."
   (let* ((scale (suitable-scale scale snapshot layers))
-         (zoom (magnification scale snapshot layers)))
+         (zoom (max 1 (/ (rational scale)
+                         (max +readable-scale+ (fitting-scale snapshot layers))))))
     (values (/ scale zoom) zoom)))
 
 ;;; The legend.

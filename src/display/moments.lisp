@@ -86,9 +86,10 @@ arguments, which returns the moments seen so far, the earliest first."
               (dolist (robot (simulation-robots simulation))
                 (let* ((new (sight-of robot))
                        (old (or (cdr (assoc robot sights)) (sight-before new))))
-                  (dolist (moment (moments-between old new robot (simulation-tick simulation)))
-                    (push moment moments))
-                  (setf sights (acons robot new (remove robot sights :key #'first))))))
+                  (setf moments
+                        (revappend (moments-between old new robot (simulation-tick simulation))
+                                   moments)
+                        sights (acons robot new (remove robot sights :key #'first))))))
             (lambda () (reverse moments)))))
 
 ;;; What a journal itself has: what became of plans, and errors in users' code.

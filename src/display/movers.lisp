@@ -208,14 +208,6 @@ direction ANGLE."
     (lambda (index)
       (or (logtest +wall+ (aref flags index)) (and hidden (member index hidden) t)))))
 
-(defun sight-edge (map opaque-p x y first width)
-  "Return points, x y ..., in metres, at which sight from X, Y ends, from the angle FIRST over
-WIDTH."
-  (let ((count (max 2 (ceiling width +sight-spacing+))))
-    (loop for ray to count
-          append (multiple-value-list
-                  (ray-end map opaque-p x y (+ first (* ray (/ width count))))))))
-
 (defun looking-out (camera)
   "Return CAMERA if it can see the map: if it is in nothing."
   (and (null (camera-image-location camera)) camera))
@@ -223,12 +215,13 @@ WIDTH."
 (defun draw-wedge (canvas camera robot snapshot)
   (let* ((map (snapshot-map snapshot)) (x (robot-image-x robot)) (y (robot-image-y robot))
          (width (camera-image-field-of-view camera))
-         (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2))))
+         (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
+         (count (max 2 (ceiling width +sight-spacing+))))
     (when (map-index map x y)
-      (let ((points (sight-edge map (opaque-cells snapshot) x y first width)))
+      (let ((ends (ray-ends map (opaque-cells snapshot) x y first (/ width count) (1+ count))))
         (inked ((layer-ink :wedges))
           (draw-lines canvas draw-gcontext*
-                      (pixels-of (append (list x y) points (list x y)))))))))
+                      (pixels-of (append (list x y) ends (list x y)))))))))
 
 ;;; Rays, coloured by what was read.
 
@@ -293,16 +286,16 @@ WIDTH."
 to what it denotes."
   (destructuring-bind (x y) (believed-place robot designator)
     (let ((true-x (designator-image-x designator)) (true-y (designator-image-y designator))
-          (color (layer-ink :designators)))
+          (color (layer-ink :designators))
+          (number (princ-to-string (designator-image-number designator))))
       (with-subject (canvas designator)
         (when true-x
           (inked (color :dashes (layer-dashes :designators))
             (draw-segments canvas draw-gcontext*
                            (list x y (to-pixels true-x) (to-pixels true-y)))))
         (inked (color :width 2) (draw-cross canvas x y 4))
-        (with-color color
-          (draw-text-on-plate canvas (+ x 7) (- y 3)
-                              (princ-to-string (designator-image-number designator))))))))
+        (wipe canvas (+ x 6) (- y 13) (+ 2 (words-width number)) 13)
+        (with-color color (draw-text canvas (+ x 7) (- y 3) number))))))
 
 (defun designator-boxes (designators robot snapshot)
   "Return the boxes (left top right bottom) of the crosses and numbers of DESIGNATORS, in pixels."

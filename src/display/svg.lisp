@@ -47,11 +47,6 @@
   "Return NUMBER in decimals, to a hundredth, as a string."
   (with-output-to-string (stream) (write-number number stream)))
 
-(defun write-color (color stream)
-  (write-char #\# stream)
-  (loop for position from 20 downto 0 by 4
-        do (write-char (char "0123456789abcdef" (ldb (byte 4 position) color)) stream)))
-
 (defun write-svg (canvas &rest parts)
   "Write PARTS, strings and numbers, to the stream of CANVAS."
   (declare (dynamic-extent parts))
@@ -59,30 +54,32 @@
     (dolist (part parts)
       (if (stringp part) (write-string part stream) (write-number part stream)))))
 
-(defun interposed (separator dashes)
-  "Return the list of DASHES, an integer or a list, with SEPARATOR between them."
-  (if (listp dashes)
-      (rest (loop for dash in dashes collect separator collect dash))
-      (list dashes)))
+(defun write-color (canvas gcontext attribute)
+  "Write ATTRIBUTE of an element: the foreground of GCONTEXT."
+  (write-svg canvas " " attribute "=\"#")
+  (loop for position from 20 downto 0 by 4
+        do (write-char (char "0123456789abcdef"
+                             (ldb (byte 4 position) (gcontext-foreground gcontext)))
+                       (svg-stream canvas)))
+  (write-svg canvas "\""))
 
 (defun write-stroke (canvas gcontext)
-  (write-svg canvas " fill=\"none\" stroke=\"")
-  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
-  (write-svg canvas "\"")
+  (write-svg canvas " fill=\"none\"")
+  (write-color canvas gcontext "stroke")
   (let ((width (gcontext-line-width gcontext)))
     (unless (<= width 1) (write-svg canvas " stroke-width=\"" width "\"")))
   (unless (eq (gcontext-line-style gcontext) :solid)
     (write-svg canvas " stroke-dasharray=\"")
-    (apply #'write-svg canvas (interposed "," (gcontext-dashes gcontext)))
+    (loop for (dash . more) on (ensure-list (gcontext-dashes gcontext))
+          do (write-svg canvas dash (if more "," "")))
     (write-svg canvas "\""))
   (write-svg canvas "/>
 "))
 
 (defun write-paint (canvas gcontext fill-p)
   "Finish an element that is filled, or outlined."
-  (cond (fill-p (write-svg canvas " fill=\"")
-                (write-color (gcontext-foreground gcontext) (svg-stream canvas))
-                (write-svg canvas "\"/>
+  (cond (fill-p (write-color canvas gcontext "fill")
+                (write-svg canvas "/>
 "))
         (t (write-stroke canvas gcontext))))
 
@@ -92,9 +89,8 @@
 
 (defun write-words (canvas gcontext string)
   "Finish an element of text, which is STRING."
-  (write-svg canvas " fill=\"")
-  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
-  (write-svg canvas "\">")
+  (write-color canvas gcontext "fill")
+  (write-svg canvas ">")
   (write-text string (svg-stream canvas))
   (write-svg canvas "</text>
 "))

@@ -76,27 +76,20 @@ of lists."
 (define-constant +least-side+ 12
   :documentation "How many characters wide a legend beside a map has to be able to be.")
 
-(defun side-columns (glyphs room)
-  "Return how many columns of entries for GLYPHS there are in ROOM characters, and how wide each is;
-NIL if they would be too narrow."
-  (let ((longest (+ 2 (loop for glyph in glyphs maximize (length (glyph-text glyph))))))
-    (when (<= +least-side+ room)
-      (let ((width (min room longest)))
-        (values (max 1 (floor (+ room 2) (+ width 2))) width)))))
-
 (defun side-legend (glyphs room rows paint)
   "Return what stands beside each of ROWS lines of a map, a vector of lists of entries, each padded,
 and those of GLYPHS for which there is none of ROOM characters."
-  (multiple-value-bind (columns width) (side-columns glyphs room)
-    (let ((lines (make-array rows :initial-element '()))
-          (count (* rows (or columns 0))))
-      (loop for glyph in glyphs
-            for position from 0 below count
-            do (destructuring-bind (length . text) (entry-of-glyph glyph paint width)
-                 (push (format nil "  ~A~VA" text (- width length) "")
-                       (svref lines (mod position rows)))))
-      (values (cl:map 'vector #'reverse lines)
-              (nthcdr count glyphs)))))
+  (let* ((longest (loop for glyph in glyphs maximize (length (glyph-text glyph))))
+         (width (min room (+ 2 longest)))
+         (columns (if (<= +least-side+ room) (max 1 (floor (+ room 2) (+ width 2))) 0))
+         (lines (make-array rows :initial-element '())))
+    (loop for glyph in glyphs
+          for position from 0 below (* rows columns)
+          do (destructuring-bind (length . text) (entry-of-glyph glyph paint width)
+               (push (format nil "  ~A~VA" text (- width length) "")
+                     (svref lines (mod position rows)))))
+    (values (cl:map 'vector #'reverse lines)
+            (nthcdr (* rows columns) glyphs))))
 
 ;;; Below it.
 

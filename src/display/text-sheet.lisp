@@ -131,19 +131,18 @@ a list of all glyphs that mean something there."
         for glyphs = (and (eq depth its-depth) (gethash number table))
         when glyphs return (list (first glyphs))))
 
-(defun cell-of (view x y)
-  (map-index (view-map view) x y))
-
 (defun robots-in (view indices)
   (remove-if-not (lambda (robot)
-                   (member (cell-of view (robot-image-x robot) (robot-image-y robot)) indices))
+                   (member (map-index (view-map view) (robot-image-x robot) (robot-image-y robot))
+                           indices))
                  (snapshot-robots (view-snapshot view))))
 
 (defun things-by-cell (view)
   "Return a hash table from indices of cells to lists of images of things in VIEW, by number."
   (let ((table (make-hash-table)))
     (loop for image across (reverse (snapshot-things (view-snapshot view)))
-          do (push image (gethash (cell-of view (thing-image-x image) (thing-image-y image))
+          do (push image (gethash (map-index (view-map view) (thing-image-x image)
+                                             (thing-image-y image))
                                   table)))
     table))
 

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.display)
 
-(export '(make-way-line draw-way-lines draw-way-sample draw-arrows draw-way-marks jumps-seen-p
-          jumps-of way-seen-p call-along draw-jump-dots draw-start))
+(export '(make-way-line draw-way-lines draw-way-sample draw-arrows draw-way-marks jumps-of
+          way-seen-p points-along draw-jump-dots draw-start))
 
 ;;; Ways may go along one line. So each goes in a lane of its own, a few pixels beside where it
 ;;; was, and they are drawn together: all halos, then all lines, then arrowheads, then the marks of
@@ -157,12 +157,11 @@ in which they would lie on each other.")
 
 (define-constant +tile+ 4 :documentation "How large the boxes are that hide a line, in pixels.")
 
-(defun call-along (function x y to-x to-y step)
-  "Call FUNCTION with points from X, Y to TO-X, TO-Y, about STEP pixels apart."
-  (let ((count (max 1 (ceiling (max (abs (- to-x x)) (abs (- to-y y))) step))))
-    (dotimes (index (1+ count))
-      (let ((share (/ index count)))
-        (funcall function (+ x (* share (- to-x x))) (+ y (* share (- to-y y))))))))
+(defun points-along (x y to-x to-y step)
+  "Return points (x y) from X, Y to TO-X, TO-Y, about STEP pixels apart."
+  (loop with count = (max 1 (ceiling (max (abs (- to-x x)) (abs (- to-y y))) step))
+        for share from 0 to 1 by (/ count)
+        collect (list (+ x (* share (- to-x x))) (+ y (* share (- to-y y))))))
 
 (defun tile-at (x y)
   (cons (floor x +tile+) (floor y +tile+)))
@@ -173,35 +172,28 @@ in which they would lie on each other.")
     (dolist (piece pieces tiles)
       (loop for (x y next-x next-y) on piece by #'cddr
             while next-y
-            do (call-along (lambda (x y)
-                             (loop for (dx dy) in '((-1 -1) (-1 1) (1 -1) (1 1))
-                                   do (setf (gethash (tile-at (+ x dx) (+ y dy)) tiles) t)))
-                           x y next-x next-y (/ +tile+ 2))))))
+            do (loop for (x y) in (points-along x y next-x next-y (/ +tile+ 2))
+                     do (loop for (dx dy) in '((-1 -1) (-1 1) (1 -1) (1 1))
+                              do (setf (gethash (tile-at (+ x dx) (+ y dy)) tiles) t)))))))
 
 (defun jumps-seen-p (ways box)
   "True if a jump of WAYS, lists of pieces, is to be seen within BOX: something of it that does not
 go along a way."
-  (let ((jumps (mapcan #'jumps-of ways)) (tiles nil) (seen-p nil))
-    (loop for (x y to-x to-y) in jumps
-          do (setf tiles (or tiles (tiles-along (apply #'append ways))))
-             (call-along (lambda (x y)
-                           (when (and (overlap-p (list x y (+ x 1/100) (+ y 1/100)) box)
-                                      (not (gethash (tile-at x y) tiles)))
-                             (setf seen-p t)))
-                         x y to-x to-y +tile+))
-    seen-p))
+  (loop with jumps = (mapcan #'jumps-of ways)
+        with tiles = (and jumps (tiles-along (apply #'append ways)))
+        for (x y to-x to-y) in jumps
+        thereis (loop for (x y) in (points-along x y to-x to-y +tile+)
+                      thereis (and (overlap-p (list x y (+ x 1/100) (+ y 1/100)) box)
+                                   (not (gethash (tile-at x y) tiles))))))
 
 (defun way-seen-p (pieces box)
   "True if something of the way of PIECES is within BOX."
   (some (lambda (piece)
           (loop for (x y next-x next-y) on piece by #'cddr
-                thereis (and (overlap-p (list (1- x) (1- y) (1+ x) (1+ y)) box) t)
+                thereis (overlap-p (list (1- x) (1- y) (1+ x) (1+ y)) box)
                 while next-y
-                thereis (block line
-                          (call-along (lambda (x y)
-                                        (when (overlap-p (list x y (1+ x) (1+ y)) box)
-                                          (return-from line t)))
-                                      x y next-x next-y +tile+))))
+                thereis (loop for (x y) in (points-along x y next-x next-y +tile+)
+                              thereis (overlap-p (list x y (1+ x) (1+ y)) box))))
         pieces))
 
 ;;; Where ways begin and end.

@@ -37,10 +37,8 @@
   (look index *colors*))
 
 (defun call-with-look (function index width)
-  (let ((dashes (look index *dashes*)))
-    (with-gcontext (draw-gcontext* :foreground (look-color index) :line-width width
-                                   :line-style (if dashes :dash :solid)
-                                   :dashes (or dashes '(4)))
+  (with-gcontext (draw-gcontext* :foreground (look-color index))
+    (with-dashes ((look index *dashes*) :width width)
       (funcall function))))
 
 (defmacro with-look ((index width) &body body)

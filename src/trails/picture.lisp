@@ -26,8 +26,7 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
   (destructuring-bind (marker color width dashes words) look
     (declare (ignore marker words))
     (with-color color
-      (with-gcontext (draw-gcontext* :line-width width :line-style (if dashes :dash :solid)
-                                     :dashes (or dashes '(4)))
+      (with-dashes (dashes :width width)
         (draw-lines canvas draw-gcontext* points)))))
 
 (defun draw-way (canvas way)
@@ -97,18 +96,13 @@ which says so itself."
           collect (bundle-entry look (way-opacity (length ended))
                                 (format nil "~A: ~D ~A~P" (first (last look)) count what count))))
 
-(defun jump-entries-of (ways snapshot)
-  "Return the entries of the legend that say how jumps look, if one of WAYS, lists of pieces, is to
-be seen in what SNAPSHOT shows."
-  (and (jumps-seen-p (mapcar #'pieces-in-pixels ways) (pixels-of (shown-part snapshot)))
-       (list (jump-entry black*))))
-
 (defun bundle-entries (snapshot ways what)
   "Return the entries of the legend for WAYS, each of a WHAT, over the world of SNAPSHOT."
   (append (outcome-entries ways what)
           (and (starts-of ways snapshot)
                (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
-          (jump-entries-of (mapcar #'way-pieces ways) snapshot)))
+          (jump-entries (loop for way in ways collect (pieces-in-pixels (way-pieces way)))
+                        snapshot black*)))
 
 (defun map-opacity (color-p)
   "Return how much the map of a bundle hides what is below, in colours if COLOR-P."

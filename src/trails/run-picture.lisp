@@ -75,9 +75,10 @@ WRONG-ARGUMENT if these are of robots that are not there."
 (defun boxes-along (points)
   "Return boxes that together hide the line through POINTS, x y ... in pixels."
   (let ((tiles (make-hash-table :test #'equal)))
-    (flet ((note (x y) (setf (gethash (cons (floor x +tile+) (floor y +tile+)) tiles) t)))
-      (loop for (x y next-x next-y) on points by #'cddr
-            while next-y do (call-along #'note x y next-x next-y (/ +tile+ 2))))
+    (loop for (x y next-x next-y) on points by #'cddr
+          while next-y
+          do (loop for (x y) in (points-along x y next-x next-y (/ +tile+ 2))
+                   do (setf (gethash (cons (floor x +tile+) (floor y +tile+)) tiles) t)))
     (loop for (column . row) being the hash-keys of tiles
           collect (list (* +tile+ column) (* +tile+ row)
                         (* +tile+ (1+ column)) (* +tile+ (1+ row))))))
@@ -112,7 +113,8 @@ and SPOTS, has besides that of a map and things."
   (append (robot-entries-with-ways snapshot ways)
           (when (some (lambda (way) (start-seen-p way snapshot)) ways)
             (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
-          (jump-entries-of (mapcar #'rest ways) snapshot)
+          (jump-entries (loop for (nil . pieces) in ways collect (pieces-in-pixels pieces))
+                        snapshot black*)
           (and spots (list (sample-of (canvas x y) "see below"
                              (draw-number canvas x y "1"))))))
 

@@ -154,12 +154,11 @@ user's own. See HAPPENINGS-OF."
 
 (defun draw-number (canvas x y text)
   "Draw TEXT, a number, in a circle around X, Y."
-  (let ((reach +number-radius+))
-    (with-gcontext (draw-gcontext* :foreground white*)
-      (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 (* 2 pi) t))
-    (with-gcontext (draw-gcontext* :foreground black* :line-width 1.2)
-      (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 (* 2 pi))
-      (draw-words canvas draw-gcontext* x (+ y 4) text :size 11 :anchor :middle))))
+  (with-gcontext (draw-gcontext* :foreground white*)
+    (draw-circle canvas x y +number-radius+ t))
+  (with-gcontext (draw-gcontext* :foreground black* :line-width 6/5)
+    (draw-circle canvas x y (- +number-radius+ 3/5) nil)
+    (draw-words canvas draw-gcontext* x (+ y 4) text :size 11 :anchor :middle)))
 
 (defun ring-radius (snapshot x y)
   "Return the radius of the ring around the spot at X, Y, in pixels, on the map of SNAPSHOT: so

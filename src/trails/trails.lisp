@@ -124,12 +124,10 @@ counts."
 (defun write-trajectory (journal out every until names)
   "Repeat JOURNAL, up to UNTIL, and write the rows of every EVERY ticks to OUT."
   (write-string (csv-line *trajectory-columns*) out)
-  (call-with-replay (lambda () (write-rows (current-simulation) names out)) journal :until 0)
-  (call-with-replay (constantly nil) journal
-                    :until until
-                    :observer (lambda (simulation)
-                                (when (zerop (mod (simulation-tick simulation) every))
-                                  (write-rows simulation names out)))))
+  (flet ((look (simulation)
+           (when (zerop (mod (simulation-tick simulation) every))
+             (write-rows simulation names out))))
+    (call-with-replay (constantly nil) journal :until until :observer #'look :beginning #'look)))
 
 (defun check-trajectory (file every until robots journal)
   (check-argument save-trajectory file
