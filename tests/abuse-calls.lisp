@@ -80,7 +80,11 @@ argument of."
   (let ((function (fdefinition symbol)))
     (if (typep function 'generic-function)
         (equal '(condition) (shown-lambda-list symbol))
-        (host:structure-reader-p function))))
+        (let ((parameters (host:declared-lambda-list function)))
+          ;; The name that DEFSTRUCT gives its readers' parameter.
+          (and (typep parameters '(cons symbol null))
+               (string= "INSTANCE" (first parameters))
+               (host:lisps-own-p (first parameters)))))))
 
 (defun shown-lambda-list (symbol)
   "Return the lambda list of the function SYMBOL. Of a generic one, its code has none of its own."

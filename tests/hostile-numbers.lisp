@@ -20,7 +20,7 @@
         sb-ext:single-float-positive-infinity sb-ext:single-float-negative-infinity))
 
 (defparameter *never*
-  (list* *no-number* (host:make-single #x7FC00000) (expt 10 400) (- (expt 10 400))
+  (list* *no-number* (coerce *no-number* 'single-float) (expt 10 400) (- (expt 10 400))
          (+ 1/3 (expt 10 400)) *infinities*)
   "What is nowhere a number.")
 

@@ -27,10 +27,10 @@
     (dotimes (i depth list) (setf list (list list)))))
 
 (defun infinity (sign)
-  (host:make-double (if (plusp sign) #x7FF00000 #x-100000) 0))
+  (base:bits-to-double (if (plusp sign) #x7FF0000000000000 #xFFF0000000000000)))
 
 (defun not-a-number ()
-  (host:make-double #x7FF80000 0))
+  (base:bits-to-double #x7FF8000000000000))
 
 (defun hostile-number (dice)
   (base:roll-element (list 0 -1 -0d0 1/3 -7/2 1.5 (expt 10 40) (- (expt 10 400)) (/ (expt 7 400))

@@ -6,8 +6,7 @@
           malformed-definition-clause warn-of-definition doubt-definition reject-name plain-name
           reject-use outlived reject-outlived names-to-show malformed-definition-definition
           call-refusing-exits refuse-exits call-allowing-exits +largest+ +largest-quantity+
-          within-reason-p quantity-p amount-p probability-p whole-p tick-span-p
-          define-with-keywords))
+          within-reason-p quantity-p amount-p probability-p whole-p define-with-keywords))
 
 ;;; Misuse of the library signals one of these. A robot that fails in a task does not: it reports an
 ;;; error code to its command's continuation (manual 3.1.1).
@@ -240,10 +239,6 @@ end this Lisp again."
   "True if VALUE is an integer from LEAST to MOST."
   (and (integerp value) (<= least value most)))
 
-(defun tick-span-p (value)
-  "True if VALUE is a possible duration: a whole number of ticks, from 0 to 1e9."
-  (whole-p value))
-
 ;;;; Keywords
 
 (defun check-keywords (operator known options)
@@ -253,8 +248,7 @@ end this Lisp again."
           do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))
 
 (defun warn-of-keywords (operator known options)
-  "Warn, while a call of OPERATOR is compiled, of a keyword among the forms OPTIONS that is not
-among KNOWN, and of a number in place of a keyword."
+  "Warn of an unknown keyword, or a number in place of one, in OPTIONS of a call of OPERATOR."
   (loop for (key) on options by #'cddr
         when (and (keywordp key) (not (member key known)) (not (eq key :allow-other-keys)))
           do (simple-style-warning "~(~A~) has no keyword ~(~S~); it knows ~{~(~S~)~^, ~}."
@@ -266,9 +260,8 @@ among KNOWN, and of a number in place of a keyword."
 (defun with-options (lambda-list)
   "Return LAMBDA-LIST with any keywords allowed, the variable of all options, the known ones, and
 the number of arguments before them."
-  (destructuring-bind (required optional rest keys allowed aux keys-p)
-      (multiple-value-list (parse-ordinary-lambda-list lambda-list))
-    (declare (ignore optional allowed aux keys-p))
+  (multiple-value-bind (required optional rest keys) (parse-ordinary-lambda-list lambda-list)
+    (declare (ignore optional))
     (let ((options (or rest (gensym "OPTIONS"))) (place (position '&key lambda-list)))
       (values (append required (list '&rest options) (subseq lambda-list place)
                       '(&allow-other-keys))

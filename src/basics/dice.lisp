@@ -33,8 +33,7 @@
 
 (declaim (inline characters-word))
 (defun characters-word (string code)
-  "Return a 64-bit word for the characters of STRING, each by what the function CODE returns of it
-(FNV-1a)."
+  "Return a 64-bit hash (FNV-1a) of STRING. The function CODE returns the number of a character."
   (let ((word #xCBF29CE484222325))
     (declare (type word word))
     (flet ((add (char)

@@ -81,9 +81,8 @@ keyword; else NIL."
 ;;;; Replacing a file, or explaining why that is impossible
 
 (defun new-file-for (file)
-  "Return the absolute path of the file to write for FILE: the target, if it is a link. Signals an
-error if there is something that is no regular file or is write-protected, if the directory is
-missing, or if the name is illegible."
+  "Return the absolute path to write for FILE, or the target of a link. Signals an error if that
+cannot become a regular file, or may not be written."
   (when (many-files-p file) (error *many-files-text*))
   (check-name-legible file)
   (when (dangling-link-p file)

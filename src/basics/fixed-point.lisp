@@ -29,23 +29,20 @@
     (* (coerce digits 'double-float) (power-of-two (- shift *places*)))))
 
 (defun double-parts (fixed &rest bits)
-  "Return a list of double-floats whose sum is FIXED: one for each of BITS, with that many
-significant bits, and one for what remains."
+  "Return double-floats whose sum is FIXED: one for each number of significant BITS, and a rest."
   (if (null bits)
       (list (nearest-double fixed))
       (let ((head (nearest-double fixed (first bits))))
         (cons head (apply #'double-parts (- fixed (fixed (rational head))) (rest bits))))))
 
 (defun doubles-table (count row)
-  "Return a vector of the double-floats in the lists that the function ROW returns for 0, 1, 2 ...
-below COUNT."
+  "Return a vector of the double-floats in the lists that ROW returns for 0, 1, 2 ... below COUNT."
   (coerce (loop for k below count append (funcall row k)) '(simple-array double-float (*))))
 
 ;;; Power series. Each is summed until its terms are less than one unit.
 
 (defun sum-series (first next)
-  "Return the sum of FIRST and all later terms. The function NEXT returns the term with the index K
-from the term before and K, which is 1, 2, 3 ..."
+  "Return the sum of FIRST and the terms that NEXT returns of the term before and K = 1, 2, 3 ..."
   (loop for k from 1
         for term = first then (funcall next term (1- k))
         until (zerop term)
@@ -142,8 +139,7 @@ from the term before and K, which is 1, 2, 3 ..."
          (aref ,cells ,count)))))
 
 (defmacro define-put (name (&rest arguments) &body body)
-  "Define the function NAME of a vector whose cells hold ARGUMENTS. It puts the value of BODY into
-the last cell."
+  "Define NAME, which puts the value of BODY into a vector, behind the cells that hold ARGUMENTS."
   (let ((count (length arguments)))
     `(defun ,name (cells)
        (declare #.*hot* (type (simple-array double-float (,(1+ count))) cells))

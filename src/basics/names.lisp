@@ -34,8 +34,7 @@ both (reading 38)."
          (and (value-equal (car a) (car b)) (value-equal (cdr a) (cdr b))))))
 
 (defun edit-distance (a b)
-  "Return how many insertions, deletions, replacements and exchanges of neighbours turn the string A
-into B."
+  "Return how many insertions, deletions, replacements and swaps of neighbours turn A into B."
   (let ((rows (make-array (list (1+ (length a)) (1+ (length b))))))
     (dotimes (i (1+ (length a)) (aref rows (length a) (length b)))
       (dotimes (j (1+ (length b)))
@@ -101,8 +100,7 @@ two sound alike."
 ;;; Natural order of names: box 2 before box 10.
 
 (defun first-part (text start)
-  "Return the number that the digits of TEXT from START on make, or else the character there, and
-where what follows begins."
+  "Return the number or else the character in TEXT at START, and the position after it."
   (let ((end (or (position-if-not #'digit-char-p text :start start) (length text))))
     (if (> end start)
         (values (parse-integer text :start start :end end) end)

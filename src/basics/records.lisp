@@ -41,8 +41,7 @@
   "True while the simulator is being loaded. Later definitions are users', and not marked.")
 
 (defun mark-names (names addition-p)
-  "Mark each of NAMES, a symbol or a list (symbol face...), and export it. What is marked as an
-addition stays one."
+  "Mark and export NAMES, symbols or lists (symbol face...). What was an addition stays one."
   (when *marking-p*
     (dolist (name names)
       (destructuring-bind (symbol &rest faces) (ensure-list name)
@@ -116,8 +115,7 @@ a run is changed by functions that the journal records."
       (format nil "Return ~A." text)))
 
 (defun function-texts (name documentation predicate constructors)
-  "Return an alist with the documentation of PREDICATE and CONSTRUCTORS of the structure NAME, from
-its DOCUMENTATION. A function is a list (symbol [lambda-list] [documentation])."
+  "Return an alist of documentation for PREDICATE and CONSTRUCTORS, (symbol [arguments] [text])."
   (flet ((texts (beginning functions)
            (loop for (function . rest) in functions
                  when function
@@ -139,8 +137,7 @@ of the slot's name, returns the reader's name."
               (when added `((addition ,@added)))))))
 
 (defun values-of-option (key options &optional default)
-  "Return a list of what follows KEY in each of OPTIONS, as DEFSTRUCT takes them, that begins with
-it; if there is none, that of DEFAULT."
+  "Return what follows KEY in each of the DEFSTRUCT OPTIONS that begin with it, or (DEFAULT)."
   (or (loop for option in options when (eq key (first option)) collect (rest option))
       (list default)))
 

@@ -45,8 +45,7 @@
             return words)))
 
 (defun integer-range (type)
-  "Return the least and the greatest integer of TYPE, (integer LEAST GREATEST) or (mod N), NIL for
-none; and true. Return false as a third value for other types."
+  "Return the limits, or NIL, of a TYPE (integer LEAST GREATEST) or (mod N); and true if it is one."
   (flet ((bound (bound step)
            (cond ((integerp bound) bound)
                  ((and (consp bound) (integerp (first bound))) (+ (first bound) step)))))
@@ -65,11 +64,6 @@ none; and true. Return false as a third value for other types."
           (greatest (format nil "~D or less" greatest))
           (least (format nil "~D or more" least)))))
 
-(defun class-words (type)
-  (and (symbolp type)
-       (find-class type nil)
-       (format nil "of the type ~(~A~)" type)))
-
 (defun compilers-text-p (condition)
   "True unless CONDITION, a type error, has a text that a program or CHECK-TYPE gave it."
   (or (not (typep condition 'simple-condition))
@@ -84,7 +78,8 @@ none; and true. Return false as a third value for other types."
            (type (type-error-expected-type condition))
            (words (or (common-type-words datum type)
                       (range-words datum type)
-                      (class-words type)))
+                      (and (symbolp type) (find-class type nil)
+                           (format nil "of the type ~(~A~)" type))))
            (value (safe-text datum :length 100)))
       (cond (words (format nil "The value ~A is not ~A.~@[ ~A~]"
                            value words (funcall *report-addition* condition)))
@@ -110,8 +105,7 @@ none; and true. Return false as a third value for other types."
     (and package (starts-with-subseq "ARS-MAGNA." (package-name package)))))
 
 (defun conflict-text (condition)
-  "Return our text for CONDITION, that a package would have several symbols of one name, if one of
-them is ours; or NIL."
+  "Return our text for the name conflict CONDITION if one of the symbols is ours; else NIL."
   (let* ((symbols (sb-ext:name-conflict-symbols condition))
          (ours (find-if #'our-own-p symbols)))
     (when ours
@@ -126,10 +120,9 @@ them is ours; or NIL."
                     collect (symbol-name symbol))
               (symbol-name ours)))))
 
-;; What Lisp says shows the stream.
+;; Lisp's own text shows the stream.
 (defun refusal-text (condition)
-  "Return our text for the stream error CONDITION if the system refuses input or output; NIL of
-others."
+  "Return our text for a stream error CONDITION by which the system refuses access, or NIL."
   (let* ((text (one-line (princ-to-string condition))) (place (search ": " text :from-end t))
          (file (ignore-errors (pathname (stream-error-stream condition))))
          (input-p (starts-with-subseq "couldn't read from" text)))
@@ -230,9 +223,6 @@ streams that no user knows."
     (declare (ignore stream))
     nil))
 
-(defun input-ended-p (condition)
-  (and (typep condition 'end-of-file) (of-lines-typed-p (stream-error-stream condition))))
-
 (defun own-text (condition)
   "Return what CONDITION says of itself, as much of it as can be printed; or what another object
 does, an empty text if it cannot."
@@ -286,7 +276,8 @@ too."
   "Return what CONDITION, which Lisp itself has signalled, means to a user, in words that are the
 same on every version of SBCL; NIL if we have none."
   (cond ((typep condition 'storage-condition) (storage-text condition))
-        ((input-ended-p condition) "The input has ended: there is nothing left to read.")
+        ((and (typep condition 'end-of-file) (of-lines-typed-p (stream-error-stream condition)))
+         "The input has ended: there is nothing left to read.")
         ((reader-p condition)
          (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
         ((undecodable-text condition))
@@ -303,9 +294,8 @@ same on every version of SBCL; NIL if we have none."
   (if (< (abs number) 0.005d0) 0 number))
 
 (defun coordinate-text (number)
-  "Return NUMBER, a coordinate in metres, as text: to a tenth of a millimetre, and without the zeros
-that end it, so that what was typed as 23.2 is not 23.200000762939453. What is not 0, but smaller
-than that, is written with an exponent."
+  "Return NUMBER, a coordinate in metres, as text, rounded to a tenth of a millimetre: 23.2 for a
+typed 23.2, not 23.200000762939453. Smaller numbers have an exponent."
   (let ((text (string-right-trim "0" (format nil "~,4F" number))))
     (cond ((< 0 (abs number) 5d-5)
            (let ((*read-default-float-format* 'double-float)) (prin1-to-string (double number))))

@@ -82,8 +82,7 @@
     (let ((*places* +binary-places+)) (round (ash 1 (* 2 *places*)) (ash (fixed-pi) -1))))
 
 (defun reduce-exactly (operator angle)
-  "Return ANGLE, of any size from 1, as right angles and two parts of what is left, by integers.
-OPERATOR rejects it if it is not finite."
+  "Return ANGLE, 1 or more, as right angles and two parts of the rest. OPERATOR rejects infinities."
   (unless (finite-p angle) (reject-argument operator 'angle angle +number-text+))
   (multiple-value-bind (digits exponent sign) (integer-decode-float angle)
     (let* ((places (- +binary-places+ exponent))
@@ -103,8 +102,7 @@ OPERATOR rejects it if it is not finite."
         (values high low)))))
 
 (defun reduced (operator angle)
-  "Return how many right angles are in ANGLE, modulo 4, and two parts of what is left. OPERATOR is
-the caller, for messages."
+  "Return the right angles in ANGLE, modulo 4, and two parts of the rest. OPERATOR is for messages."
   (declare (type double-float angle))
   (let ((size (abs angle)))
     (cond ((<= size 0.785d0) (values 0 angle 0d0))

@@ -8,8 +8,7 @@
 
 (defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
                           (:copier nil))
-  "An argument type: a test, and a description in words. TROUBLE, if any, is a function that returns
-in words what is wrong with a value, or NIL."
+  "A test and a description in words. TROUBLE is as in DEFINE-ARGUMENT-TYPE."
   (name nil :type symbol :read-only t)
   (predicate nil :type function :read-only t)
   (words "" :type string :read-only t)
@@ -56,7 +55,7 @@ VALUE."
 (define-argument-type 'metres #'within-reason-p "a number of metres, from -1e9 to 1e9")
 (define-argument-type 'speed #'within-reason-p "a speed in metres per tick, from -1e9 to 1e9")
 (define-argument-type 'ticks #'within-reason-p "a number of ticks, from -1e9 to 1e9")
-(define-argument-type 'tick-span #'tick-span-p "a whole number of ticks, from 0 to 1e9")
+(define-argument-type 'tick-span #'whole-p "a whole number of ticks, from 0 to 1e9")
 (define-argument-type 'quantity #'quantity-p "a number from -1e15 to 1e15")
 (define-argument-type 'amount #'amount-p "a number not below 0, up to 1e15")
 (define-argument-type 'probability #'probability-p "a probability from 0 to 1")

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.host)
 
-(export '(method-code declared-lambda-list same-code-p structure-reader-p code-references
+(export '(method-code declared-lambda-list same-code-p code-references
           lambda-list-of takes-count-p callable-with-p function-file files-besides-functions
           call-as-from-file tell-sources))
 
@@ -19,8 +19,7 @@
     (progn code '())))
 
 (defun cross-referenced-names (function)
-  "Return the names of the macros, constants, variables and inline functions that FUNCTION, a part
-of code, uses."
+  "Return the macros, constants, variables and inline functions that FUNCTION uses."
   (let ((references (internal (:sb-kernel #:%simple-fun-xrefs) function)))
     (and (vectorp references)
          (remove-if-not (lambda (object) (typep object '(and (or symbol cons) (not null))))
@@ -62,8 +61,7 @@ of code, uses."
          0)))
 
 (defun code-constants (function)
-  "Return a list of the constants of FUNCTION's code and of functions compiled with it, and of the
-names that this code calls and uses."
+  "Return the constants of FUNCTION's code, functions compiled with it, and the names that it uses."
   (let ((code (code-of function)))
     (append (constants-from code (first-constant code))
             (linked-names code)
@@ -83,10 +81,6 @@ names that this code calls and uses."
 (defun declared-lambda-list (function)
   "Return the lambda list that FUNCTION was compiled with."
   (internal (:sb-kernel #:%fun-lambda-list) function))
-
-(defun structure-reader-p (function)
-  "True if FUNCTION is a slot reader made by DEFSTRUCT."
-  (equal (list (internal-name :sb-kernel '#:instance)) (declared-lambda-list function)))
 
 (defun code-references (function)
   "Return a list of what FUNCTION refers to, without numbers: function names (symbols or lists),
@@ -136,8 +130,7 @@ recorded as from there."
         (let ((*error-output* errors)) (funcall function))))))
 
 (defun file-of-source (source)
-  "Return the native name of the file of SOURCE, SBCL's definition source, and the write date of the
-file at that time; NIL if it was typed."
+  "Return the file of SBCL's definition SOURCE and its write date then; NIL if it was typed."
   (let ((path (and source (sb-introspect:definition-source-pathname source))))
     (and path
          (let ((name (native-name (translate-logical-pathname path))))

@@ -79,8 +79,7 @@ is its ENCAPSULATED-CONDITION."
   (internal-type-p condition :sb-c #:compiler-error))
 
 (defun wrap-unit-summaries (wrapper)
-  "Call WRAPPER where the end of a unit is reported, with SBCL's function and whether the unit was
-aborted."
+  "Call WRAPPER with SBCL's function that reports the end of a unit, and true if it was aborted."
   (if-internal (:sb-c #:summarize-compilation-unit)
     (wrap-function (internal-name :sb-c '#:summarize-compilation-unit) wrapper)
     wrapper))
@@ -91,8 +90,7 @@ aborted."
   "While deferred work is done: a list of a form and its position in the text.")
 
 (defun place-at (path)
-  "Return the list of PLACE-IN-TEXT for the form at PATH, the innermost number first; NIL if that is
-not known."
+  "Return the PLACE-IN-TEXT of the form at PATH, innermost number first; NIL if it is not known."
   (destructuring-bind (&optional top . numbers) (reverse path)
     (let* ((info (value-if-bound (compiler-variable #:*source-info*)))
            (positions (and info
@@ -126,9 +124,8 @@ the elements that lead to FORM."
 ;;; left to the unit around it.
 
 (defstruct (unit (:constructor make-unit (kind outer)) (:copier nil))
-  "What is compiled or loaded as a whole, of KIND :LOAD or :COMPILATION, within OUTER. TASKS are, by
-form, lists of a function to call at its end and the form's positions, for the compiler and in the
-text."
+  "What is compiled or loaded as a whole, within OUTER. TASKS are, by form, lists of a function to
+call at the end and the form's positions, for the compiler and in the text."
   (kind :load :type (member :load :compilation) :read-only t)
   (outer nil :type (or null unit) :read-only t)
   (files-p nil :type boolean)
@@ -144,8 +141,7 @@ Without a compiler, do nothing."
           (list function (call-at-place form #'error-context) (place-in-text form)))))
 
 (defun call-noting-warnings (function)
-  "Call FUNCTION. Report its warnings as the compiler's. Return whether there was a warning, and
-whether there was one that is no STYLE-WARNING."
+  "Call FUNCTION and report its warnings as the compiler's. Return COMPILE-FILE's last two values."
   (let ((warned nil) (failed nil))
     (with-compilation-unit ()
       (progv (list (compiler-variable #:*last-message-count*)
@@ -178,8 +174,7 @@ whether there was one that is no STYLE-WARNING."
         do (setf (gethash form (unit-tasks (unit-outer unit))) task)))
 
 (defun call-in-unit (kind function &optional own)
-  "Call FUNCTION in a unit of KIND and return its values: in the current unit if that will do and
-OWN is false, else in a new one."
+  "Call FUNCTION in a unit of KIND, the current one if it can be used, a new one if OWN is true."
   (if (and *unit* (not own) (member (unit-kind *unit*) (list kind :compilation)))
       (funcall function)
       (let ((*unit* (make-unit kind (and (not own) *unit*))))
@@ -205,8 +200,7 @@ OWN is false, else in a new one."
 
 ;; A file compiled or loaded meanwhile has definitions of its own.
 (defun apply-in-own-file (function arguments)
-  "Apply FUNCTION, which compiles or loads a file, to ARGUMENTS. Its definitions are not recorded as
-from a file whose forms are being evaluated around it."
+  "Apply FUNCTION, which compiles or loads a file, to ARGUMENTS. Definitions count as that file's."
   (let ((name (compiler-variable #:*source-namestring*)))
     (progv (and (evaluated-file-p (symbol-value name)) (list name)) '(nil)
       (apply function arguments))))

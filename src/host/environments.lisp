@@ -31,8 +31,7 @@ the compiler does not know them."
     (and (consp found) (consp (first found)))))
 
 (defun variables-of-walk (environment)
-  "Return the names of the variables bound by the forms that the walk at ENVIRONMENT is inside of,
-without those that are symbol macros there."
+  "Return the variables, without symbol macros, bound by the forms around the walk at ENVIRONMENT."
   (loop for (name . kind) in (internal (:sb-walker #:env-lexical-variables) environment)
         unless (member name seen)
           collect name into seen

@@ -47,8 +47,7 @@ true. ~ and ~/ are the home directory."
   (uiop:pathname-directory-pathname (uiop:get-pathname-defaults)))
 
 (defun system-name (path)
-  "Return the name of PATH, a pathname or string, for system calls. Relative names start in the
-BASE-DIRECTORY."
+  "Return the name of PATH for system calls; a relative one starts in the BASE-DIRECTORY."
   (native-name (merge-pathnames path (base-directory))))
 
 (defun many-files-p (name)
@@ -98,18 +97,15 @@ exist."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (system-name path))))))
 
-(defun write-protected-p (path)
-  "True if nobody may write the file PATH, by its permissions, or this process may not."
-  (let ((name (system-name path)))
-    (or (zerop (logand #o222 (sb-posix:stat-mode (sb-posix:stat name))))
-        (handler-case (progn (sb-posix:access name sb-posix:w-ok) nil)
-          (sb-posix:syscall-error () t)))))
-
 ;; Renaming needs only the directory's permissions, and the superuser may write anything.
 (defun check-unprotected (path)
-  "Signal an error if the file PATH, a pathname, exists and is write-protected."
-  (when (and (existing-path path) (write-protected-p path))
-    (error "it is write-protected")))
+  "Signal an error if the file PATH, a pathname, exists and nobody, or not this process, may write."
+  (let ((name (system-name path)))
+    (when (and (existing-path path)
+               (or (zerop (logand #o222 (sb-posix:stat-mode (sb-posix:stat name))))
+                   (handler-case (progn (sb-posix:access name sb-posix:w-ok) nil)
+                     (sb-posix:syscall-error () t))))
+      (error "it is write-protected"))))
 
 (defun dangling-link-p (path)
   "True if PATH, a pathname or string, is a link to a missing file."
@@ -253,10 +249,9 @@ be run, and its output as a string if OUTPUT is :STRING."
 systems that can.")
 
 (defun run-tied (program arguments &rest streams)
-  "Run PROGRAM, searched in PATH, with the strings ARGUMENTS and STREAMS, keywords of
-UIOP:LAUNCH-PROGRAM. Wait for its end. It is terminated on a non-local exit or when this process is
-killed. Return the exit status as a shell gives it, or NIL if no program can be run, and its error
-output as a string if STREAMS ask for that by :STREAM."
+  "Run PROGRAM, searched in PATH, with ARGUMENTS and STREAMS, keywords of UIOP:LAUNCH-PROGRAM, and
+wait. It is terminated on a non-local exit or when this process ends. Return the shell's exit
+status, or NIL if nothing can be run, and with :ERROR-OUTPUT :STREAM the error output, a string."
   (let ((process (handler-case (apply #'uiop:launch-program
                                       (list* "sh" "-c" *tied-start* "sh" program arguments)
                                       streams)

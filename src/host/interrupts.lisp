@@ -18,9 +18,8 @@
 ;;; that was made outside.
 
 (defvar *holding* nil
-  "What defers the interrupts of this thread: NIL if nothing does; :STRICTLY; or a function of
-another function. It calls that with interrupts allowed, or, if its second argument is true, allowed
-where SBCL waits.")
+  "What defers the interrupts of this thread: NIL for nothing; :STRICTLY; or a function that calls
+another with interrupts allowed, if its second argument is true only where SBCL waits.")
 
 (declaim (inline held-off-p))
 (defun held-off-p ()

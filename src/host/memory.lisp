@@ -9,8 +9,7 @@
   (internal (:sb-kernel #:dynamic-usage)))
 
 (defun octets-before-garbage ()
-  "Return how many bytes can be allocated before SBCL's next garbage collection; a very large number
-if this SBCL does not tell."
+  "Return how many bytes are left before SBCL's next garbage collection; many if that is unknown."
   (let ((trigger (ignore-errors
                   (internal (:sb-sys #:sap-ref-word)
                             (internal (:sb-sys #:foreign-symbol-sap) "auto_gc_trigger" t)
@@ -29,10 +28,6 @@ if this SBCL does not tell."
   "Return the size of the heap in bytes."
   (sb-ext:dynamic-space-size))
 
-(defun give-memory-back ()
-  "Collect all garbage."
-  (sb-ext:gc :full t))
-
 ;; The stack is scrubbed, because its old values would keep objects alive.
 (defun make-room (octets)
   "Collect garbage now if Lisp would while OCTETS of new objects are made. By then it would have to
@@ -46,7 +41,7 @@ move these, since they can be reached."
   (flet ((enough-p () (< (+ (dynamic-usage) octets) (* 9/10 (heap-bytes)))))
     (or (< octets (/ (heap-bytes) 100))
         (enough-p)
-        (progn (scrub-stack) (give-memory-back) (enough-p)))))
+        (progn (scrub-stack) (sb-ext:gc :full t) (enough-p)))))
 
 ;;; A stack ends in guard pages that must not be touched. The first is opened when a program touches
 ;;; it, so that handlers have room. The page before it closes it again when the program returns. A
@@ -76,4 +71,4 @@ or a full heap."
   (when (typep condition 'storage-condition)
     (if (stack-full-p condition)
         (restore-stack)
-        (give-memory-back))))
+        (sb-ext:gc :full t))))

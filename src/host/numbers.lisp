@@ -2,20 +2,9 @@
 
 (in-package :ars-magna.host)
 
-(export '(make-double make-single finite-p positive-infinity-p double-to-bits bits-to-double
+(export '(finite-p positive-infinity-p double-to-bits bits-to-double
           finite-double-p cell-index tick-count double random-words words-of-state fill-words
           wrap-renewal))
-
-(declaim (inline make-double make-single))
-(defun make-double (high low)
-  "Return the double-float whose bits are HIGH, a signed, and LOW, an unsigned integer of 32 bits."
-  (declare (type (signed-byte 32) high) (type (unsigned-byte 32) low))
-  (internal (:sb-kernel #:make-double-float) high low))
-
-(defun make-single (bits)
-  "Return the single-float whose bits are BITS, a signed integer of 32 bits."
-  (declare (type (signed-byte 32) bits))
-  (internal (:sb-kernel #:make-single-float) bits))
 
 ;;; The library ieee-floats computes the bits from sign, exponent and fraction. That conses, takes
 ;;; three times as long, which slows digests, and does not handle infinities.
@@ -54,8 +43,9 @@ infinities, NaNs, and integers and ratios that are too large."
   "Return the double-float with BITS, an integer of 64 bits: the inverse of DOUBLE-TO-BITS."
   (declare (type (unsigned-byte 64) bits))
   (let ((high (ldb (byte 32 32) bits)))
-    (make-double (- (logxor high (ash 1 31)) (ash 1 31))
-                 (ldb (byte 32 0) bits))))
+    (internal (:sb-kernel #:make-double-float)
+              (- (logxor high (ash 1 31)) (ash 1 31))
+              (ldb (byte 32 0) bits))))
 
 ;;; The number types that all layers share.
 

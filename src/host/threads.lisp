@@ -107,8 +107,7 @@ this thread serves others and allows interrupts."
 
 ;; What Lisp compiles in our threads, as for generic functions, is no loss at exit.
 (defun tell-of-unit (function left-p)
-  "Let FUNCTION report the end of a compilation unit, aborted if LEFT-P, unless it was aborted
-because this Lisp exits."
+  "Let FUNCTION report that a unit ended, aborted if LEFT-P, unless it was because this Lisp exits."
   (unless (and left-p *leaving-p* (own-thread-p))
     (funcall function left-p)))
 
@@ -164,15 +163,6 @@ its values."
       (loop for entries = (car *bound-names*)
             until (swap-if (car *bound-names*) entries (remove entry entries :test #'eq))))))
 
-(defun bound-elsewhere (name)
-  "Return the thread that bound NAME last, and a number for when, if it is not this one and this one
-has not bound NAME itself; else NIL."
-  (let ((entries (remove-if-not (lambda (entry) (member name (cddr entry) :test #'eq))
-                                (car *bound-names*))))
-    (if (find (current-thread) entries :key #'first)
-        nil
-        (values (first (first entries)) (second (first entries))))))
-
 (defun run-elsewhere-text ()
   "Return in words how code in this thread gets at the run of another thread, or NIL if none has
 one."
@@ -185,13 +175,14 @@ one."
 
 (defun bound-elsewhere-text (name)
   "Return in words how code in this thread gets at the robot that another thread has bound NAME to,
-and a number for that binding; NIL if there is none."
-  (multiple-value-bind (thread number) (bound-elsewhere name)
-    (values (and thread
-                 (let ((name (string-downcase name)))
-                   (format nil "In this thread, ~A, ~A is the robot of the top level. That of ~
-                                (with-simulation (~A) ...), in ~A, is bound there only. Hand it ~
-                                over in a variable: (let ((robot ~A)) (make-thread (lambda () ~
-                                ... robot)))."
-                           (thread-name (current-thread)) name name (thread-name thread) name)))
-            number)))
+and a number for that binding; NIL if there is none, or this thread has bound NAME too."
+  (let ((entries (remove-if-not (lambda (entry) (member name (cddr entry) :test #'eq))
+                                (car *bound-names*)))
+        (word (string-downcase name)))
+    (unless (or (null entries) (find (current-thread) entries :key #'first))
+      (values (format nil "In this thread, ~A, ~A is the robot of the top level. That of ~
+                           (with-simulation (~A) ...), in ~A, is bound there only. Hand it over in ~
+                           a variable: (let ((robot ~A)) (make-thread (lambda () ... robot)))."
+                      (thread-name (current-thread)) word word
+                      (thread-name (first (first entries))) word)
+              (second (first entries))))))

@@ -29,8 +29,7 @@ if it has none."
                (first *tried-versions*) (first (last *tried-versions*))))))
 
 (defmacro internal ((package &rest names) &rest arguments)
-  "Call with ARGUMENTS the first function or macro of NAMES in SBCL's PACKAGE. Is a place if that is
-one."
+  "Call the first function, macro or place of NAMES in SBCL's PACKAGE with ARGUMENTS."
   `(,(apply #'internal-name package names) ,@arguments))
 
 (defmacro if-internal ((package &rest names) then else)
