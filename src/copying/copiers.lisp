@@ -41,8 +41,7 @@ there is to be instead of a copy, and true; or NIL and false" :writable)
   (note-copy copy copy copier))
 
 (defun put-right-later (copy how copier)
-  "Queue COPY with COPIER, whose references are to be replaced as HOW says: see PUT-RIGHT. Return
-COPY."
+  "Queue COPY in COPIER for PUT-RIGHT, whose second argument will be HOW. Return COPY."
   (let ((fill (copier-fill copier)))
     (declare (type (unsigned-byte 40) fill))
     (when (= fill (length (copier-work copier)))
@@ -119,8 +118,7 @@ NIL instead; MAKE-NO-FORK."))
       "Return where the object was found: a text, such as the name of a plan's variable.")
 
 (defun found-in (value copier)
-  "Return in words where COPIER found VALUE: by its option :PLACE-OF, a function, or else by the
-object that holds it."
+  "Return in words where VALUE was found, by COPIER's option :PLACE-OF or the holding object."
   (let ((place-of (copier-option copier :place-of)))
     (or (and place-of (funcall place-of value))
         (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))
@@ -130,8 +128,7 @@ object that holds it."
   (assoc value (copier-option copier :decisions) :test #'eq))
 
 (defun ask-about (value copier)
-  "Return the replacement of VALUE in the fork, from the option :DECISIONS, an alist. Signals
-CANNOT-FORK if there is none."
+  "Return the replacement of VALUE that COPIER was given. Signals CANNOT-FORK if there is none."
   (let ((decision (decision-about value copier)))
     (if decision
         (cdr decision)
@@ -181,9 +178,9 @@ object x.")
 ;;; Manners.
 
 (defstruct (manner (:constructor make-manner (way indices fresh)) (:copier nil))
-  "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD, if there is a method; or
-:ASK, for those of the system. The contents of the slots number INDICES are copied too. FRESH is a
-list (writer . initial) of functions for slots that are as in a new object."
+  "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD; or :ASK, for those of the
+system. INDICES are the numbers of the slots whose contents are copied too. FRESH is a list of
+functions (writer . initial) for slots that are as in a new object."
   (way :copy :type (member :share :copy :method :ask) :read-only t)
   (indices #() :type simple-vector :read-only t)
   (fresh '() :type list :read-only t))
@@ -220,8 +217,8 @@ list (writer . initial) of functions for slots that are as in a new object."
   (make-array +manners-known+ :initial-element nil))
 
 (defvar *manners* (cons '() (no-manners))
-  "The methods of COPY-PLAN-VALUE, and a cache of manners found while these were all: a vector of
-\(layout . manner), indexed by the layout's number; a later one replaces an earlier one.")
+  "The methods of COPY-PLAN-VALUE, and a cache valid for them: a vector of (layout . manner), by the
+number of the layout.")
 
 (defun refresh-manners ()
   "Clear the cache of manners if methods of COPY-PLAN-VALUE were defined since."

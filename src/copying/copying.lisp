@@ -93,8 +93,7 @@ result may be incomplete until they have returned."
                copier)))
 
 (defun copy-as-told (value copier)
-  "Return the value of COPY-PLAN-VALUE for VALUE, unless the caller has decided. Signals CANNOT-FORK
-for an error in a user's method."
+  "Return the caller's decision about VALUE, or COPY-PLAN-VALUE's. Its errors are CANNOT-FORK."
   (let ((decision (decision-about value copier)))
     (flet ((blame (condition)
              (unless (typep condition 'ars-magna-error)
@@ -132,8 +131,7 @@ for an error in a user's method."
                (t (note (make-value-cell (cell-value value)))))))))
 
 (defun copy-function (function copier)
-  "Return what COPIER has for FUNCTION, which closes over nothing: itself. A function that is an
-instance of a user's class may hold anything."
+  "Return FUNCTION, which closes over nothing; one of a user's class may hold anything."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
         ((typep function 'standard-object) (ask-about function copier))
         (t function)))
@@ -214,8 +212,8 @@ instance of a user's class may hold anything."
 ;;; Plain values, outside of any run.
 
 (defun plain-value-p (value)
-  "True if VALUE has no identity: a list, array, table, closure or closed-over variable, or a
-structure or instance of a user's class without a method for copying."
+  "True if VALUE is a list, array, table, closure or closed-over variable, or of a user's class that
+has no method for copying."
   (typecase value
     ((or cons array hash-table) t)
     (condition nil)
@@ -241,8 +239,8 @@ copies. Other objects are replaced by the value of INSTEAD-OF, a function of the
 (defconstant +deepest-given+ 200 "The limit of nesting in an argument.")
 
 (defun copy-given (datum)
-  "Return DATUM, an argument, with its lists and vectors copied, so that the caller cannot modify it
-later; other objects are shared. Return NIL and true if it is circular, too long or too deep."
+  "Return DATUM with its lists and vectors copied, so that the caller cannot modify it later. Return
+NIL and true if it is circular, too long or too deep."
   (let ((left +longest-given+))
     (labels ((deeper (depth)
                (when (or (minusp (decf left)) (> depth +deepest-given+))

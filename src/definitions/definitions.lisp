@@ -37,8 +37,7 @@ typed."
   (and *definition* (head (defining-form *definition*))))
 
 (defun current-docstring ()
-  "Return the docstring of the current definition: the value of :documentation, or the first string
-after the name; NIL if there is neither."
+  "Return :documentation of the current definition, or the first string after its name, or NIL."
   (let* ((parts (and *definition* (cddr (defining-form *definition*))))
          (text (or (second (member :documentation parts)) (find-if #'stringp parts))))
     (and (stringp text) text)))
@@ -116,8 +115,7 @@ there."
        (same-name-p (first value) (first (defining-form definition)))))
 
 (defun definition-with (definition value)
-  "Return the form of DEFINITION with VALUE in place of the rejected clause, or VALUE itself if it
-is such a form."
+  "Return DEFINITION's form with VALUE for the rejected clause, or VALUE if it is a whole form."
   (let* ((form (defining-form definition))
          (clause (defining-clause definition))
          (new (subst value clause form :test #'equal)))
@@ -128,8 +126,7 @@ is such a form."
 
 (defun call-with-definition-restarts (function replace)
   "Call FUNCTION, with restarts that leave out the current definition, or call REPLACE with another
-form for it: read again from its file, or with another clause. If that form is rejected too, the
-restarts are offered again."
+form for it, also repeatedly: read again from its file, or with another clause."
   (let ((definition *definition*))
     (flet ((instead (choose)
              (call-with-definition-restarts

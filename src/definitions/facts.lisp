@@ -74,37 +74,29 @@ LABELS-AND-FORMS alternate, as in KNOWN-FACTS."
   (loop for registry in *registries*
           thereis (find object (registry-entries registry) :key #'entry-object :test #'eq)))
 
-(defun entry-line (entry)
-  "Return the line of the definition of ENTRY in its file now, or NIL."
-  (and (entry-head entry)
-       (clause-line (source-file (entry-source entry)) (entry-head entry) nil)))
-
 (defun facts-of-definition (entry)
-  (and entry
-       (known-facts "Documentation" (entry-documentation entry)
-                    "Defined in" (and (source-file (entry-source entry))
-                                      (format nil "~A~@[, line ~D~]"
-                                              (source-file (entry-source entry))
-                                              (entry-line entry))))))
+  (when entry
+    (let ((file (source-file (entry-source entry))) (head (entry-head entry)))
+      (known-facts "Documentation" (entry-documentation entry)
+                   "Defined in" (and file
+                                     (format nil "~A~@[, line ~D~]" file
+                                             (and head (clause-line file head nil))))))))
 
+;; Lisp itself describes our definitions, such as commands, unless they have another name there.
 (defun worth-telling-p (entry registry symbol)
-  "True if DESCRIBE of SYMBOL should show ENTRY, the definition of SYMBOL in REGISTRY. Lisp itself
-describes ours, such as commands, unless they have another name there, as TURN has."
+  "True if DESCRIBE of SYMBOL should show ENTRY, the definition of SYMBOL in REGISTRY."
   (or (not (registry-fixed-p registry))
       (and (not (eq symbol (entry-name entry)))
            (facts (entry-object entry)))))
 
-(defun describe-definitions (symbol stream)
-  (dolist (registry *registries*)
+(defmethod describe-object :after ((symbol symbol) stream)
+  (dolist (registry (and symbol *registries*))
     (let ((entry (lookup-entry symbol registry)))
       (when (and entry (worth-telling-p entry registry symbol))
         (format stream "~&~%~A names ~:[a~;an~] ~A:~%" symbol
                 (find (char (registry-text registry) 0) "aeiou") (registry-text registry))
         (write-facts-of (append (facts (entry-object entry)) (facts-of-definition entry))
                         stream)))))
-
-(defmethod describe-object :after ((symbol symbol) stream)
-  (when symbol (describe-definitions symbol stream)))
 
 ;;; Documentation, of kinds of definition.
 
@@ -118,9 +110,8 @@ describes ours, such as commands, unless they have another name there, as TURN h
 ;;; Source locations for editors.
 
 (defun definition-sources (name)
-  "Return a list (file position operator) for each definition of NAME, a symbol, whose location Lisp
-does not know itself, as it knows those of variables and functions: its file, a string, its position
-there now, and its operator."
+  "Return a list (file position operator), as of now, for each definition of NAME, a symbol, whose
+location Lisp does not know itself, as it knows those of variables and functions."
   (loop for registry in (open-registries)
         for entry = (lookup-entry name registry)
         for file = (and entry (not (entry-variable entry)) (source-file (entry-source entry)))

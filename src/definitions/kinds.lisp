@@ -210,8 +210,7 @@ of a kind, else under one title without texts."
                        (lambda (value object) (setf (,reader (the ,name object)) value))))))
 
 (defun kind-options (form)
-  "Return the name, the included kind or NIL, and the constructor that FORM, the first argument of
-DEFINE-KIND, specifies."
+  "Return the name, included kind or NIL, and constructor in FORM, DEFINE-KIND's first argument."
   (destructuring-bind (name &rest options) (ensure-list form)
     (unless (and (proper-list-p options) (evenp (length options))
                  (loop for key in options by #'cddr always (member key '(:include :constructor))))

@@ -188,8 +188,7 @@ never change, when it is read."))
 ;;; Printing.
 
 (defun write-item (item stream)
-  "Write ITEM as OUT does: no quotes, floats without an exponent marker, T as a new
-line (reading 36)."
+  "Write ITEM without quotes, a float without exponent marker, T as a new line (reading 36)."
   (cond ((eq item t) (terpri stream))
         ((floatp item)
          (let ((*read-default-float-format* (type-of item)))
@@ -218,8 +217,7 @@ line (reading 36)."
   (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
 
 (defun text-with-command (message)
-  "Return the text of MESSAGE after the name of the command that it is about, for readers who did
-not just request that."
+  "Return the text of MESSAGE after the name of its command, for readers who just saw another one."
   (let ((text (message-text message)) (name (message-about message)))
     (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
         (format nil "~(~A~): ~A" name text)

@@ -11,8 +11,7 @@
       (setf (slot-value object name) (slot-value model name)))))
 
 (defun keep-entry (entry)
-  "Return ENTRY with what is needed to restore it: a copy of its object, and a list of the value of
-its variable if there is one."
+  "Return a list of ENTRY, a copy of its object, and a list of its variable's value, if any."
   (let ((variable (entry-variable entry)))
     (list entry
           (copy-structure (entry-object entry))

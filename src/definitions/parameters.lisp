@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(parameter check-parameter-value describe-type define-parameter parameter-settings
-          check-parameters *noise-before-cleaning* ticks-for noise-of-step per-tick-drift
-          per-tick-probability))
+(export '(parameter check-parameter-value describe-type parameter-settings check-parameters
+          *noise-before-cleaning* ticks-for noise-of-step per-tick-drift per-tick-probability))
 
 ;;; Each parameter is a special variable that users may SETF. Its one definition gives its
 ;;; documentation, the check of its value, its noiseless value and its line in the prompt's list. A
@@ -35,11 +34,9 @@
   (print-unreadable-object (parameter stream :type t)
     (write-string (parameter-name parameter) stream)))
 
-(defun parameter-aliases (parameter)
-  (list (string-right-trim "*" (symbol-name (parameter-symbol parameter)))))
-
-(define-registry parameter "simulation parameter"
-  :object-p parameter-p :fixed t :aliases #'parameter-aliases)
+(define-registry parameter "simulation parameter" :object-p parameter-p :fixed t
+  :aliases (lambda (parameter)
+             (list (string-right-trim "*" (symbol-name (parameter-symbol parameter))))))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun limit-text (limit)
@@ -145,15 +142,14 @@ nothing (manual, chapter 4)."
 ;;;; The parameters of the manual
 
 (macrolet
-    ((define-group (group &rest definitions)
+    ((define-physics (&rest groups)
        `(progn
-          ,@(loop for (symbol default unit kind type sentence . options) in definitions
-                  collect `(define-parameter ,symbol ,default
-                               (,@options :unit ,unit :kind ,kind :type ,type :group ,group
-                                :clean 0d0)
-                             ,sentence))))
-     (define-physics (&rest groups)
-       `(progn ,@(loop for group in groups collect `(define-group ,@group)))))
+          ,@(loop for (group . definitions) in groups
+                  append (loop for (symbol default unit kind type sentence . options) in definitions
+                               collect `(define-parameter ,symbol ,default
+                                            (,@options :unit ,unit :kind ,kind :type ,type
+                                             :group ,group :clean 0d0)
+                                          ,sentence))))))
   (define-physics
     ;; basics/conditions.lisp limits delays, distances and angles in general.
     ("Robot movement"

@@ -17,12 +17,11 @@
   i)
 
 (defvar *last-element* '("" 0 0 nil)
-  "The text, start and element number of the last call of ELEMENT-BOUNDS, and its position: elements
-of long lists are requested in order. Replaced, never modified.")
+  "The arguments and the start found by the last ELEMENT-BOUNDS: elements are requested in order.
+Replaced, never modified.")
 
 (defun element-bounds (text start number)
-  "Return the start and end in TEXT of the element NUMBER, from 0, of the list that begins at START;
-NIL if there is no list or it cannot be read."
+  "Return start and end in TEXT of element NUMBER of the list at START; NIL if it cannot be read."
   (with-words (text)
     (destructuring-bind (last-text last-start last-number last-begin) *last-element*
       (let ((known-p (and last-begin (eq text last-text) (= start last-start)
@@ -40,8 +39,7 @@ NIL if there is no list or it cannot be read."
               (values begin end))))))))
 
 (defun bounds-of-place (text place)
-  "Return the start and end in TEXT of PLACE, of PLACE-IN-TEXT, or of the smallest form found around
-it."
+  "Return start and end in TEXT of PLACE, of PLACE-IN-TEXT, or of the smallest form around it."
   (destructuring-bind (position . numbers) place
     (let ((start (skip-blanks text position)) (end (length text)))
       (dolist (number numbers (values start end))
@@ -50,8 +48,7 @@ it."
           (setf start inner-start end inner-end))))))
 
 (defun line-in-text (file form place)
-  "Return the line in FILE of FORM, at PLACE, of PLACE-IN-TEXT; NIL if PLACE is NIL or FILE cannot
-be read. If FORM is NIL, only PLACE counts."
+  "Return the line in FILE of FORM, if not NIL, or else of PLACE, of PLACE-IN-TEXT; or NIL."
   (and place
        (ignore-errors
          (let ((text (text-of-file file)))

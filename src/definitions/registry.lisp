@@ -66,8 +66,7 @@ strings and symbols" :writable))
               thereis (same-name-p name alias))))
 
 (defun qualified-symbol (name)
-  "Return the symbol for NAME, a string such as \"PACKAGE:NAME\", or NIL. If there is none in this
-case, the name is looked for in upper case."
+  "Return the symbol for NAME, such as \"PACKAGE:NAME\", as it is or in upper case; or NIL."
   (let ((colon (and (stringp name) (position #\: name))))
     (when (and colon (plusp colon))
       (let* ((prefix (subseq name 0 colon))
@@ -108,8 +107,7 @@ others."
                                  (remove-if #'users-p entries)))))
 
 (defun find-definition (name registry errorp)
-  "Return the object in REGISTRY called NAME. If there is none, return NIL, or signal UNKNOWN-NAME
-if ERRORP is true."
+  "Return the object in REGISTRY called NAME; else NIL, or signal UNKNOWN-NAME if ERRORP is true."
   (let ((entry (lookup-entry name registry)))
     (cond (entry (entry-object entry))
           (errorp (reject-name (registry-text registry) name (names-to-offer registry))))))
@@ -151,8 +149,8 @@ if ERRORP is true."
   (not (equal *own-source* (entry-source entry))))
 
 (defun entries-with (new old before registry)
-  "Return the entries of REGISTRY with NEW: before the object BEFORE, in place of OLD, or last. Of
-several with the same name the newest comes last, for lookups by name."
+  "Return the entries of REGISTRY with NEW: before the object BEFORE, in place of OLD unless another
+entry of the same name would then be last, or last."
   (let* ((entries (registry-entries registry)) (others (remove old entries)))
     (cond (before (let ((tail (member before others :key #'entry-object)))
                     (append (ldiff others tail) (list new) tail)))
@@ -166,8 +164,8 @@ several with the same name the newest comes last, for lookups by name."
   (ignore-errors (global-value name)))
 
 (defun free-variable (name kind)
-  "Return NAME if it can be a variable and is unused, for a definition of KIND with this name.
-Otherwise return NIL, with a warning unless NAME is a symbol of Common Lisp or ours."
+  "Return NAME if a definition of KIND can have it as its variable. Else return NIL, with a warning
+unless NAME is a symbol of Common Lisp or ours."
   (flet ((refuse (control)
            (warn-of-definition "~@?: the ~A is to be called by its name, '~(~A~)."
                                control name kind name)))
@@ -185,8 +183,7 @@ Otherwise return NIL, with a warning unless NAME is a symbol of Common Lisp or o
                           (registry-text registry) (entry-name new) other file))))
 
 (defun variable-for (name old registry)
-  "Return the variable of a definition of NAME that replaces the entry OLD, or NIL: the variable of
-OLD, or NAME if it is unused."
+  "Return the variable for a definition of NAME: that of the entry OLD, or NAME if unused, or NIL."
   (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
         (t (free-variable name (registry-text registry)))))
 

@@ -28,8 +28,7 @@ the package that exports it; or NIL."
                      (and (find-package "ARS") (package-used-by-list "ARS"))))))
 
 (defun elsewhere-text (name predicate)
-  "Return in a sentence which users' package has a symbol called NAME, another one, that fits
-PREDICATE, and how to use it; or NIL."
+  "Return in a sentence how to use another users' symbol called NAME that fits PREDICATE, or NIL."
   (dolist (package (user-packages))
     (multiple-value-bind (symbol status) (find-symbol (symbol-name name) package)
       (when (and symbol (not (eq symbol name)) (funcall predicate symbol))
@@ -40,8 +39,7 @@ PREDICATE, and how to use it; or NIL."
                       (package-name package))))))))
 
 (defun symbols-seen (package test)
-  "Return the symbols that PACKAGE sees, that are not Lisp's and for which TEST is true, in order of
-their names."
+  "Return the symbols accessible in PACKAGE, not Lisp's, that satisfy TEST, sorted by name."
   (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
     (do-symbols (symbol package)
       (when (and (not (eq lisp (symbol-package symbol))) (funcall test symbol))
@@ -103,15 +101,10 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
   "Remember that CODE, a keyword, is an error code of commands."
   (pushnew code *error-codes*))
 
-(defun code-slip (name)
-  "Return in words the error code that is called like NAME, which has no value; or NIL."
-  (let ((code (find-symbol (symbol-name name) "KEYWORD")))
-    (and (member code *error-codes*) (format nil "~(~S~)" code))))
-
 (defun variable-slip-text (name)
   (when (and (symbolp name) (symbol-package name))
-    (let ((code (code-slip name)))
-      (or (and code (format nil "Did you mean ~A?" code))
+    (let ((code (find name *error-codes* :test #'string=)))
+      (or (and code (format nil "Did you mean ~(~S~)?" code))
           (elsewhere-text name (lambda (symbol)
                                  (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol)))))
           (defined-slip-text name)
@@ -149,15 +142,13 @@ it is of no use; or NIL.")
        (search " returns" (argument-type-words type))))
 
 (defun type-remedy (datum type)
-  "Return in a sentence what is wrong with DATUM for the argument type TYPE, or what to give; NIL if
-there is no more to say."
+  "Return in a sentence what is wrong with DATUM for the argument TYPE, or what to give, or NIL."
   (let ((type (and (symbolp type) (find-argument-type type nil))))
     (when (and type (or (trouble-with datum type) (source-known-p type)))
       (sentence (format nil "Give ~A" (argument-type-text type datum))))))
 
 (defun slip-text (condition)
-  "Return in a sentence what was meant where CONDITION, an error of Lisp's own, came up, or what to
-do; NIL if there is no more to say."
+  "Return in a sentence what was meant or what to do, for Lisp's own error CONDITION; or NIL."
   (typecase condition
     (undefined-function (function-slip-text (cell-error-name condition)))
     (unbound-variable (variable-slip-text (cell-error-name condition)))

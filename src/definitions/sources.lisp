@@ -24,8 +24,7 @@
 ;;; A map has thousands of clauses, each of which may be looked up, so the last result is cached.
 
 (defun call-recalling (function cell &rest keys)
-  "Do what RECALLING does. CELL is a list of a list (value key...), of the last call. It is
-replaced, never modified: any thread may read it."
+  "Do what RECALLING does. CELL holds (value key...) of the last call, replaced, never modified."
   (destructuring-bind (&optional value &rest last-keys) (first cell)
     (if (and last-keys
              (every (lambda (key last)
@@ -42,8 +41,7 @@ replaced, never modified: any thread may read it."
 ;;; Finding a form in a text.
 
 (defmacro with-words ((text) &body body)
-  "Run BODY, in which (READ-WORDS position) returns the form of the string TEXT that begins there
-and its end, or NIL."
+  "Run BODY, where (READ-WORDS position) returns the form in TEXT that begins there, and its end."
   (with-gensyms (words)
     ;; Other packages are found by the local nicknames of the current one.
     `(let ((,words (make-package (gensym "WORDS") :use '())))
@@ -95,8 +93,7 @@ and its end, or NIL."
         ((starts-at-p "#|" text i) (skip-block-comment text i))))
 
 (defun skip-text (text i)
-  "Return the end of the comment, string or escaped character that begins in TEXT at I; NIL if code
-does."
+  "Return the end of the comment, string or escaped character that begins in TEXT at I, or NIL."
   (cond ((skip-comment text i))
         ((find (char text i) "\"|") (skip-quoted text i))
         ((starts-at-p "#\\" text i) (+ i 3))
@@ -131,13 +128,11 @@ does."
                          (list (list position end (same-words-p found form)))))))))
 
 (defun definition-positions (text form)
-  "Return a list (start end same) for each form in TEXT that has the operator and name of FORM; SAME
-is true if it equals FORM word by word."
+  "Return (start end equal-p) for each form in TEXT with the operator and name of FORM."
   (recalling (text form) (look-for-definitions text form)))
 
 (defun position-of-definition (positions ordinal)
-  "Return the element of POSITIONS that is unchanged, or has the number ORDINAL, or is the first,
-and its number."
+  "Return the one of POSITIONS that is unchanged, or number ORDINAL, or the first; and its number."
   (let ((number (or (position-if #'third positions)
                     (and ordinal (< ordinal (length positions)) ordinal)
                     0)))
@@ -149,18 +144,15 @@ and its number."
     (loop for position in (openings text start end)
           collect (cons position (read-words position)))))
 
-(defun forms-between (text start end)
-  "Return the value of FORMS-IN, cached for repeated calls."
-  (recalling (text start end) (forms-in text start end)))
-
 (defvar *last-place* '(())
-  "A cons of what FORMS-BETWEEN returned and its tail that begins with what was found there last. It
-is replaced, never altered: any thread may ask.")
+  "The list that FORM-POSITION searched last, consed to its tail from what was found on. Replaced,
+never modified.")
 
+;; Forms are mostly looked up in order.
 (defun form-position (text form start end)
-  "Return the position of FORM, a list, in TEXT between START and END, or NIL. Forms are mostly
-looked up in order: the search begins after the last one found, then at START."
-  (let ((forms (forms-between text start end)))
+  "Return the position of FORM, a list, in TEXT between START and END, the next from the last search
+if possible; or NIL."
+  (let ((forms (recalling (text start end) (forms-in text start end))))
     (flet ((look (from)
              (let ((tail (member form from :key #'cdr :test #'same-words-p)))
                (when tail (setf *last-place* (cons forms tail)))
@@ -217,8 +209,7 @@ found in it, or NIL; and which of the definitions of that name it is."
               thereis (form-position text part start end)))))
 
 (defun read-definition-again (file form ordinal)
-  "Return the definition that was FORM, number ORDINAL of its name, as it is in FILE now. Signals
-MISUSE if it is not there."
+  "Return the definition FORM, number ORDINAL of its name, as FILE has it now, or signal MISUSE."
   (let* ((text (read-file-into-string (native-path file)))
          (place (position-of-definition (definition-positions text form) ordinal)))
     (unless place
@@ -231,8 +222,7 @@ MISUSE if it is not there."
   (find char "()"))
 
 (defun code-alone (text)
-  "Return TEXT without comments, with one space for each run of blanks, and none next to parentheses
-or at either end."
+  "Return TEXT without comments and blanks, but for one space between two words."
   (with-output-to-string (stream)
     (let ((i 0) (last #\() (blank nil))
       (loop while (< i (length text))
@@ -257,8 +247,7 @@ or at either end."
         finally (return (length text))))
 
 (defun code-without (operator text)
-  "Return TEXT, of CODE-ALONE, without its top-level forms with OPERATOR, a string, perhaps after a
-package prefix."
+  "Return TEXT, of CODE-ALONE, without top-level forms with OPERATOR, a string, of any package."
   (with-output-to-string (stream)
     (loop with i = 0
           while (< i (length text))
@@ -300,14 +289,12 @@ the operator WITHOUT, a string, if given."
     (t (first (ensure-list (type-of atom))))))
 
 (defun add-atom (atom digest known)
-  "Add ATOM, of a form, to DIGEST. Uninterned symbols, whose names macros invent, count by their
-order of appearance; KNOWN holds those that have appeared."
+  "Add ATOM, of a form, to DIGEST. Uninterned symbols count by their order, which KNOWN keeps."
   (digest-add digest (kind-of-atom atom))
   (typecase atom
     (symbol (digest-add digest (if (symbol-package atom)
                                    (symbol-name atom)
-                                   (or (gethash atom known)
-                                       (setf (gethash atom known) (hash-table-count known))))))
+                                   (ensure-gethash atom known (hash-table-count known)))))
     (string (add-characters atom digest))
     (integer (add-integer atom digest))
     (ratio (add-integer (numerator atom) digest) (add-integer (denominator atom) digest))

@@ -64,8 +64,8 @@ would keep a finished run alive."
     (setf (message-queue-unsignalled queue) nil)))
 
 (defun take-unsignalled (queue)
-  "Return the first error of users' code that is to be signalled, as USER-CODE-ERROR, or NIL. It and
-later ones count as signalled; it is no longer a message."
+  "Take the first error to be signalled from QUEUE and return it as USER-CODE-ERROR, or NIL. Later
+ones then count as signalled."
   (when (message-queue-unsignalled queue)
     (with-queue (queue)
       (let ((message (shiftf (message-queue-unsignalled queue) nil)))
@@ -172,8 +172,7 @@ is true."
 ;;; chosen, or CONTINUE for a condition that is no error.
 
 (defstruct (inquiry (:constructor make-inquiry (thread hook)) (:copier nil))
-  "A pending question: the debugger of HOOK, or Lisp's own if that is NIL, asks for a restart of
-THREAD."
+  "The debugger of HOOK, or Lisp's own if that is NIL, asks for a restart of THREAD."
   (thread nil :read-only t)
   (hook nil :read-only t))
 
@@ -203,11 +202,6 @@ the thread of the error before the debugger asks there.")
                         (when (and (member inquiry *inquiries*) (funcall gone-p))
                           (throw inquiry nil))))))
 
-(defun call-noting-inquiry (inquiry function)
-  (with-lock (*inquiries-lock*) (push inquiry *inquiries*))
-  (unwind-protect (funcall function)
-    (with-lock (*inquiries-lock*) (setf *inquiries* (remove inquiry *inquiries*)))))
-
 (defun call-as-debugger (function)
   "Call FUNCTION, a debugger. Errors in what is typed there belong to it."
   (handler-bind (((or error storage-condition) #'debug-inside))
@@ -220,8 +214,7 @@ the thread of the error before the debugger asks there.")
 
 ;; SWANK sets both of SBCL's hooks, and the function in the first defers to the other.
 (defun enter-outer (condition hook)
-  "Let the debugger of HOOK, or if that asks nobody the one of *DEBUGGER-HOOK*, or without hooks
-Lisp's own, ask for a restart of CONDITION. Return if nobody is asked."
+  "Let the debugger of HOOK, else of *DEBUGGER-HOOK*, else Lisp's own ask about CONDITION."
   (call-as-debugger (lambda ()
                       (when hook (funcall hook condition hook))
                       (cond (*debugger-hook*
@@ -239,21 +232,20 @@ Lisp's own, ask for a restart of CONDITION. Return if nobody is asked."
     (abort condition)))
 
 (defun inquire (condition hook)
-  "Let the debugger of HOOK, a foreign one, ask for a restart of CONDITION; if it goes away without
-an answer, another one. Return if that one continues."
+  "Let the debugger of HOOK, or another if that goes away, ask for a restart of CONDITION."
   (let ((inquiry (make-inquiry (current-thread) hook)))
     (catch inquiry
-      (call-noting-inquiry inquiry
-                           (lambda ()
-                             (tell-listeners *inquiry-hooks* condition (words-for-asker hook))
-                             (enter-outer condition hook)))
+      (with-lock (*inquiries-lock*) (push inquiry *inquiries*))
+      (unwind-protect (progn (tell-listeners *inquiry-hooks* condition (words-for-asker hook))
+                             (enter-outer condition hook))
+        (with-lock (*inquiries-lock*) (setf *inquiries* (remove inquiry *inquiries*))))
       (return-from inquire))
     (ask-how-to-go-on *front-end* condition)
     (go-on-unasked condition)))
 
 (defun call-answering-debugger (function answer)
-  "Call FUNCTION and return its values. If it enters a debugger, call ANSWER with the condition, and
-whether an interactive debugger is available. If none is, ANSWER must not return."
+  "Call FUNCTION. If it enters a debugger, call ANSWER with the condition, and true if an
+interactive debugger is available; if none is, ANSWER must not return."
   (declare (type function function answer))
   (let ((hook (debugger-hook))
         (foreign (foreign-hook)))

@@ -166,8 +166,7 @@ The caller cannot retry it then.")
 
 (defun call-offering (function origin go-on again &aux (around *spoilt-by-leaving-p*))
   "Call FUNCTION, users' code that ORIGIN names, with restarts: ABORT, which calls GO-ON; RETRY,
-which calls AGAIN, unless leaving the code would end the work in progress; and STOP-SIMULATOR, if
-the work of this thread can be stopped."
+which calls AGAIN, if that is possible; and STOP-SIMULATOR, if this thread's work can be stopped."
   (declare (type function function go-on again))
   (flet ((retriable-p (condition)
            (declare (ignore condition))

@@ -51,8 +51,8 @@ macro's lambda list; or NIL."
             return (format nil "~(~S~) has no value" key))))
 
 (defun misfit-text (parameters arguments)
-  "Return in words what in ARGUMENTS, forms, does not fit PARAMETERS, of a macro's lambda list: a
-keyword, or a form in place of a list. Return NIL if it is something else."
+  "Return in words the keyword, or form in place of a list, in ARGUMENTS that does not fit
+PARAMETERS; or NIL."
   (when (proper-list-p arguments)
     (or (strange-keyword parameters arguments)
         (loop for parameter in parameters
@@ -75,8 +75,8 @@ keyword, or a form in place of a list. Return NIL if it is something else."
                          with (in-readtable :nisp)." slot))))
 
 (defun call-fitting (form usage parse)
-  "PARSE takes FORM, a use of a macro, apart and returns a function. Return the value of that.
-Signals MALFORMED-DEFINITION with USAGE if FORM does not fit."
+  "Call the function that PARSE returns for FORM. Signals MALFORMED-DEFINITION with USAGE if it does
+not fit."
   (when (or (endless-p form) (not (proper-list-p form)))
     (reject-use-of form "a form that ends, in a parenthesis"))
   (doubt-readtable form)
@@ -90,8 +90,7 @@ Signals MALFORMED-DEFINITION with USAGE if FORM does not fit."
    form))
 
 (defun expand-fitting (form environment usage parse)
-  "Do what CALL-FITTING does. Within other forms or a file that is compiled, return a form that
-signals its error later."
+  "Do as CALL-FITTING; in other forms or a compiled file, return a form that signals its error."
   (first (forms-or-rejection (lambda () (list (call-fitting form usage parse)))
                              (nested-p environment))))
 
@@ -135,8 +134,7 @@ BODY signals an error, signals MALFORMED-DEFINITION."
   (if (= 1 (length forms)) (first forms) (cons 'progn forms)))
 
 (defun test-meant (form)
-  "Return a list of the form that is meant if FORM, a test, is quoted or a function; NIL if it is
-neither."
+  "Return a list of the form meant by FORM, a test that is quoted or a function; else NIL."
   (typecase form
     ((cons (eql quote) (cons (not null) null))
      (let ((data (second form)))

@@ -6,8 +6,8 @@
 ;;; axes. Where the table says x, an element is asked for: a number or a point.
 
 (defmacro define-comparison (name combine (low-a high-a low-b high-b) documentation form)
-  "Define NAME as a function of two operands whose value along an axis is FORM, evaluated with
-the four variables bound to their bounds; COMBINE joins the values of two axes."
+  "Define NAME of two operands, whose bounds along an axis the four variables hold in FORM; COMBINE
+joins the values of two axes."
   `(progn
      (public ,name)
      (defun ,name (a b)
@@ -178,8 +178,7 @@ that is nothing (manual, Table 3.2)."
 
 (declaim (inline %grown))
 (defun %grown (interval amount)
-  "Return the bounds of INTERVAL, pushed outward by AMOUNT; if they would pass each other they meet
-in the centre."
+  "Return the bounds of INTERVAL, pushed outward by AMOUNT, or inward to the centre at most."
   (let ((low (- (%interval-min interval) amount))
         (high (+ (%interval-max interval) amount)))
     (if (<= low high)

@@ -45,8 +45,7 @@
 
 (defmacro dispatch (operator operands expected &body clauses)
   "Evaluate the first of CLAUSES, ((TYPE...) FORM...), whose types the variables OPERANDS have.
-If there is none, or the result is too large, signal WRONG-ARGUMENT: OPERATOR takes what EXPECTED
-says in words."
+Signals WRONG-ARGUMENT, with EXPECTED in words, if there is none or the result is too large."
   (flet ((test (types)
            `(and ,@(loop for operand in operands
                          for type in types

@@ -47,8 +47,7 @@ way. Written (make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
   (%make-pt (double x) (double y)))
 
 (defmacro define-number-accessor (name (raw value object) check documentation)
-  "Define NAME, which reads what RAW does of OBJECT, and sets it to a VALUE for which the form CHECK
-signals nothing."
+  "Define NAME, which reads OBJECT as RAW does, and sets it to a VALUE once CHECK is evaluated."
   `(progn
      (addition ,name)
      (settable ,name)

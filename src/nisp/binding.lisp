@@ -19,8 +19,7 @@
   `#'(lambda ,(untyped-lambda-list lambda-list "\\") ,@body))
 
 (defun check-continuation (lambda-list body)
-  "Signal MALFORMED-DEFINITION, or warn, if LAMBDA-LIST of a CONTINUATION with BODY seems to be what
-is to be done."
+  "Signal MALFORMED-DEFINITION, or warn, if a CONTINUATION has its BODY in place of LAMBDA-LIST."
   (let ((*print-pretty* nil) (*print-case* :downcase) (shown (abridged lambda-list)))
     (when (consp lambda-list)
       (cond ((some #'constantp (ldiff lambda-list (member-if #'lambda-keyword-p lambda-list)))
@@ -32,8 +31,7 @@ is to be done."
                                 (continuation (err &rest results) ~:*~S)." shown))))))
 
 (defun doubt-codes (variable body)
-  "Warn of what BODY, of a CONTINUATION, compares VARIABLE, its first parameter, with and that is no
-error code."
+  "Warn if BODY, of a CONTINUATION, compares its first parameter VARIABLE with a wrong error code."
   (map-comparisons (lambda (subject word form)
                      (declare (ignore form))
                      (cl:let ((doubt (and (eq subject variable) (code-doubt word))))
@@ -122,8 +120,7 @@ follow the parameters (manual 3.1)."
                 temporaries)))))
 
 (defun pattern-test (pattern datum temporaries)
-  "Return a form that is true if PATTERN matches the value of the variable DATUM, and the
-TEMPORARIES with those that it sets."
+  "Return a form that tests if PATTERN matches the variable DATUM, and TEMPORARIES with new ones."
   (cond ((matchvar-p pattern) (matchvar-test (matchvar-name pattern) datum temporaries))
         ((consp pattern) (cons-test pattern datum temporaries))
         ((null pattern) (values `(null ,datum) temporaries))

@@ -72,8 +72,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
 ;;; is loaded; after that the registry is only read.
 
 (defstruct (nisp-type (:constructor make-nisp-type (name)) (:copier nil))
-  "What is known of the type called NAME. CLASS is its Lisp name, if it has registered slots;
-SLOTS an alist from slot names to reader functions' names; MAKER a function or NIL."
+  "A type. CLASS is its Lisp name, if it has SLOTS, an alist from names to names of readers."
   (name "" :type string :read-only t)
   (class nil :type symbol)
   (slots '() :type list)
@@ -87,8 +86,7 @@ SLOTS an alist from slot names to reader functions' names; MAKER a function or N
   (values (gethash (string name) *nisp-types*)))
 
 (defun ensure-nisp-type (name)
-  (or (find-nisp-type name)
-      (setf (gethash (string name) *nisp-types*) (make-nisp-type (string name)))))
+  (ensure-gethash (string name) *nisp-types* (make-nisp-type (string name))))
 
 (defun names-of-classes (package)
   "Return the names of the classes that PACKAGE, the name of a package or nothing's, offers."
@@ -97,8 +95,7 @@ SLOTS an alist from slot names to reader functions' names; MAKER a function or N
              when (find-class symbol nil) collect (symbol-name symbol))))
 
 (defun known-types ()
-  "Return the names of the types that programs use, in order: those registered, and classes that
-the packages of users have."
+  "Return the names of the registered types and of the classes that NISP and ARS export, sorted."
   (sort (remove-duplicates (append (loop for name being the hash-keys of *nisp-types* collect name)
                                    (names-of-classes "NISP")
                                    (names-of-classes "ARS"))
@@ -131,8 +128,7 @@ the packages of users have."
                       operator type (type-like type))))
 
 (defun without-types (operator list what)
-  "Return LIST, of WHAT in words, without each hyphen and the type that follows it. OPERATOR, a
-string, is named in the error if a hyphen has no variable before it or no type behind it."
+  "Return LIST, of WHAT in words, without hyphens and types. OPERATOR is named in errors."
   (unless (listp list) (reject-clause operator list (format nil "a list of ~A" what)))
   (loop with typed = t                  ; nothing to declare yet
         with tail = list

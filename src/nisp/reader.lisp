@@ -34,8 +34,7 @@
   (reject-clause "Nisp's reader" text expected))
 
 (defun token-object (token)
-  "Return what the standard reader makes of TOKEN in the current package. Signals
-MALFORMED-DEFINITION if that is nothing whole."
+  "Return TOKEN as the standard reader reads it. Signals MALFORMED-DEFINITION if it is incomplete."
   (let ((*readtable* (find-readtable :standard)))
     (handler-case (values (read-from-string token))
       ;; What holds TOKEN is no shorter than it should be.
@@ -107,14 +106,14 @@ MALFORMED-DEFINITION if that is nothing whole."
 ;;; The named readtable :NISP; (in-readtable :nisp) puts it to use.
 
 (defun ensure-nisp-readtable ()
-  "Return the readtable :NISP: standard syntax plus #t, #f, ! and ? (reading 31); and a byte order
-mark, which some editors begin a file with, is as good as a space."
+  "Return the readtable :NISP: standard syntax plus #t, #f, ! and ? (reading 31)."
   (let ((readtable (or (find-readtable :nisp)
                        (make-readtable :nisp :merge '(:standard)))))
     (set-macro-character #\! 'read-bang t readtable)
     (set-macro-character #\? 'read-query t readtable)
     (set-dispatch-macro-character #\# #\t (constantly t) readtable)
     (set-dispatch-macro-character #\# #\f (constantly nil) readtable)
+    ;; Some editors begin a file with a byte order mark.
     (set-syntax-from-char (code-char #xFEFF) #\Space readtable)
     readtable))
 
@@ -154,14 +153,10 @@ neither (manual A; reading 41)."
 ;;; (in-readtable :nisp) would have it compiled in Nisp's syntax, and have it so ever after.
 
 (defvar *library-readtable* (copy-readtable nil)
-  "The syntax of files of systems that say nothing of theirs, if Nisp's is current. It is one, since
-there are libraries of which one file adds to the syntax of the next.")
-
-(defun nisp-syntax-p (readtable)
-  (eq (get-macro-character #\! (find-readtable :nisp)) (get-macro-character #\! readtable)))
+  "The syntax of files of systems if Nisp's is current. Libraries may add to it from file to file.")
 
 (defmethod asdf:perform :around ((operation asdf:operation) (component asdf:cl-source-file))
-  (if (nisp-syntax-p *readtable*)
+  (if (eq (get-macro-character #\! (find-readtable :nisp)) (get-macro-character #\!))
       (let ((*readtable* *library-readtable*)
             (*package* (find-package :cl-user)))
         (call-next-method))

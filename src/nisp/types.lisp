@@ -104,8 +104,7 @@ unknown TYPE and a wrong number of ARGUMENTS are errors."
           append (nisp-type-slots type)))
 
 (defun own-slots (object)
-  "Return the names, symbols, of the slots of OBJECT if its class is a user's, neither ours nor
-Lisp's: these are open to programs."
+  "Return the names, symbols, of the slots of OBJECT if its class is a user's."
   (let ((class (class-of object)))
     (when (and (typep class '(or structure-class standard-class))
                (users-symbol-p (class-name class))
@@ -149,8 +148,7 @@ Lisp's: these are open to programs."
           (acons slot reader (remove slot (nisp-type-slots type) :key #'car :test #'string=)))))
 
 (defun typed-reader (type slot)
-  "Return the name of the function that reads SLOT of the type called TYPE, and sets it with
-SETF if it can be set; the accessor for all types if TYPE has none of its own."
+  "Return the name of the accessor of SLOT for TYPE, or for all types if TYPE has none of its own."
   (let* ((known (find-nisp-type type))
          (class (and known (find-class (nisp-type-class known) nil))))
     (or (and class (cdr (assoc (string slot) (class-slots class) :test #'string=)))

@@ -117,11 +117,11 @@
     name))
 
 (defun doubt-attribute-options (definition domain options)
-  "Warn if OPTIONS give an attribute of DOMAIN only the noise of the other kind. Values of numeric
-attributes that are symbols are read right in :success of all cases."
+  "Warn if OPTIONS give an attribute of DOMAIN only the noise of the other kind."
   (flet ((given-p (option) (nth-value 2 (get-properties options (list option)))))
     (let ((strange (if (consp domain)
                        (find-if #'given-p '(:base :max-mult))
+                       ;; Numeric attributes may have symbols as values, for which :success is.
                        (and (not (given-p :base)) (given-p :success) :success))))
       (when strange
         (doubt-definition "~A: ~(~S~) is for ~:[readings that are right or wrong; without :base ~

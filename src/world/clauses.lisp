@@ -46,18 +46,13 @@ which expected EXPECTED there."
                              (string-right-trim "." (text-of-condition condition))
                              (namesake (missing-name condition)))))))
 
-(defun public-variable-p (symbol)
-  (let ((package (symbol-package symbol)))
-    (and package
-         (boundp symbol)
-         (not (keywordp symbol))
-         (eq :external (nth-value 1 (find-symbol (symbol-name symbol) package))))))
-
 (defun namesake (name)
   "Return in words a variable called NAME that another package exports, or NIL."
-  (let ((other (and (symbolp name) name
-                    (find-if #'public-variable-p (find-all-symbols name)))))
-    (and other (format nil "~A:~A" (package-name (symbol-package other)) other))))
+  (dolist (symbol (and (symbolp name) name (find-all-symbols name)))
+    (let ((package (symbol-package symbol)))
+      (when (and package (boundp symbol) (not (keywordp symbol))
+                 (eq :external (nth-value 1 (find-symbol (symbol-name symbol) package))))
+        (return (format nil "~A:~A" (package-name package) symbol))))))
 
 ;;; Clauses one by one.
 
@@ -65,9 +60,8 @@ which expected EXPECTED there."
   "The positions that lead from the definition at hand to the clause that is being carried out.")
 
 (defun call-with-clause (function clause path)
-  "Call FUNCTION with CLAUSE, the one at PATH of the current definition. By a restart the user may
-leave it out (then return NIL), or have FUNCTION called with another clause, read again or typed. If
-a whole definition is typed, it replaces the current one."
+  "Call FUNCTION with CLAUSE, at PATH of the current definition, with restarts that return NIL or
+use another clause, read again or typed. A whole definition replaces the current one."
   (restart-case (let ((*path* path)) (funcall function clause))
     (skip-clause ()
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
@@ -86,8 +80,8 @@ a whole definition is typed, it replaces the current one."
           (call-with-clause function other path)))))
 
 (defun parts-of-clauses (function clauses first)
-  "Call FUNCTION on each of CLAUSES, the elements from FIRST on of the current definition, or on
-those the user replaces them with. Return the parts that it returns, appended."
+  "Append what FUNCTION returns for CLAUSES, the elements from FIRST on of the current definition,
+or for what replaces them."
   (loop for clause in clauses
         for position from first
         append (call-with-clause function clause (append *path* (list position)))))

@@ -60,8 +60,7 @@
                            (map-width map) (map-height map)))))
 
 (defun code-in-thing (definition head descriptor contents)
-  "Return a list of (key form) for the code in the parts of a thing's clause. Signals
-MALFORMED-DEFINITION if contents are wrong."
+  "Return lists (key form) for a thing's code. Signals MALFORMED-DEFINITION for wrong contents."
   (destructuring-bind (name &key prototype &allow-other-keys) (ensure-list head)
     (append (and prototype (list (list (list nil prototype) prototype)))
             (loop for (key value) in descriptor

@@ -80,8 +80,7 @@ none, a second value says why, and what to do."
         form)))
 
 (defun draw-function-called (name function)
-  "Define NAME as FUNCTION and return NAME. Return FUNCTION itself if it is a closure, which its
-text does not determine, or if it cannot draw."
+  "Define NAME as FUNCTION and return NAME; or FUNCTION itself, if it is a closure or cannot draw."
   (cond ((or (closure-p function) (not (draw-function-p function))) function)
         (t (setf (fdefinition name) function)
            name)))

@@ -38,8 +38,7 @@
 ;;; Kickers.
 
 (defun attachment-copier (copier)
-  "Return a function that copies an attachment for a copied thing (its second argument) and seats it
-in the copy of its group."
+  "Return a function that copies an attachment for a copied thing, and seats it in the new group."
   (let ((kicker nil) (new-kicker nil) (group nil) (new-group nil))
     ;; Most have the kicker and the group of the one before.
     (flet ((kicker-for (old)
@@ -70,8 +69,7 @@ in the copy of its group."
 ;;; Things.
 
 (defun copy-thing (thing world copied)
-  "Return a copy of THING for WORLD, with its location and contents not yet copied. COPIED returns
-the copies of kickers, see ATTACHMENT-COPIER."
+  "Return a copy of THING for WORLD, with old location and contents. COPIED copies attachments."
   (declare #.*hot* (type thing thing) (type function copied))
   (let ((twin (copy-structure thing)))
     (setf (thing-world twin) world)

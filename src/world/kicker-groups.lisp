@@ -131,8 +131,8 @@
   "How many members of a group are more than a processor keeps near itself.")
 
 (defun read-group-ahead (group end dice)
-  "Read ahead what it takes to move the things whose trials succeed next, before END in the row of
-GROUP. Return the index in the row of the first one not read."
+  "Read ahead for the things whose trials succeed next, before END in GROUP. Return the index there
+of the first one not read."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice))
   (let* ((row (group-row group))
          (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
@@ -155,10 +155,9 @@ GROUP. Return the index in the row of the first one not read."
     (not (and (= x (thing-x thing)) (= y (thing-y thing))))))
 
 (defun run-members (group end dice tick)
-  "Run the members before END in the row of GROUP whose trials succeed, except those already run in
-TICK; TICK is 0 if none were. The next success is drawn before a member runs, so after an error the
-row continues behind it; on a retry the failed one comes first. In a large group, memory is read
-ahead if the first member to run moves its thing."
+  "Run the members of GROUP before END whose trials succeed, except those already run in TICK, if
+not 0. The next success is drawn before a member runs: an error skips it, unless it is retried. In a
+large group, memory is read ahead if the first member to run moves its thing."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice)
            (type tick-count tick))
   (let ((origin (group-origin group)) (curious (>= end +large-group+)) (ahead end)

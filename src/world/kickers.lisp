@@ -227,8 +227,8 @@ attached kicker, if any."
                  (return t)))))))
 
 (defun perhaps-used-p (entry world)
-  "True if a program may put the kicker of ENTRY on things of WORLD: a function names it, or it is
-from another file than the map, or named there more than once."
+  "True if the kicker of ENTRY is named in a function, or more than once in the file of WORLD's map,
+or is from another file."
   (let ((name (entry-name entry)) (file (source-file (entry-source entry)))
         (map-entry (lookup-entry (map-name (world-map world)) *maps*)))
     (if file

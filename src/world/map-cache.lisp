@@ -55,8 +55,7 @@
     words))
 
 (defun write-words (words path)
-  "Write WORDS to the file PATH, which is whole at every moment: it is a new file's name at last.
-Signals an error if PATH is write-protected."
+  "Write WORDS to the file PATH atomically. Signals an error if PATH is write-protected."
   (ensure-directories-exist path)
   (remove-abandoned-files (uiop:pathname-directory-pathname path))
   (check-unprotected path)
@@ -89,8 +88,7 @@ Signals an error if PATH is write-protected."
          "is damaged")))
 
 (defun restore-cell (map wall-p index number value)
-  "Make the cell INDEX of MAP a wall of the substance with NUMBER if WALL-P, else a place of the
-type with that number. Signals an error if there is none; 0 means no place."
+  "Make the cell INDEX of MAP a wall of substance NUMBER if WALL-P, else a place of type NUMBER."
   (unless (< 0 number (length (if wall-p (map-substance-types map) (map-place-types map))))
     (error "no name has the number ~D" number))
   (if wall-p
@@ -114,17 +112,14 @@ type with that number. Signals an error if there is none; 0 means no place."
 
 (defun begins-as-cache-p (path)
   "True if the file PATH is empty or begins as caches do."
-  (let ((octets (with-open-file (in path :element-type '(unsigned-byte 8)) (file-length in)))
-        (words (make-array 1 :element-type '(unsigned-byte 64))))
-    (with-open-file (in path :element-type '(unsigned-byte 64))
-      (or (zerop octets)
-          (and (<= 8 octets)
-               (= 1 (read-sequence words in))
+  (let ((words (make-array 1 :element-type '(unsigned-byte 64))))
+    (or (zerop (file-size path))
+        (with-open-file (in path :element-type '(unsigned-byte 64))
+          (and (= 1 (read-sequence words in))
                (= +cache-magic+ (aref words 0)))))))
 
 (defun foreign-cache-p (path)
-  "True if the file at PATH, perhaps a link, is not a map cache, damaged or not, or if this cannot
-be determined."
+  "True if the file PATH exists and is not a map cache, whole or damaged, or if that is unknown."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (plain-file-p path) (begins-as-cache-p path))))))
 
@@ -153,8 +148,7 @@ be determined."
                    " cannot be written: " (text-of-condition condition)))))
 
 (defun cache-path (name)
-  "Return the pathname of the cache NAME, a string or pathname, relative to the file of the current
-definition, or to the current directory if that was typed."
+  "Return the path of the cache NAME, relative to the definition's file or the current directory."
   (let ((directory (base-directory))
         (file (source-file (current-source))))
     (merge-pathnames (path-called name)

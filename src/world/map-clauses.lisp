@@ -44,8 +44,7 @@ the form for the option"))
 ;;; What clauses stand for. The parts of a map are walls, rects and circles, and recipes of things.
 
 (defun wrong-derivation-text (kind condition)
-  "Return in words what there should be instead of a clause of KIND that stands for one of which
-CONDITION says that it is wrong."
+  "Return in words what is expected instead of a clause of KIND whose expansion CONDITION rejects."
   (let ((*print-pretty* nil))
     (format nil "~A; it stands for ~(~S~), where there should be ~A" (clause-kind-usage kind)
             (abridged (malformed-definition-clause condition))
@@ -75,8 +74,8 @@ CONDITION says that it is wrong."
           (t (list clause)))))
 
 (defun code-in-clause (map clause)
-  "Return the code in CLAUSE of MAP, as CODE-IN-THING does. One that is wrong has none: that is a
-warning in a file that is compiled. What users' kinds stand for is not known yet."
+  "Return the code in CLAUSE of MAP, as CODE-IN-THING does: none if it is of a user's kind or,
+with a warning in a compiled file, wrong."
   (let ((code '()))
     (flet ((look ()
              (let ((kind (kind-of-clause map clause)))

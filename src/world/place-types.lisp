@@ -175,9 +175,7 @@ message (reading 72)."
   (unless (within-reason-p direction)
     (reject-clause definition matcher (argument-type-text 'angle)))
   (when (perhaps-degrees-p direction)
-    (queue-message (make-message :warning (list definition ": " (degrees-advice direction))
-                                 :notable-p t)
-                   *message-queue*))
+    (warn-notably definition ": " (degrees-advice direction)))
   (double direction))
 
 (defun matcher-form (matcher definition)

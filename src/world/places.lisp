@@ -92,8 +92,7 @@
                    expected)))
 
 (defun call-blaming-type (function cell type option)
-  "Call FUNCTION, which runs the OPTION of TYPE for CELL, a cursor. Errors in it are TYPE's, and so
-is exhausted storage, once the stack is unwound."
+  "Call FUNCTION, which runs the OPTION of TYPE for CELL, and blame TYPE for errors in it."
   (flet ((blame (condition)
            (blame-type type option (format nil "code that runs; at ~A: ~A" cell
                                            (string-right-trim "." (text-of-condition condition))))))
@@ -103,6 +102,7 @@ is exhausted storage, once the stack is unwound."
                                                            undefined-function unbound-variable))
                                   (blame condition)))))
           (funcall function))
+      ;; There is room to report it once the stack is unwound.
       (storage-condition (condition) (blame condition)))))
 
 (defun check-checked (type cell values)
@@ -158,8 +158,8 @@ is exhausted storage, once the stack is unwound."
                                         'simple-vector))))
 
 (defun classify-places (map)
-  "Find the places of MAP anew, by the place types known now. A type whose code fails is left out,
-with a warning. Return MAP, and true if no type was left out. See reading 70."
+  "Find the places of MAP anew, without those of types whose code fails: these get a warning. Return
+MAP, and true if no type was left out (reading 70)."
   (clear-places map)
   (let ((codes (neighbourhood-codes map)) (whole t))
     (loop for type in (registry-objects *place-types*) for number from 1

@@ -46,8 +46,7 @@
     (add-flags (thing-rank thing) index world)))
 
 (defun change-cell (rank world from to)
-  "Take the thing with RANK from the cell FROM of WORLD, an index, to the cell TO, where it comes
-last, without consing."
+  "Move the thing with RANK from the cell FROM of WORLD to the end of the cell TO. Conses nothing."
   (declare #.*hot* (type cell-index rank from to) (type world world))
   (let ((stock (world-stock world)))
     (unless (and (= from to) (alone-in-cell-p rank from stock))
@@ -242,8 +241,8 @@ MISUSE for prototypes. Return nothing. See reading 168."
   kick)
 
 (defun deflect-kick (kick world)
-  "End KICK in the middle of the nearest empty cell beside the one where it would end, nearest to
-where it begins. NIL if all eight are filled."
+  "End KICK in the one of the eight cells around its end that is empty and nearest to its start, or
+return NIL."
   (declare #.*hot* (type kick kick) (type world world))
   (let ((column (floor (the (double-float -2d9 2d9) (kick-x kick))))
         (row (floor (the (double-float -2d9 2d9) (kick-y kick))))

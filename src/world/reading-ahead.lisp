@@ -22,8 +22,8 @@
       0))
 
 (defun read-ahead (batch count world)
-  "Read ahead what it takes to move the first COUNT elements of BATCH, things of WORLD or NIL; they
-are overwritten. Return a meaningless number, which keeps the compiler from removing the reads."
+  "Read ahead to move the first COUNT elements of BATCH, things or NIL, and overwrite these. Return
+a meaningless number, so that the compiler does not remove the reads."
   (declare #.*hot* (type batch batch) (type batch-count count) (type world world))
   (let* ((stock (world-stock world)) (firsts (stock-firsts stock)) (nexts (stock-nexts stock))
          (flags (world-flags world)) (sum 0))
@@ -61,8 +61,7 @@ are overwritten. Return a meaningless number, which keeps the compiler from remo
 (deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch+)))
 
 (defstruct (outlook (:constructor make-outlook ()) (:copier nil))
-  "The next draws of dice: COUNT of the GAPS. These, with the number NEXT, result from dice in
-STATE."
+  "The next draws of dice: COUNT of the GAPS. Dice in STATE draw the one with the number NEXT."
   (gaps (make-array +batch+ :element-type '(unsigned-byte 62) :initial-element 0)
    :type gaps :read-only t)
   (count 0 :type batch-count)
@@ -73,8 +72,8 @@ STATE."
 ;; Inline, so that SCALE is not boxed.
 (declaim (inline foresee))
 (defun foresee (outlook index end scale dice)
-  "Store in OUTLOOK what DRAW-GAP will return next for SCALE and DICE, for trials before END, if the
-next success has INDEX. Return the index of the first success after them."
+  "Store in OUTLOOK the next gaps of SCALE and DICE for trials before END, if the next success is at
+INDEX. Return the index of the first success after them."
   (declare (type outlook outlook) (type (unsigned-byte 50) index end)
            (type double-float scale) (type dice dice))
   (let ((dice (copy-dice dice)) (gaps (outlook-gaps outlook)) (count 0))

@@ -30,8 +30,8 @@
                (mapcar #'thing-recipe (thing-contents thing))))
 
 (defun write-recipe (operator name descriptor &key prototype contents kickers x y)
-  "Return the recipe of a thing NAME: the attributes of the thing PROTOTYPE, if any, overridden by
-DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMENT. See reading 58."
+  "Return the recipe of a thing NAME, like PROTOTYPE but for DESCRIPTOR, with the recipes CONTENTS
+added (reading 58). Signals WRONG-ARGUMENT."
   (unless (and name (symbolp name)) (reject-argument operator "name" name "a symbol"))
   (unless (or (null prototype) (thing-p prototype))
     (reject-argument operator "prototype" prototype "a thing, made by NEW-THING"))
@@ -186,8 +186,8 @@ hand that holds something."
       thing)))
 
 (defun position-form-p (form environment)
-  "True if FORM, three elements long, means (map x y) rather than a call in ENVIRONMENT: that is, if
-it begins with a variable or the name of a map and not with the name of a function."
+  "True if FORM is (map x y) rather than a call: its first element is a variable, or the name of a
+map or of no function."
   (and (proper-list-p form) (= 3 (length form))
        (let ((head (first form)))
          (or (consp head)

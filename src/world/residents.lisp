@@ -30,8 +30,7 @@ of MAP, else MAP's resident world. A world is returned as it is."
 ;;; Finding.
 
 (defun worlds-in-view (world)
-  "Return a list of worlds: WORLD (also given as a map or its name), or if it is NIL *WORLD*, or
-if there is none yet the resident worlds of all maps."
+  "Return a list of WORLD, or if that is NIL of *WORLD*, or else of all maps' resident worlds."
   (cond (world (list (current-world world)))
         (*world* (list *world*))
         (t (mapcar #'map-resident-world (registry-objects *maps*)))))
@@ -65,25 +64,24 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
          (not (string-equal (without-digits name) (without-digits other))))))
 
 (defun thing-like (name world)
-  "Return the name of a thing of WORLD for which NAME, of none, may be a slip, or NIL, also if one
-that is gone was called so."
+  "Return a thing's name that NAME, of none now or at first in WORLD, may be a slip for; or NIL."
   (unless (find-recipe (lambda (recipe) (same-name-p name (recipe-name recipe)))
                        (map-things (world-map world)))
     (do-things (thing world)
       (when (may-be-slip-p name (thing-name thing))
         (return-from thing-like (thing-name thing))))))
 
+;; Looking through all things takes time, so it is done only for the first request of each name.
 (defun note-unknown-thing (name world)
-  "Warn if NAME, of no thing in WORLD, may be a slip for that of one. To look takes as long as there
-are things, so it is done when the name is first asked for in a run."
+  "Warn if NAME, of no thing in WORLD, may be a slip for that of one."
   (let ((like (and (first-time-p (list :thing name) world) (thing-like name world))))
     (when like
       (warn-once (list :thing-like name) world
                  (format nil "No thing here is called ~(~A~). Did you mean ~(~A~)?" name like)))))
 
 (defun missed-name-text ()
-  "Return in words which name of no thing FIND-THING was asked for last, and first then, in the
-current world, and what may be meant; NIL if it was asked for none."
+  "Return in words the last new name that FIND-THING did not find in the current world, and what was
+perhaps meant; or NIL."
   (let* ((noted (and *world* (world-noted-names *world*)))
          (name (second (find-if (lambda (key) (typep key '(cons (eql :thing)))) noted))))
     (and name (format nil "nothing here is called ~(~A~)~@[; did you mean ~(~A~)?~]"

@@ -5,8 +5,7 @@
 (export '(check-world world-invariant-violations))
 
 (defun check-cell (index stock met)
-  "Signal CONTRADICTION unless the cell INDEX of STOCK contains things, none of which has a tag in
-MET. Add their tags to MET."
+  "Signal CONTRADICTION unless the cell INDEX of STOCK has things with new tags; add these to MET."
   (loop for tag = (aref (stock-firsts stock) index) then (aref (stock-nexts stock) (1- tag))
         until (zerop tag)
         do (must-hold (and (<= tag (stock-count stock))

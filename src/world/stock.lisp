@@ -31,19 +31,14 @@
 ;;; Cells.
 
 ;; Inline: callers that move things call them by the thousand in a tick.
-(declaim (inline thing-of-tag call-with-cell append-to-cell take-from-cell marks-of-cell))
-(defun thing-of-tag (tag stock)
-  "Return the thing of STOCK that TAG, not 0, stands for."
-  (declare (type (and tag (integer 1)) tag) (type stock stock))
-  (the thing (svref (stock-things stock) (1- tag))))
-
+(declaim (inline call-with-cell append-to-cell take-from-cell marks-of-cell))
 (defun call-with-cell (function index stock)
   "Call FUNCTION with each thing on the floor of the cell INDEX of STOCK, in order of arrival."
   (declare (type function function) (type cell-index index) (type stock stock))
   (loop for tag of-type tag = (aref (stock-firsts stock) index)
           then (aref (stock-nexts stock) (1- tag))
         until (zerop tag)
-        do (funcall function (thing-of-tag tag stock))))
+        do (funcall function (the thing (svref (stock-things stock) (1- tag))))))
 
 (defun append-to-cell (rank index stock)
   "Put the thing with RANK, which is in no cell, last into the cell INDEX of STOCK."

@@ -18,15 +18,11 @@
 
 (defun known-likeness (key world)
   "Return the name, declared or had by a thing of WORLD, for which KEY, undeclared, may be a slip."
-  (multiple-value-bind (like known-p) (gethash key *likenesses*)
-    (if known-p
-        like
-        (setf (gethash key *likenesses*)
-              (or (declared-name-like key) (carried-name-like key world))))))
+  (ensure-gethash key *likenesses* (or (declared-name-like key) (carried-name-like key world))))
 
 (defun note-slip (operator thing key &key read)
-  "Warn once if OPERATOR was given KEY, an undeclared attribute that no thing has, for THING, in a
-world, and KEY resembles a declared attribute or, if it is READ, one that a thing has."
+  "Warn once if KEY, which OPERATOR was given for THING, is undeclared, of no thing, and resembles a
+declared attribute or, if it is READ, one that a thing has."
   (let ((world (thing-world thing)))
     (when (and world (not (attribute-of key)))
       (let ((like (known-likeness key world)))
@@ -163,8 +159,7 @@ time.")
         (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
 
 (defun slips-in (descriptor)
-  "Return a list of lists (name like) for the undeclared names in the object DESCRIPTOR that
-resemble the declared name LIKE, or, if LIKE is NIL, are options of things."
+  "Return lists (name like) for names in DESCRIPTOR that resemble LIKE, or (name NIL) for options."
   (loop for (name) in descriptor
         for like = (declared-name-like name)
         when (or like (option-of-things-p name))
@@ -208,8 +203,7 @@ resemble the declared name LIKE, or, if LIKE is NIL, are options of things."
 ;;; An attribute that is declared anew may no longer have the values that things have.
 
 (defun unfit-recipe (recipes key)
-  "Return the first of RECIPES and their contents whose value of KEY is invalid, and what is wrong
-with it."
+  "Return the first of RECIPES and their contents with an invalid KEY, and what is wrong with it."
   (find-recipe (lambda (recipe)
                  (let ((value (second (assoc key (recipe-attributes recipe) :test #'eq))))
                    (handler-case (progn (check-attribute-value 'defattribute key value) nil)

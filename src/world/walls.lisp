@@ -39,8 +39,7 @@
               (substance-number map type) (double from) (double to)))
 
 (defun draw-rect (map corner opposite type p0 &optional (p1 p0) (p2 p0) (p3 p0))
-  "Draw the outline; the second corner is beside the first, the third opposite
-it (readings 55 and 56)."
+  "Draw the outline; the second corner is beside the first, the third opposite (readings 55, 56)."
   (let ((beside (list (first opposite) (second corner)))
         (last (list (first corner) (second opposite))))
     (draw-wall map corner beside type p0 p1)

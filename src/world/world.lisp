@@ -160,13 +160,10 @@ does with the list ARGUMENTS.")
 
 (defmacro writing ((world) &body body)
   "Run BODY, in which this thread may change WORLD. Only its owner may do so."
-  `(flet ((write-it () ,@body))
-     (declare (dynamic-extent #'write-it))
-     (call-writing #'write-it ,world)))
+  (form-calling 'call-writing body world))
 
 (defun world-of-living (thing)
-  "Return the world that THING is in, or NIL if it is a prototype or destroyed; changing it then
-affects no world."
+  "Return the world that a change of THING affects: NIL for prototypes and what was destroyed."
   (and (thing-alive-p thing) (thing-world thing)))
 
 (defmacro changing ((world operator &rest arguments) &body body)
