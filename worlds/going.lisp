@@ -24,13 +24,6 @@ it accepts."
   (steps 300 :type fixnum)
   (patience 40 :type fixnum))
 
-(defun widest-of (robot)
-  "Return the camera of ROBOT with the widest field of view, or NIL if it has none."
-  (let ((cameras (coerce (robot-cameras robot) 'list)))
-    (and cameras
-         (reduce (lambda (a b) (if (> (camera-field-of-view b) (camera-field-of-view a)) b a))
-                 cameras))))
-
 (defun goal-near (chart x y)
   "Return the point (X,Y), a list, or the nearest that is free on CHART. Signals WRONG-ARGUMENT."
   (let ((point (nearest-free-point chart (list x y))))
@@ -41,27 +34,18 @@ it accepts."
                                               (chart-map chart))))
     (as-list point)))
 
-(defun pose-p (value)
-  "True if VALUE is a list (x y heading) of numbers."
-  (and (listp value) (eql 3 (list-length value)) (every #'realp value)))
-
 (defun check-going (robot x y continuation start tolerance patience)
   "Signal WRONG-ARGUMENT for the first of these arguments that ROBOT-GO-TO cannot use."
-  (loop for (fine-p name value expected)
-          in (list (list (typep robot 'robot) "robot" robot "a robot")
+  (check-arguments 'robot-go-to
+                   (list (typep robot 'robot) "robot" robot "a robot")
                    (list (realp x) "x" x "a number of metres from the left")
                    (list (realp y) "y" y "a number of metres from the top")
                    (list (ars-magna.base:argument-of-type-p continuation 'continuation)
                          "continuation" continuation
                          (ars-magna.base:argument-type-text 'continuation))
-                   (list (or (null start) (pose-p start)) ":start" start
-                         "a list (x y heading) of numbers, or NIL")
-                   (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
-                         "a number of metres, from 0")
-                   (list (and (integerp patience) (plusp patience)) ":patience" patience
-                         "a whole number, from 1"))
-        unless fine-p
-          do (ars-magna.base:reject-argument 'robot-go-to name value expected)))
+                   (list (or (null start) (numbers-p start 3)) ":start" start
+                         "a list (x y heading) of numbers, or NIL"))
+  (check-limits 'robot-go-to tolerance patience))
 
 (defun robot-go-to (robot x y continuation &key start (tolerance 1) (patience 40))
   "Make ROBOT go to the point (X,Y) of its map, or the nearest free point, to within TOLERANCE
@@ -80,17 +64,14 @@ Signals WRONG-ARGUMENT if no free point is near (X,Y), or an argument is invalid
     (go-on-journey (make-journey :robot robot :asked (asked-so-far robot) :me me :goal goal
                                  :tolerance tolerance :patience patience
                                  :camera (widest-of robot)
-                                 :continuation (or continuation #'no-continuation)))
+                                 :continuation continuation))
     (values)))
-
-(defun no-continuation (err robot)
-  "Do nothing. This is the continuation if none is given."
-  (declare (ignore err robot)))
 
 (defun end-journey (journey err)
   "End JOURNEY with the error code ERR, or NIL for success."
   (show-way (journey-me journey) '())
-  (funcall (journey-continuation journey) err (journey-robot journey)))
+  (when (journey-continuation journey)
+    (funcall (journey-continuation journey) err (journey-robot journey))))
 
 (defun after-command (journey err next otherwise)
   "Call NEXT, a function of no arguments, if a command ended without an error code ERR, else

@@ -145,12 +145,16 @@ if one stopped it, else NIL."
 
 ;;; Whole ways.
 
+(defun widest-of (robot)
+  "Return the camera of ROBOT with the widest field of view, or NIL if it has none."
+  (let ((cameras (coerce (robot-cameras robot) 'list)))
+    (and cameras
+         (reduce (lambda (a b) (if (> (camera-field-of-view b) (camera-field-of-view a)) b a))
+                 cameras))))
+
 (defun widest-camera ()
   "Return the index of the plan's robot's camera with the widest field of view."
-  (let ((cameras (loop for camera below (rpl-robot-num-cameras) collect camera)))
-    (reduce (lambda (a b)
-              (if (> (rpl-camera-field-of-view b) (rpl-camera-field-of-view a)) b a))
-            cameras)))
+  (camera-index (widest-of (rpl-robot))))
 
 (def-interp-proc take-step-of-way (me camera step)
   "Do STEP, as NEXT-STEP returns it, with the robot of ME. Return :WALL or :THING if one stopped it,
@@ -171,34 +175,39 @@ and every third time turn and drive off."
              (drive-by (+ 1 (mod trouble 3)))))
     (reckon me)))
 
-(defun coordinates-p (point)
-  "True if POINT is a list (x y) of numbers."
-  (and (listp point) (eql 2 (list-length point)) (every #'realp point)))
+(defun numbers-p (value count)
+  "True if VALUE is a list of COUNT numbers."
+  (and (listp value) (eql count (list-length value)) (every #'realp value)))
+
+(defun check-arguments (operator &rest arguments)
+  "Signal WRONG-ARGUMENT for the first of ARGUMENTS, lists (fine-p name value expected), that
+OPERATOR cannot use."
+  (loop for (fine-p name value expected) in arguments
+        unless fine-p do (ars-magna.base:reject-argument operator name value expected)))
 
 (defun check-points (plan name points)
   "Signal WRONG-ARGUMENT unless POINTS, the argument NAME of PLAN, is a list of points."
-  (unless (and (listp points) (list-length points) (every #'coordinates-p points))
-    (ars-magna.base:reject-argument plan name points
-                                    "a list of points (x y), such as ((3 4) (5 6))")))
+  (check-arguments plan (list (and (listp points) (list-length points)
+                                   (every (lambda (point) (numbers-p point 2)) points))
+                              name points "a list of points (x y), such as ((3 4) (5 6))")))
 
-(defun check-travel (me point tolerance patience)
-  "Signal WRONG-ARGUMENT for the first of these arguments that TRAVEL-TO cannot use."
-  (loop for (fine-p name value expected)
-          in (list (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
-                   (list (coordinates-p point) "point" point "a list (x y) of numbers of metres")
+(defun check-limits (operator tolerance patience)
+  "Signal WRONG-ARGUMENT for the first of these arguments that OPERATOR cannot use."
+  (check-arguments operator
                    (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
                          "a number of metres, from 0")
                    (list (and (integerp patience) (plusp patience)) ":patience" patience
-                         "a whole number, from 1"))
-        unless fine-p
-          do (ars-magna.base:reject-argument 'travel-to name value expected)))
+                         "a whole number, from 1")))
 
 (def-interp-proc travel-to (me point &key (tolerance 1) (patience 40) (camera (widest-camera)))
   "Drive the robot of the reckoning ME to POINT, a list (x y), to within TOLERANCE metres, through
 doorways and round obstacles. Return the estimated position. Fails with :CANNOT-GET-THERE after
 PATIENCE obstacles or 300 steps, or at once if there is no way. Fails with WRONG-ARGUMENT if an
 argument is invalid."
-  (check-travel me point tolerance patience)
+  (check-arguments 'travel-to
+                   (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
+                   (list (numbers-p point 2) "point" point "a list (x y) of numbers of metres"))
+  (check-limits 'travel-to tolerance patience)
   (evap-protect (travel-step-by-step me point tolerance patience camera)
                 (show-way me '())))
 

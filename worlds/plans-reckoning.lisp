@@ -177,12 +177,9 @@ its map. Return T, or NIL and change nothing if none is within two metres."
                             (setf (reckoning-x me) face)
                             (setf (reckoning-y me) face))
                         ;; Keep the estimate on the free side of the face.
-                        (step-back me 1d-3)
+                        (setf (values (reckoning-x me) (reckoning-y me))
+                              (values-list (point-ahead me -1d-3)))
                         (return-from correct-by-wall t)))))
-
-(defun step-back (me distance)
-  (setf (values (reckoning-x me) (reckoning-y me))
-        (values-list (point-ahead me (- distance)))))
 
 (defun doorway-nearby (me)
   "Return the cell of the doorway nearest to the estimated position of ME, or NIL if none is within

@@ -56,7 +56,7 @@ with it" :export)
 (defmethod print-object ((command command) stream)
   (print-unreadable-object (command stream :type t) (princ (command-name command) stream)))
 
-(defparameter *command-traits* '(:drives :stops :asks :begins)
+(defparameter *command-traits* '(:drives :turns :stops :asks :begins)
   "What can be said of commands by :TRAITS, see DEFINE-COMMAND.")
 
 (defun trait-p (trait command)

@@ -155,9 +155,10 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
   (:occupies function)                 the name of a function of the resource that returns what the
                                        command occupies instead of it, such as the robot's mind
   (:traits keyword...)                 what warnings and plans are to know: it :DRIVES, so that even
-                                       a tick of it is of use; it :STOPS what its resource does; it
-                                       :ASKS, so that it is of no use unless its answer is waited
-                                       for; it :BEGINS what tells its continuation again at its end
+                                       a tick of it is of use; it :TURNS from where its resource
+                                       faces; it :STOPS what its resource does; it :ASKS, so that
+                                       it is of no use unless its answer is waited for; it :BEGINS
+                                       what tells its continuation again at its end
 BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or
 later (reading 149)."
   (check-command-form name resource parameters results options)

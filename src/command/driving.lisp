@@ -7,16 +7,12 @@
 ;;; the robot coast. What is left of a movement, in ticks or metres, is negative if it goes
 ;;; backwards.
 
-(declaim (inline lessen drive-for-tick drive-in-time drive-what-is-left drive-time-over-p))
+(declaim (inline lessen drive-in-time drive-what-is-left drive-time-over-p))
 (defun lessen (number amount least)
   "Return NUMBER brought nearer to 0 by AMOUNT; 0 if no more than LEAST would remain."
   (declare (type double-float number amount least))
   (let ((rest (- (abs number) amount)))
     (if (<= rest least) 0d0 (float-sign number rest))))
-
-(defun drive-for-tick (operation)
-  "Drive the robot of OPERATION for a tick. Return what blocks it, :WALL, :THING or NIL."
-  (drive-tick (operation-resource operation)))
 
 (defun drive-in-time (operation)
   "Drive the robot of OPERATION for a tick, or for the rest of its time if that is shorter. Return
@@ -39,15 +35,15 @@ what blocks it, :WALL, :THING or NIL."
   "True if the robot of OPERATION, which has driven for a tick, is to drive no longer."
   (zerop (operation-left operation)))
 
-(defmacro drive-on ((block operation &optional (drive 'drive-for-tick)) &body body)
-  "Drive the robot of OPERATION for a tick, by the function DRIVE, and run BODY with BLOCK bound to
-what blocks it, :WALL, :THING or NIL. OPERATION goes on in the next tick unless BODY has ended it.
-Fails with :NOT-MOVING when the speed is 0."
+(defmacro drive-on ((block operation &optional drive) &body body)
+  "Drive the robot of OPERATION for a tick, by calling DRIVE with OPERATION if given. Run BODY with
+BLOCK bound to what blocks it, :WALL, :THING or NIL. Continue in the next tick unless BODY has ended
+OPERATION. Fails with :NOT-MOVING if the speed is 0."
   `(let ((robot (operation-resource ,operation)))
      (declare #.*hot* (type operation ,operation) (type robot robot))
      (if (standing-p robot)
          (fail-with ,operation :not-moving)
-         (let ((,block (,drive ,operation)))
+         (let ((,block ,(if drive `(,drive ,operation) '(drive-tick robot))))
            ,@body
            (unless (operation-finished-p ,operation) (once-more ,operation))))))
 

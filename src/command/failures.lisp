@@ -113,16 +113,12 @@ tick. THINK counts as a command of the robot. NIL if there was none."
 
 (defun argument-as-typed (argument)
   "Return ARGUMENT of a command as one would type it in Lisp, as far as one can."
-  (let ((index (and (part-p argument) (part-index argument))))
-    (typecase argument
-      (robot (robot-name argument))
-      (camera `(robot-camera ,(robot-name (part-robot argument)) ,index))
-      (hand `(robot-hand ,(robot-name (part-robot argument)) ,index))
-      (storage-bin `(robot-storage-bin ,(robot-name (part-robot argument)) ,index))
-      (designator `(find-designator ,(robot-name (designator-robot argument))
-                                    ,(designator-number argument)))
-      ((or symbol cons) (if (constantp argument) argument `',argument))
-      (t argument))))
+  (typecase argument
+    ((or robot part) (form-of-resource argument))
+    (designator `(find-designator ,(robot-name (designator-robot argument))
+                                  ,(designator-number argument)))
+    ((or symbol cons) (if (constantp argument) argument `',argument))
+    (t argument)))
 
 (defun call-text (failure)
   (let ((*print-case* :downcase) (*read-default-float-format* 'double-float))

@@ -139,18 +139,13 @@ that. The same command to a robot again, as in a loop, counts, too."
                        (command-name before) (told-at-end before) (command-name command)
                        (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
-(defgeneric relative-turn-p (name)
-  (:documentation "True if the command called NAME turns the robot from where it faces, so that to
-ask again is to turn on.")
-  (:method (name) (declare (ignore name)) nil))
-
 (defun doubt-again (command resource arguments timeline)
   "Warn once if COMMAND, which turns by ARGUMENTS, is issued again to RESOURCE, headless, while it
 is in progress for the same asker, who has no continuation for its end: it starts over."
   (let ((before (resource-event resource)))
     (when (and (operation-p before)
                (eq command (operation-command before))
-               (relative-turn-p (command-name command))
+               (trait-p :turns command)
                (by-program-p)
                (not (live-p timeline))
                (not (operation-finished-p before))
@@ -244,22 +239,23 @@ continue."
          (not (timeline-passing-p timeline)))))
 
 (defun form-of-resource (resource)
-  "Return in words the form that returns RESOURCE, a robot or part, in a run of its robot."
-  (let ((name (robot-name (resource-robot resource))))
-    (typecase resource
-      ((or camera hand storage-bin)
-       (format nil "~((robot-~A ~A ~D)~)" (type-of resource) name (part-index resource)))
-      (part (format nil "~((robot-part ~A '~A ~D)~)" name (type-of resource)
-                    (part-index resource)))
-      (t (format nil "~(~A~)" name)))))
+  "Return the form that returns RESOURCE, a robot or part, in a run of its robot."
+  (let ((name (robot-name (resource-robot resource)))
+        (index (and (part-p resource) (part-index resource))))
+    (etypecase resource
+      (robot name)
+      (camera `(robot-camera ,name ,index))
+      (hand `(robot-hand ,name ,index))
+      (storage-bin `(robot-storage-bin ,name ,index))
+      (part `(robot-part ,name ,(make-keyword (type-of resource)) ,index)))))
 
 (defun resource-here-text (resource)
   "Return in sentences what to write instead of RESOURCE, if its robot is in our run too; or NIL."
   (let ((name (robot-name (resource-robot resource))))
     (when (find name (world-robots *world*) :key #'robot-name)
       (format nil "This ~(~A is of the ~A~) outside of this WITH-SIMULATION, which has a ~(~A~) of ~
-                   its own. Inside write ~A."
-              (type-of resource) name name (form-of-resource resource)))))
+                   its own. Inside write ~(~A~)."
+              (type-of resource) name name (safe-text (form-of-resource resource))))))
 
 (defun way-to-run (resource)
   (let* ((robot (resource-robot resource))

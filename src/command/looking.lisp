@@ -65,24 +65,24 @@ first are pushed out by the last."
 
 ;;; Places.
 
-(defun place-search-obstacle (camera place-type)
-  "Return the code that keeps CAMERA from looking for PLACE-TYPE, or NIL (reading 69)."
-  (let ((type (find-place-type place-type nil)))
-    (cond ((camera-tracking camera) :already-tracking)
-          ((null type) :invalid-place-type)
-          ((place-type-invisible-p type) :invisible-place-type)
-          ((camera-location camera) :camera-enclosed))))
+(defun place-search-obstacle (camera type)
+  "Return the code that keeps CAMERA from looking for the place type TYPE, or NIL (reading 69)."
+  (cond ((camera-tracking camera) :already-tracking)
+        ((null type) :invalid-place-type)
+        ((place-type-invisible-p type) :invisible-place-type)
+        ((camera-location camera) :camera-enclosed)))
 
 (defun search-for-places (operation camera place-type all)
-  (let ((obstacle (place-search-obstacle camera place-type)))
+  (let* ((type (find-place-type place-type nil))
+         (obstacle (place-search-obstacle camera type)))
     (if obstacle
         (fail-with operation obstacle)
         (funcall (if all #'designate-all #'designate-first)
                  operation
-                 (look-for-places camera (find-place-type place-type) :all all
+                 (look-for-places camera type :all all
                                   :name (if (symbolp place-type)
                                             place-type
-                                            (place-type-name (find-place-type place-type))))))))
+                                            (place-type-name type)))))))
 
 (define-command camera-get-place-designator (operation (camera camera)
                                              (place-type place-type "the name of a place type"))

@@ -169,13 +169,6 @@ is NIL (manual E)."
       (setf (manipulation-command manipulation)
             (make-manipulation-command (manipulation-name manipulation)))))
 
-(defun value-continuation (continuation)
-  "Return a function that calls CONTINUATION with error code and value, without the resource."
-  (and continuation
-       (lambda (code resource value)
-         (declare (ignore resource))
-         (funcall continuation code value))))
-
 (public run-manipulation)
 (defun run-manipulation (name &rest arguments)
   "Carry out the manipulation NAME, a symbol, with ARGUMENTS, of which the last is the continuation
@@ -191,7 +184,10 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
          (command (command-for manipulation)))
     (check-of-type name 'continuation continuation 'continuation)
     (doubt-continuation command (robot-world (resource-robot resource)) continuation '(err value))
-    (issue command resource arguments (value-continuation continuation))))
+    (issue command resource arguments (and continuation
+                                           (lambda (code resource value)
+                                             (declare (ignore resource))
+                                             (funcall continuation code value))))))
 
 (public manipulate)
 (define-user-macro manipulate (name &rest arguments)

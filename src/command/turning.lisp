@@ -93,22 +93,18 @@ it then faces there, but for the error of turning."
 (define-command robot-turn (operation (robot robot)
                             (angle angle "how far in radians, to the right if positive"))
     ((angle "a reading of the angle turned"))
-    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
+    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*) (:traits :turns)
      (:report (angle) (turned-text angle)))
     "Turn ROBOT in place by about ANGLE."
   (turn-by operation robot angle))
 
-(defmethod relative-turn-p ((name (eql 'robot-turn))) t)
-
 (macrolet ((define-turn (name angle words)
-             `(progn
-                (define-command ,name (operation (robot robot))
-                    ((angle "a reading of the angle turned"))
-                    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
-                     (:report (angle) (turned-text angle)))
-                    ,(format nil "Turn ROBOT in place by about ~A." words)
-                  (turn-by operation robot ,angle))
-                (defmethod relative-turn-p ((name (eql ',name))) t))))
+             `(define-command ,name (operation (robot robot))
+                  ((angle "a reading of the angle turned"))
+                  ((:family :moving) (:section "3.5") (:delay robot-turn-delay*) (:traits :turns)
+                   (:report (angle) (turned-text angle)))
+                  ,(format nil "Turn ROBOT in place by about ~A." words)
+                (turn-by operation robot ,angle))))
   (define-turn robot-about-face pi "half a circle")
   ;; As reading 49 says.
   (define-turn robot-turn-left (/ pi -2) "a quarter circle to the left")

@@ -96,12 +96,6 @@ be read."
                     (shown-name image) trouble))
     image))
 
-(defun check-thresholds (file free occupied entry)
-  (when (< occupied free)
-    (reject-floor file (entry-line entry) "free_thresh, ~A, is above occupied_thresh, ~A; exchange ~
-                                           them, as savers write 0.196 and 0.65"
-                  (decimal free) (decimal occupied))))
-
 (defun warn-of-key (file entry)
   "Warn if the key of ENTRY, of FILE, is none that is read, but may be a slip for one."
   (let* ((known (cons "mode" (mapcar #'car *example-lines*))) (key (entry-key entry))
@@ -118,7 +112,10 @@ be read."
     (dolist (entry entries) (warn-of-key file entry))
     (let ((free (threshold-in file (entry "free_thresh")))
           (occupied (threshold-in file (entry "occupied_thresh"))))
-      (check-thresholds file free occupied (entry "free_thresh"))
+      (when (< occupied free)
+        (reject-floor file (entry-line (entry "free_thresh"))
+                      "free_thresh, ~A, is above occupied_thresh, ~A; exchange them, as savers ~
+                       write 0.196 and 0.65" (decimal free) (decimal occupied)))
       (make-description
        :file file
        :resolution (resolution-in file (entry "resolution"))
@@ -160,6 +157,4 @@ be read."
   (let ((file (file-called name)))
     (check-description-file file)
     (let ((file (truename file)))
-      (description-from
-       file
-       (read-entries file (description-text file))))))
+      (description-from file (read-entries file (description-text file))))))

@@ -157,12 +157,11 @@ of PER-LINE cells; LINE-STEP leads from a line to the next."
     (measure-runs runs)))
 
 (defun run-ends (runs run width)
-  "Return the columns and rows of the first and the last cell of RUN, a number, in a grid of WIDTH:
-two lists (x y)."
+  "Return a list of the first and the last cell of RUN, a number, in a grid of WIDTH: lists (x y)."
   (flet ((place (index) (nreverse (multiple-value-list (floor index width)))))
     (let ((start (aref (runs-starts runs) run)))
-      (values (place start)
-              (place (+ start (* (runs-step runs) (1- (aref (runs-lengths runs) run)))))))))
+      (list (place start)
+            (place (+ start (* (runs-step runs) (1- (aref (runs-lengths runs) run)))))))))
 
 ;;;; As few lines as possible
 
@@ -250,23 +249,20 @@ a mate, or whose mate is in the next layer. NIL if there is none."
                    (when (or (minusp mate) (= (aref layer mate) (1+ (aref layer row))))
                      (return column))))))))
 
-(defun pair-along (cover way)
-  "Let each row of WAY, conses (row . column), have its column for a mate."
-  (loop for (row . column) in way
-        do (setf (aref (cover-row-mate cover) row) column
-                 (aref (cover-column-mate cover) column) row)))
-
 (defun find-mate (cover row)
-  "Find a mate for ROW, which has none, perhaps by giving other mates to others. If there is a way
-in this round's layers, take it."
-  (let ((way (list (cons row nil))))
-    (loop while way
-          do (let* ((row (car (first way))) (column (next-tie cover row)))
+  "Find a mate for ROW, which has none, by a way in this round's layers, if there is one. Pair each
+row of the way with its column there; some get other mates."
+  (let ((way (list (cons row nil))) (column-mate (cover-column-mate cover)) (done nil))
+    (loop until (or done (null way))
+          do (let ((column (next-tie cover (car (first way)))))
                (cond ((null column) (pop way))
                      (t (setf (cdr (first way)) column)
-                        (let ((mate (aref (cover-column-mate cover) column)))
-                          (cond ((minusp mate) (return (pair-along cover way)))
-                                (t (push (cons mate nil) way))))))))))
+                        (if (minusp (aref column-mate column))
+                            (setf done t)
+                            (push (cons (aref column-mate column) nil) way))))))
+    (loop for (row . column) in way
+          do (setf (aref (cover-row-mate cover) row) column
+                   (aref column-mate column) row))))
 
 (defun match-runs (cover)
   "Find a greatest matching for COVER. Its layers are then those of a round that finds no way."
@@ -291,10 +287,8 @@ of GRID in a state of the list NEEDED and only through such in a state of the li
 two ends (x y), those along rows first, from the top."
   (let* ((rows (find-runs grid allowed :rows)) (columns (find-runs grid allowed :columns))
          (cover (match-runs (make-cover rows columns (states-mask needed))))
-         (taken (columns-to-take cover)))
-    (flet ((ends (runs run)
-             (multiple-value-list (run-ends runs run (grid-width grid)))))
-      (append (loop for row below (runs-count rows)
-                    when (minusp (aref (cover-layer cover) row)) collect (ends rows row))
-              (loop for column below (runs-count columns)
-                    when (= 1 (sbit taken column)) collect (ends columns column))))))
+         (taken (columns-to-take cover)) (width (grid-width grid)))
+    (append (loop for row below (runs-count rows)
+                  when (minusp (aref (cover-layer cover) row)) collect (run-ends rows row width))
+            (loop for column below (runs-count columns)
+                  when (= 1 (sbit taken column)) collect (run-ends columns column width)))))

@@ -96,15 +96,6 @@ black, to WHITE. One more than WHITE is a pixel of which nobody knows."
                           save it anew as PGM" (tape-position tape) what))
     number))
 
-;;; The head.
-
-(defun white-level (tape)
-  (let ((white (next-number tape "the greatest value")))
-    (unless (<= 1 white 65535)
-      (reject-image tape "the greatest value of a pixel is ~D; save the image with one from 1 to ~
-                          65535, usually 255" white))
-    white))
-
 ;;; The pixels.
 
 (defun check-sample (tape sample white)
@@ -165,7 +156,10 @@ black, to WHITE. One more than WHITE is a pixel of which nobody knows."
   (setf (tape-position tape) 2)
   (let ((width (next-number tape "the width")) (height (next-number tape "the height")))
     (check-pixels tape width height limit)
-    (let ((white (white-level tape)) (count (* width height)))
+    (let ((white (next-number tape "the greatest value")) (count (* width height)))
+      (unless (<= 1 white 65535)
+        (reject-image tape "the greatest value of a pixel is ~D; save the image with one from 1 to ~
+                            65535, usually 255" white))
       (make-image width height white
                   (if (= 2 (pgm-kind tape))
                       (read-text-samples tape count white)

@@ -48,15 +48,14 @@ each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed.
         do (setf number (logior (ash number 8) (aref octets index)))
         finally (return number)))
 
-(defun crc-of-octet (octet)
-  (loop repeat 8
-        do (setf octet (if (oddp octet) (logxor #xEDB88320 (ash octet -1)) (ash octet -1)))
-        finally (return octet)))
-
 (declaim (type (simple-array (unsigned-byte 32) (256)) *crc-table*))
 (define-global *crc-table*
-  (coerce (loop for octet below 256 collect (crc-of-octet octet))
-          '(simple-array (unsigned-byte 32) (256)))
+  (let ((table (make-array 256 :element-type '(unsigned-byte 32))))
+    (dotimes (octet 256 table)
+      (let ((crc octet))
+        (loop repeat 8
+              do (setf crc (logxor (if (oddp crc) #xEDB88320 0) (ash crc -1))))
+        (setf (aref table octet) crc))))
   "What each octet adds to a CRC-32.")
 
 (defun crc-32 (octets start end)

@@ -74,12 +74,10 @@ filter."
 ;;; Rows. They are decompressed some at a time, so that an image takes no more memory than its
 ;;; samples, whatever is in the file.
 
-(define-constant +most-inflation+ 1032
-  :documentation "How many octets may come of one that zlib compressed, at most.")
-
 (defun check-pixels-there (png needed)
   "Signal UNUSABLE-FLOOR if NEEDED octets cannot come of what PNG has."
-  (when (< (* +most-inflation+ (length (png-pixels png))) needed)
+  ;; From one octet zlib makes 1032 at most.
+  (when (< (* 1032 (length (png-pixels png))) needed)
     (reject-damaged (png-tape png) "its pixels take ~D bytes, and ~D bytes of compressed data are ~
                                     too few for that" needed (length (png-pixels png)))))
 

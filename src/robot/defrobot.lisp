@@ -11,16 +11,12 @@
   (list 'camera :field-of-view (double (first specification))
                 :resolution (second specification)))
 
-(defun parse-amount (amount reject)
-  (unless (amount-p amount)
-    (funcall reject amount (argument-type-text 'amount)))
-  (double amount))
-
-(defun parse-hand (strength reject)
-  (list 'hand :strength (parse-amount strength reject)))
-
-(defun parse-bin (capacity reject)
-  (list 'storage-bin :capacity (parse-amount capacity reject)))
+(defun amount-parser (kind initarg)
+  "Return a function like PARSE-CAMERA for parts of KIND with an amount for INITARG."
+  (lambda (amount reject)
+    (unless (amount-p amount)
+      (funcall reject amount (argument-type-text 'amount)))
+    (list kind initarg (double amount))))
 
 (defun maps-to-choose (name)
   "Return a list of the maps in words, for a message about the unknown NAME."
@@ -117,9 +113,9 @@
   (list (list :cameras #'camera-form #'parse-camera
               "a list of lists after :cameras: ((3 500)) is one camera that sees 3 radians wide, ~
                in 500 pixels")
-        (list :hands #'amount-form #'parse-hand
+        (list :hands #'amount-form (amount-parser 'hand :strength)
               "a list of strengths after :hands: (10) is one hand of strength 10")
-        (list :bins #'amount-form #'parse-bin
+        (list :bins #'amount-form (amount-parser 'storage-bin :capacity)
               "a list of capacities after :bins: (20) is one bin of capacity 20")
         (list :parts #'part-form #'parse-part
               "a list of lists after :parts, (kind initarg value ...)"))
@@ -130,20 +126,18 @@
   value ...)
 - what should follow the option, for FORMAT")
 
-(defun parse-parts (lists reject)
-  "Return what LISTS, a property list of options of DEFROBOT and their values, say of parts."
-  (loop for (option nil parse) in *part-options*
-        append (loop for specification in (getf lists option)
-                     collect (funcall parse specification reject))))
-
 (defun read-blueprint (name environment position angle lists)
+  "Return a blueprint; LISTS is a property list of *PART-OPTIONS* and their values."
   (flet ((reject (clause expected)
            (reject-clause (title "defrobot" name) clause expected)))
     (let ((map (parse-place environment position angle #'reject)))
       (make-blueprint :name name :map (map-name map)
                       :x (double (first position)) :y (double (second position))
                       :angle (double angle)
-                      :parts (parse-parts lists #'reject)))))
+                      :parts (loop for (option nil parse) in *part-options*
+                                   append (loop for specification in (getf lists option)
+                                                collect (funcall parse specification
+                                                                 #'reject)))))))
 
 (addition define-robot)
 (defun define-robot (name environment position angle &key cameras hands bins parts)

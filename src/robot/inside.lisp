@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(outer-location inside-p part-inside part-reaches-p part-reaches-bin-p set-down
+(export '(outer-location part-inside part-reaches-p part-reaches-bin-p set-down
           move-part space-around settle-robots))
 
 ;;; A hand or camera is in the open with its robot (location NIL), inside a thing, or inside one of
@@ -26,16 +26,15 @@
     (thing (let ((outer (thing-location location))) (if (eq outer :floor) nil outer)))
     (part (part-location location))))
 
-(defun inside-p (part container)
-  "True if PART is in CONTAINER, a thing or storage bin, directly or not."
+(defun outer-locations (part)
+  "Return a list of all that PART is in, directly or not, innermost first."
   (loop for outer = (part-location part) then (outer-location outer)
-        while outer
-        thereis (eq outer container)))
+        while outer collect outer))
 
 (defun part-inside (bin)
   "Return the first camera or hand that is in the storage BIN, directly or not, or NIL."
   (let ((robot (storage-bin-robot bin)))
-    (flet ((there-p (part) (inside-p part bin)))
+    (flet ((there-p (part) (member bin (outer-locations part))))
       (or (find-if #'there-p (robot-cameras robot))
           (find-if #'there-p (robot-hands robot))))))
 
@@ -59,9 +58,7 @@
 
 (defmethod location-closed-p :around ((hand hand))
   (or (call-next-method)
-      (loop for outer = (part-location hand) then (outer-location outer)
-            while outer
-            thereis (location-closed-p outer))))
+      (some #'location-closed-p (outer-locations hand))))
 
 (defun set-down (hand thing)
   "Leave THING, which HAND holds, where the hand is: in its container, or on the floor where the
@@ -93,12 +90,6 @@ holds moves along; its track is lost; warnings say so."
   (warning-set (format nil "~A was pulled out of ~A" part (location-name (part-location part))))
   (move-part part nil))
 
-(defun bin-around (part)
-  "Return the storage bin, of whichever robot, that PART is in, directly or not, or NIL."
-  (loop for outer = (part-location part) then (outer-location outer)
-        while outer
-        when (storage-bin-p outer) return outer))
-
 (defun astray-p (part)
   "True if PART is inside a thing that is no longer within its robot's reach, or that is now in a
 closed bin or in another robot's bin."
@@ -106,7 +97,7 @@ closed bin or in another robot's bin."
     (and (thing-p location)
          (or (multiple-value-bind (x y) (thing-position location)
                (not (and x (within-reach-p (part-robot part) x y))))
-             (let ((bin (bin-around part)))
+             (let ((bin (find-if #'storage-bin-p (outer-locations part))))
                (and bin (or (storage-bin-closed-p bin)
                             (not (eq (part-robot part) (storage-bin-robot bin))))))))))
 
@@ -114,17 +105,14 @@ closed bin or in another robot's bin."
 (defun settle-part (part)
   (when (astray-p part) (pull-out part)))
 
-(defun settle-hand (hand)
-  (settle-part hand)
-  (loop while (rest (hand-contents hand))
-        do (set-down hand (first (last (hand-contents hand))))))
-
 (defun settle-parts (robot)
   "Pull the parts of ROBOT out of things beyond its reach, and make its hands drop all but one
 thing."
   (declare #.*hot* (type robot robot))  ; in each tick
   (loop for hand across (robot-hands robot)
-        do (when (or (hand-location hand) (rest (hand-contents hand))) (settle-hand hand)))
+        do (when (hand-location hand) (settle-part hand))
+           (loop while (rest (hand-contents hand))
+                 do (set-down hand (first (last (hand-contents hand))))))
   (loop for camera across (robot-cameras robot)
         do (when (camera-location camera) (settle-part camera))))
 

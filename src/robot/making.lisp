@@ -42,10 +42,6 @@ NIL."
                        :robot robot :index (1- (incf (getf counts kind 0)))
                        initargs)))
 
-(defun outfit (robot blueprint)
-  (setf (robot-mind robot) (make-mind :robot robot)
-        (robot-parts robot) (make-parts robot (blueprint-parts blueprint))))
-
 (defun kind-constructor (kind)
   (let ((name (find-symbol (concatenate 'string "MAKE-" (symbol-name kind))
                            (symbol-package kind))))
@@ -71,7 +67,8 @@ NIL."
   (check-start blueprint (world-map world))
   (let ((robot (%make-robot :name (blueprint-name blueprint) :blueprint blueprint :world world)))
     (ensure-timeline world)
-    (outfit robot blueprint)
+    (setf (robot-mind robot) (make-mind :robot robot)
+          (robot-parts robot) (make-parts robot (blueprint-parts blueprint)))
     (stand-at-start robot)
     (setf (world-robots world) (append (world-robots world) (list robot)))
     robot))

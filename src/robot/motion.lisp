@@ -149,15 +149,12 @@ Leave the metres in ROBOT-MOVED; return :WALL, :THING or NIL (reading 100)."
 
 ;;; The heading, the pose and the speed.
 
-(define-constant +straight+ 1d-12
-  :documentation "A component of a heading that is nearer to 0 is rounding, and taken for 0.")
-
 (declaim (inline component))
 (defun component (number)
   "Return NUMBER, a component of a heading; 0 if it is so small that only rounding can be behind it.
 So a robot can drive along the border of two cells, and stay in one of them."
   (declare (type double-float number))
-  (if (< (abs number) +straight+) 0d0 number))
+  (if (< (abs number) 1d-12) 0d0 number))
 
 (defun set-robot-angle (robot angle)
   "Turn ROBOT to the heading ANGLE, in radians, at once; its odometers do not notice."
@@ -186,10 +183,6 @@ So a robot can drive along the border of two cells, and stay in one of them."
   "Return the index of the cell that ROBOT is in, or NIL if it has been put outside the map."
   (map-index (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
 
-;; Speeds this low are lost in the rounding of positions.
-(define-constant +standstill+ 1d-12
-  :documentation "A robot that is slower, in metres per tick, does not move.")
-
 (declaim (inline robot-speed-now step-now standing-p))
 (defun robot-speed-now (robot)
   "Return the speed of ROBOT within MAX-SPEED* as it is now, in metres per tick (reading 93)."
@@ -201,7 +194,8 @@ So a robot can drive along the border of two cells, and stay in one of them."
 
 (defun standing-p (robot)
   "True if ROBOT cannot drive because its speed is 0, or next to it."
-  (< (the double-float (robot-speed-now robot)) +standstill+))
+  ;; Speeds this low are lost in the rounding of positions.
+  (< (the double-float (robot-speed-now robot)) 1d-12))
 
 (defun longest-step (robot)
   "Return how far ROBOT can come in a tick at most, in metres."

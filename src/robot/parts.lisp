@@ -31,10 +31,6 @@
 ;;; The robot and each part is a resource: it does one thing at a time. A part's LOCATION is NIL
 ;;; (with the robot), a container among the things, or a storage bin.
 
-(defconstant +default-speed+ 0.8d0 "How fast a robot drives unless told otherwise, metres a tick.")
-(defconstant +default-turn-angle+ 0.3d0
-  "How far a robot turns in a tick unless told otherwise, in radians.")
-
 (define-kind (mind :include resource)
     "What a robot thinks with: one thought at a time, beside what its body and parts do."
   (:fixed
@@ -61,9 +57,8 @@
    (angle 0d0 double-float "the robot's true heading, in radians, never normalised" :addition)
    (cos 1d0 double-float "the cosine of the robot's heading")
    (sin 0d0 double-float "the sine of the robot's heading")
-   (speed +default-speed+ double-float "the speed that was set, in metres per tick" :addition)
-   (turn-angle +default-turn-angle+ double-float
-               "the turning speed that was set, in radians per tick" :addition)
+   (speed 0.8d0 double-float "the speed that was set, in metres per tick" :addition)
+   (turn-angle 0.3d0 double-float "the turning speed that was set, in radians per tick" :addition)
    (odometer-list '() list "the robot's odometers, oldest first" :part)
    (designators (make-array 4 :adjustable t :fill-pointer 0) vector
                 "the vector of the robot's designators by number; NIL: none" :part :export)

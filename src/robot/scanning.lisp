@@ -82,11 +82,6 @@ place type has NUMBER in the map."
   "Return the direction in which CAMERA points, in radians, in the world (reading 145)."
   (+ (robot-angle (camera-robot camera)) (camera-angle camera)))
 
-(defun held-things (robot location)
-  (loop for hand across (robot-hands robot)
-        when (eq (hand-location hand) location)
-          append (hand-contents hand)))
-
 (defun cells-in-view (camera reach)
   "Return a list of the cells where CAMERA may see things: the robot's own, then those that rays
 meet within REACH columns and rows."
@@ -121,25 +116,24 @@ meet within REACH columns and rows."
         (when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
           (push thing things))))))
 
-(defun things-faced (camera cells)
-  "Return the things within reach in other cells than CELLS that CAMERA looks straight at."
-  (let ((others (remove-if (lambda (index) (member index cells))
-                           (cells-around (camera-robot camera)))))
-    (remove-if-not (lambda (thing) (faced-p camera thing))
-                   (things-in-cells others camera t))))
-
 (defun things-in-open-view (camera local)
   "Return the things on the floor in CAMERA's view: within reach if LOCAL, else the others."
-  (let ((cells (cells-in-view camera (if local 1 +no-limit+))))
+  (let* ((cells (cells-in-view camera (if local 1 +no-limit+)))
+         (others (and local cells
+                      (remove-if (lambda (index) (member index cells))
+                                 (cells-around (camera-robot camera))))))
     (append (things-in-cells cells camera local)
-            (and local cells (things-faced camera cells)))))
+            (remove-if-not (lambda (thing) (faced-p camera thing))
+                           (things-in-cells others camera t)))))
 
 (defun things-in-view (camera type)
   "Return the things of TYPE, :LOCAL or :NON-LOCAL, that CAMERA has in view (reading 132)."
   (let ((location (camera-location camera)) (local (eq type :local)))
     (append (cond ((null location) (things-in-open-view camera local))
                   (local (location-contents location)))
-            (and local (held-things (camera-robot camera) location)))))
+            (and local (loop for hand across (robot-hands (camera-robot camera))
+                             when (eq (hand-location hand) location)
+                               append (hand-contents hand))))))
 
 ;;; Finding some of them, and others.
 
@@ -171,11 +165,10 @@ for what DEMANDS describe (reading 129)."
       0d0
       (multiple-value-call #'distance-to (camera-robot camera) (thing-position thing))))
 
-(defun thing-sighting (camera type find dice)
-  (destructuring-bind (thing . readings) find
-    (multiple-value-bind (x y) (thing-position thing)
-      (make-sighting type thing x y
-                     (describe-thing thing readings (seen-from camera thing) dice)))))
+(defun thing-sighting (camera type thing readings dice)
+  (multiple-value-bind (x y) (thing-position thing)
+    (make-sighting type thing x y
+                   (describe-thing thing readings (seen-from camera thing) dice))))
 
 (defun look-for-things (camera type specification &key all)
   "Return sightings by CAMERA of things of TYPE that fit SPECIFICATION: one, or ALL. False sightings
@@ -191,7 +184,7 @@ may be among them."
           unless (demand-attribute demand) do (note-strange-name (demand-key demand) world))
     (loop for find in (some-of (append finds (make-list phantoms)) all dice)
           collect (if find
-                      (thing-sighting camera type find dice)
+                      (thing-sighting camera type (first find) (rest find) dice)
                       (imagine camera type (imagine-description world demands dice) dice)))))
 
 (defun places-in-view (camera type)

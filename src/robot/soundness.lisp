@@ -25,18 +25,7 @@
   "Signal CONTRADICTION if TRACK has an operation that is not a valid request."
   (when (track-operation track) (check-request (track-operation track))))
 
-(defgeneric check-part (part)
-  (:documentation "Signal CONTRADICTION unless PART, of a robot, could have come about by itself.")
-  (:method (part) (declare (ignore part))))
-
-(defmethod check-part ((hand hand))
-  (check-contents hand (hand-contents hand) 1))
-
-(defmethod check-part ((bin storage-bin))
-  (check-contents bin (storage-bin-contents bin)
-                  (world-live-count (robot-world (storage-bin-robot bin)))))
-
-(defmethod check-part ((camera camera))
+(defun check-camera (camera)
   (let ((track (camera-tracking camera)))
     (when track
       (must-hold (and (track-p track)
@@ -102,6 +91,11 @@ a file, is in a state that a run can reach."
   (check-stance robot)
   (loop for (nil reader type) in *part-vectors*
         do (check-parts robot (funcall reader robot) type))
-  (mapc #'check-part (robot-parts robot))
+  (loop for camera across (robot-cameras robot)
+        do (check-camera camera))
+  (loop for hand across (robot-hands robot)
+        do (check-contents hand (hand-contents hand) 1))
+  (loop for bin across (robot-bins robot)
+        do (check-contents bin (storage-bin-contents bin) (world-live-count world)))
   (check-designators robot)
   (check-odometers robot))

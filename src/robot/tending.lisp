@@ -115,17 +115,14 @@ changed (reading 226)."
               (swing-to designator (bearing-to robot x y) before dice)
               (setf (designator-bearing-p designator) nil)))))))
 
-(defun near-p (designator before)
-  "True if what DESIGNATOR denotes is within reach, or was a tick before, at the distance BEFORE."
-  (or (< before 1d0)
-      (within-reach-p (designator-robot designator)
-                      (designator-x designator) (designator-y designator))))
-
 (defun swing-to (designator bearing before dice)
   "Update DESIGNATOR to the true direction BEARING; BEFORE is its previous distance."
-  (let ((relative (- bearing (robot-angle (designator-robot designator))))
-        (known (designator-bearing-p designator)))
-    (when (and known (not (near-p designator before)))
+  (let* ((robot (designator-robot designator))
+         (relative (- bearing (robot-angle robot)))
+         (known (designator-bearing-p designator)))
+    (unless (or (not known)
+                (< before 1d0)
+                (within-reach-p robot (designator-x designator) (designator-y designator)))
       (setf (designator-swing designator)
             (abs (angle-difference bearing (designator-bearing designator)))))
     (unless (and known (= relative (designator-relative-bearing designator)))

@@ -27,16 +27,13 @@
 
 ;;; Making one.
 
-(defun cost-p (cost)
-  (and (realp cost) (<= 1 cost 1000)))
-
 (defun costs-p (costs)
   "True if COSTS is a list of (name cost), each name being that of a place type."
   (and (proper-list-p costs)
        (every (lambda (entry)
                 (and (proper-list-p entry) (= 2 (length entry))
                      (symbolp (first entry)) (find-place-type (first entry) nil)
-                     (cost-p (second entry))))
+                     (typep (second entry) '(real 1 1000))))
               costs)))
 
 (defun map-of (operator map)
