@@ -123,8 +123,7 @@
       (list (asdf:component-pathname component))))
 
 (defun library-files ()
-  "Return the files of SBCL and of the libraries that are loaded, and those that say which versions
-Quicklisp has."
+  "Return the files of SBCL and of the loaded libraries, and those that say Quicklisp's versions."
   (append (list sb-ext:*runtime-pathname* sb-ext:*core-pathname*)
           (loop for system in (loaded-libraries)
                 collect (asdf:system-source-file system)
@@ -186,11 +185,6 @@ for what it is told about that, and where Quicklisp does."
        (equal "fasl" (pathname-type *load-truename*))
        (< (file-write-date *load-truename*) *began*)))
 
-(defun interesting-p (warning)
-  "True unless WARNING is only about compiling and loading in the same Lisp: that a macro is
-defined twice."
-  (not (typep warning sb-ext:*muffled-warnings*)))
-
 (defun warned-file ()
   "Return the file that is there while compiled files are there whose sources were warned of."
   (merge-pathnames "warned" (project-fasls)))
@@ -207,7 +201,8 @@ defined twice."
   (let ((count 0))
     (handler-bind ((sb-ext:compiler-note #'muffle-warning)
                    (warning (lambda (warning)
-                              (when (interesting-p warning)
+                              ;; SBCL itself muffles that compiling and loading define macros twice.
+                              (unless (typep warning sb-ext:*muffled-warnings*)
                                 (incf count)
                                 (note-warned)
                                 (note-trouble warning))))
@@ -266,8 +261,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
 ;;; McCLIM, which only the window needs, is found by ASDF or by an installed Quicklisp.
 
 (defun print-window-libraries ()
-  "Print by what McCLIM is to be had: asdf, quicklisp, or nothing; or why CLX, which it needs, does
-not work."
+  "Print where McCLIM can be found: asdf, quicklisp or nothing; or why CLX does not work."
   (call-telling
    (lambda ()
      (write-line (cond ((uiop:symbol-call :ars-magna.clx :clx-trouble))
@@ -295,8 +289,7 @@ not work."
                             :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
 
 (defun save-window-prompt ()
-  "Save a core that runs the prompt, and has what opens windows, in the file that the environment
-says."
+  "Save a core of the prompt that can open windows in the file named in the environment."
   (when (missing-p "mcclim/looks")
     (get-window-libraries))
   (save-prompt "ars-magna/clim"))
@@ -304,21 +297,19 @@ says."
 ;;; The manual.
 
 (defun write-manual ()
-  "Write the manual into the directory that the environment names; end this Lisp, with status 1 if
-that fails."
+  "Write the manual into the directory named in the environment; exit with status 1 if that fails."
   (load-project "ars-magna/manual")
   (uiop:quit (uiop:symbol-call :ars-magna.manual :main (uiop:getenv "ARS_MAGNA_MANUAL"))))
 
 ;;; The tests.
 
 (defun run-tests (suites &optional seed)
-  "Run the suites so named, or all, shuffled if there is a SEED; end this Lisp, with status 1 if a
-check fails."
+  "Run SUITES, or all, shuffled if there is a SEED; exit with status 1 if a check fails."
   (load-tests)
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell suites seed) 0 1)))
 
 (defun record-sessions (names)
-  "Write the screens of the newcomer's sessions NAMES, or of all, into their files; end this Lisp,
-with status 1 if one waits in vain."
+  "Write the screens of the newcomer's sessions NAMES, or of all, into their files; exit with status
+1 if one does not get what it waits for."
   (load-strictly "ars-magna/tests")
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :record-sessions names) 0 1)))

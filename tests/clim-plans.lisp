@@ -38,8 +38,8 @@
   (in-window (window robot)
     (let ((pane (seen-plans window)))
       (click-on pane (lambda (subject)
-                       (and (window::switch-p subject)
-                            (string= "Which plans are there?" (window::switch-label subject)))))
+                       (and (window::button-p subject)
+                            (string= "Which plans are there?" (window::button-label subject)))))
       (is (equal '("plan") (lines-given window))))))
 
 (test plan-pane.shows-the-tasks
@@ -132,7 +132,7 @@
 (test canvas.what-is-clipped-away-is-not-there
   "It is neither marked nor pointed at; of what is half hidden the half that is seen is there."
   (in-window (window robot)
-    (let ((pane (seen-plans window)) (switch (window::make-switch "x" "" #'identity)))
+    (let ((pane (seen-plans window)) (switch (window::make-button "x" nil nil "")))
       (flet ((box-of (y)
                (window::painting (canvas pane)
                  (canvas:with-clipping (canvas 0 23 200 100)
@@ -181,8 +181,8 @@
       (let ((pane (seen-plans window :timeline)))
         (is (eq :untraced (window::plan-look-page (window::plan-look-of pane))))
         (click-on pane (lambda (subject)
-                         (and (window::switch-p subject)
-                              (search "from now on" (window::switch-label subject)))))
+                         (and (window::button-p subject)
+                              (search "from now on" (window::button-label subject)))))
         (is (equal '("trace-plans on") (lines-given window)))))))
 
 (defun trace-lit-p (window)

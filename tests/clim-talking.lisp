@@ -51,9 +51,12 @@
 
 ;;; Typing ahead: nobody reads yet.
 
+(defun typed-ahead-of (session)
+  "Return how many lines of SESSION wait, what is being typed after them, and where the cursor is."
+  (multiple-value-list (cli:typed-ahead (cli:session-input session))))
+
 (defun typed-ahead-in (window)
-  "Return how many lines wait in WINDOW, what is being typed after them, and where the cursor is."
-  (multiple-value-list (window::waiting-in (window::window-conversation window))))
+  (typed-ahead-of (window::window-session window)))
 
 (defun give-keys (window &rest keys)
   (dolist (key keys) (window::give-key (window::window-conversation window) key)))
@@ -116,8 +119,9 @@
         (window::start-conversation conversation (time:current-simulation) 'studio-robot)
         (is (base:wait-on-semaphore there 20))
         (give "turn 1" :return "quit")
-        (is (equal '(1 "quit" 4) (multiple-value-list (window::waiting-in conversation))))
-        (window::interrupt-conversation conversation)
+        (is (equal '(1 "quit" 4)
+                   (typed-ahead-of (window::conversation-session conversation))))
+        (cli:interrupt-session (window::conversation-session conversation))
         (loop until (said-p "Interrupted.") while (base:wait-on-semaphore news 20))
         (is (said-p "Interrupted. 1 line that waited was dropped"))
         (give :return)
@@ -163,7 +167,7 @@
       (is (mentions-p (window::time-text window) "; a program waits for your answer"))
       (is (equal "Answer> " (first (await-in conversation news #'window::line-shown))))
       (window::give-key conversation "half")
-      (window::interrupt-conversation conversation)
+      (cli:interrupt-session (window::conversation-session conversation))
       (is (await-in conversation news
                     (lambda (conversation)
                       (declare (ignore conversation))

@@ -6,17 +6,14 @@
 ;;; returns a new text and point, and what it has killed, which Control-Y brings back. The keys are
 ;;; those of Emacs and of shells. A pasted text may have several lines.
 
-(defvar *changes* '() "Lists (key function).")
+(defvar *changes* (make-hash-table)
+  "Table from keys to functions of a text and point, which return others, and what was killed.")
 
-(defmacro define-change (keys (text point) documentation &body body)
-  "Define what each of KEYS does: BODY gets TEXT and POINT, and returns as values another text and
-point, and what was killed, if anything."
-  `(let ((function (lambda (,text ,point) ,documentation (declare (ignorable ,text)) ,@body)))
-     (dolist (key ',keys)
-       (setf *changes* (cons (list key function) (remove key *changes* :key #'first))))))
-
-(defun change-of (key)
-  (second (assoc key *changes*)))
+(defmacro define-key (table keys lambda-list documentation &body body)
+  "Define what each of KEYS does: TABLE has for it a function of LAMBDA-LIST that runs BODY."
+  `(dolist (key ',keys)
+     (setf (gethash key ,table)
+           (lambda ,lambda-list ,documentation (declare (ignorable ,@lambda-list)) ,@body))))
 
 ;;; Places in a text.
 
@@ -41,27 +38,27 @@ point, and what was killed, if anything."
 
 ;;; Moving.
 
-(define-change (:control-a :home) (text point)
+(define-key *changes* (:control-a :home) (text point)
   "Go to the beginning of the line."
   (values text (line-start text point)))
 
-(define-change (:control-e :end) (text point)
+(define-key *changes* (:control-e :end) (text point)
   "Go to the end of the line."
   (values text (line-end text point)))
 
-(define-change (:control-b :left) (text point)
+(define-key *changes* (:control-b :left) (text point)
   "Go one character back."
   (values text (max 0 (1- point))))
 
-(define-change (:control-f :right) (text point)
+(define-key *changes* (:control-f :right) (text point)
   "Go one character on."
   (values text (min (length text) (1+ point))))
 
-(define-change (:meta-b) (text point)
+(define-key *changes* (:meta-b) (text point)
   "Go to the beginning of the word, or of the one before."
   (values text (before-word text point)))
 
-(define-change (:meta-f) (text point)
+(define-key *changes* (:meta-f) (text point)
   "Go to the end of the word, or of the next."
   (values text (after-word text point)))
 
@@ -79,30 +76,30 @@ point, and what was killed, if anything."
   "Do as DELETED does; return the deleted text as a third value."
   (multiple-value-call #'values (deleted text start end) (subseq text start end)))
 
-(define-change (:rubout) (text point)
+(define-key *changes* (:rubout) (text point)
   "Delete the character before the cursor."
   (deleted text (max 0 (1- point)) point))
 
-(define-change (:delete) (text point)
+(define-key *changes* (:delete) (text point)
   "Delete the character under the cursor."
   (deleted text point (min (length text) (1+ point))))
 
-(define-change (:control-k) (text point)
+(define-key *changes* (:control-k) (text point)
   "Kill what follows, up to the end of the line."
   (killed text point (line-end text point)))
 
-(define-change (:control-u) (text point)
+(define-key *changes* (:control-u) (text point)
   "Kill the text before the cursor, from the beginning of the line on."
   (killed text (line-start text point) point))
 
-(define-change (:control-w) (text point)
+(define-key *changes* (:control-w) (text point)
   "Kill what comes before, back to a blank."
   (killed text (before-word text point (lambda (char) (not (blank-p char)))) point))
 
-(define-change (:meta-rubout) (text point)
+(define-key *changes* (:meta-rubout) (text point)
   "Kill the word before the cursor."
   (killed text (before-word text point) point))
 
-(define-change (:meta-d) (text point)
+(define-key *changes* (:meta-d) (text point)
   "Kill the word after the cursor."
   (killed text point (after-word text point)))

@@ -118,49 +118,40 @@ the like, which are signals.")
       (when (and killed (string/= "" killed)) (setf (edited-killed stream) killed))
       (change-to stream text point))))
 
-;;; Keys that do other things, as functions of the stream. If one returns the typed text or :EOF,
-;;; that ends the line.
+;;; Keys that do other things.
 
-(defvar *actions* '() "Lists (key function).")
+(defvar *actions* (make-hash-table)
+  "Table from keys to functions of the stream. If one returns a text, or :EOF, the line has ended;
+other values do not matter.")
 
-(defmacro define-action (keys (stream) documentation &body body)
-  "Define what each of KEYS does. If BODY returns a text, or :EOF, the line has ended; other values
-do not matter."
-  `(let ((function (lambda (,stream) ,documentation ,@body)))
-     (dolist (key ',keys)
-       (setf *actions* (cons (list key function) (remove key *actions* :key #'first))))))
-
-(defun action-of (key)
-  (second (assoc key *actions*)))
-
-(define-action (:return) (stream)
+(define-key *actions* (:return) (stream)
   "End the line."
   (typed-text-of stream))
 
-(define-action (:control-c) (stream)
+(define-key *actions* (:control-c) (stream)
   "Clear the line; if there is nothing typed, or a program has asked for it, end what waits for it."
   (if (or (string= "" (typed-text-of stream)) (console-asked-p (edited-console stream)))
       (heed-interrupt)
       (change-to stream "" 0)))
 
-(define-action (:control-d) (stream)
+(define-key *actions* (:control-d) (stream)
   "Delete the character under the cursor; if there is nothing typed, end the input."
   (cond ((string= "" (typed-text-of stream)) :eof)
-        (t (do-change stream (change-of :delete)))))
+        (t (do-change stream (gethash :delete *changes*)))))
 
-(define-action (:control-y) (stream)
+(define-key *actions* (:control-y) (stream)
   "Insert what was killed last."
   (insert-typed stream (edited-killed stream)))
 
-(define-action (:control-l) (stream)
+(define-key *actions* (:control-l) (stream)
   "Clear the screen."
   (clear-window (edited-console stream)))
 
-(define-action (:control-z) (stream)
+(define-key *actions* (:control-z) (stream)
   "Stop this process until its user wants it back."
   (stop-here stream))
 
-(define-action (:control-\\) (stream)
+(define-key *actions* (:control-\\) (stream)
   "End this process at once."
   (hide-line (edited-console stream))
   (tell-pastes-apart (edited-console stream) nil)
@@ -176,7 +167,7 @@ do not matter."
       (push (typed-text-of stream) (slot-value stream to))
       (change-to stream entry (length entry)))))
 
-(define-action (:up :control-p) (stream)
+(define-key *actions* (:up :control-p) (stream)
   "Go back in the history."
   (let* ((line (line-of stream))
          (start (line-start (drawn-line-text line) (drawn-line-point line))))
@@ -184,7 +175,7 @@ do not matter."
         (show-entry stream 'older 'newer)
         (change-to stream (drawn-line-text line) (1- start)))))
 
-(define-action (:down :control-n) (stream)
+(define-key *actions* (:down :control-n) (stream)
   "Go on in the history."
   (let* ((line (line-of stream))
          (text (drawn-line-text line))
@@ -195,35 +186,34 @@ do not matter."
 
 ;;; Reading a line.
 
-(defun tell-of-answers (stream count)
-  "Tell the user of STREAM that COUNT lines at the end of a pasted text are left out."
-  (when (plusp count)
-    (write-fresh (format nil "~D line~:P after the last prompt that was pasted ~:*~[~;is~:;are~] ~
-                              left out, as answers.~%" count)
-                 (edited-console stream))))
+(defun insert-pasted (stream text)
+  "Insert TEXT, as pasted; tell if lines at its end are left out as answers."
+  (let ((count (answers-at-end text)))
+    (when (plusp count)
+      (write-fresh (format nil "~D line~:P after the last prompt that was pasted ~:*~[~;is~:;are~] ~
+                                left out, as answers.~%" count)
+                   (edited-console stream))))
+  (insert-typed stream (without-answers text)))
 
-(defun press-given (stream kind text)
-  "Take TEXT as what KIND says: it was pasted, or it is a line that has been chosen elsewhere."
-  (ecase kind
-    (:paste (tell-of-answers stream (answers-at-end text))
-     (insert-typed stream (without-answers text))
-     nil)
-    ;; What was being typed comes again after it.
-    (:entry (let ((line (line-of stream)))
-              (setf (edited-put-off stream)
-                    (and (string/= "" (drawn-line-text line))
-                         (list (drawn-line-text line) (drawn-line-point line))))
-              (change-to stream text (length text))
-              text))))
+(defun enter-chosen (stream text)
+  "Make TEXT the line; what was being typed comes again after it. Return TEXT."
+  (let ((line (line-of stream)))
+    (setf (edited-put-off stream)
+          (and (string/= "" (drawn-line-text line))
+               (list (drawn-line-text line) (drawn-line-point line)))))
+  (change-to stream text (length text))
+  text)
 
 (defun press (stream key)
   "Do what KEY does. Return a text, or :EOF, if the line has ended."
   (cond ((stringp key) (insert-typed stream key) nil)
-        ((consp key) (press-given stream (first key) (second key)))
+        ((consp key) (ecase (first key)
+                       (:paste (insert-pasted stream (second key)) nil)
+                       (:entry (enter-chosen stream (second key)))))
         ((null key) (if (string= "" (typed-text-of stream)) :eof (typed-text-of stream)))
-        ((change-of key) (do-change stream (change-of key)) nil)
-        ((action-of key) (let ((end (funcall (action-of key) stream)))
-                           (and (typep end '(or string (eql :eof))) end)))))
+        ((gethash key *changes*) (do-change stream (gethash key *changes*)) nil)
+        ((gethash key *actions*) (let ((end (funcall (gethash key *actions*) stream)))
+                                   (and (typep end '(or string (eql :eof))) end)))))
 
 (defun call-editing (function stream)
   (let ((console (edited-console stream)))
@@ -260,8 +250,7 @@ without saying so, is drawn once. Return a text, or :EOF, if the line has ended 
                 (return end)))
 
 (defun edit-line (stream)
-  "Read a line from the user. Return it, with newlines in it if several were pasted; :EOF at the end
-of the input."
+  "Return a line from the user, with newlines if several were pasted; :EOF at the end of the input."
   (flet ((edit () (call-editing (lambda () (press-keys stream)) stream)))
     (prog1 (if *program-reads* (call-asking (edited-console stream) #'edit) (edit))
       ;; A Control-C typed after the line is for that line.
@@ -332,7 +321,7 @@ it SOUGHT begins; NIL if there is none."
                  (t (return key)))
            (show-search stream sought skipped)))
 
-(define-action (:control-r) (stream)
+(define-key *actions* (:control-r) (stream)
   "Look for a line in the history."
   (let* ((line (line-of stream))
          (prompt (drawn-line-label line))

@@ -98,8 +98,7 @@
           ((starts-with-subseq "meta-" name) (format nil "~C~A" +escape+ (subseq name 5))))))
 
 (defun octets-of-key (key)
-  "Return what a terminal sends for KEY, one character for each octet; nothing for a key that it
-does not have."
+  "Return what a terminal sends for KEY, one character for each octet; \"\" if it has no such key."
   (cond ((stringp key) (encoded key))
         ((consp key) (format nil "~A~A~A" (escaped-key (first key)) (encoded (second key))
                              (paste-ended)))

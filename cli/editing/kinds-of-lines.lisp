@@ -3,8 +3,7 @@
 (in-package :ars-magna.cli)
 
 (defun comment-at-p (text position)
-  "True if a comment begins in TEXT at POSITION: with ;, or with # between blanks or ends of the
-line."
+  "True if a comment begins in TEXT at POSITION: with ;, or with # between blanks or line ends."
   (flet ((blank-at-p (position)
            (or (not (array-in-bounds-p text position))
                (blank-p (char text position)))))
@@ -35,8 +34,7 @@ line."
 
 ;; As reading 205 says.
 (defun lisp-p (text)
-  "True if TEXT is Lisp: it begins with a parenthesis, with # and what follows that in a form, or
-with Nisp's mark of a slot."
+  "True if TEXT is Lisp: it begins with a parenthesis, a form with #, or Nisp's mark of a slot."
   (let ((start (position-if-not #'blank-p text)))
     (or (find (char text start) "()")
         (sharp-form-p text start)
@@ -103,8 +101,7 @@ blanks, and extends to the end of TEXT if there is no second quote."
   (starts-with-subseq +going-on+ text))
 
 (defun line-pasted (text before)
-  "Return TEXT, a line as typed, without a pasted prompt. BEFORE is true if it continues another
-line."
+  "Return TEXT, a typed line, without a pasted prompt. BEFORE is true if it continues another line."
   (cond ((null before) (without-label text))
         ((going-on-p text) (subseq text (length +going-on+)))
         (t text)))

@@ -35,8 +35,7 @@
       (change-ahead ahead line (length line)))))
 
 (defun show-neighbour (ahead entries step)
-  "Replace the text being typed in AHEAD by the one STEP further in ENTRIES. The empty line is
-before the first."
+  "Replace the text typed in AHEAD by that STEP further in ENTRIES; before the first is \"\"."
   (let* ((entries (cons "" (append (reverse (ahead-lines ahead)) entries)))
          (place (position (ahead-text ahead) entries :test #'string=))
          (next (and place (+ place step))))
@@ -51,8 +50,9 @@ before the first."
                          (:paste (insert-ahead ahead (without-answers text)))
                          (:entry (enter-ahead ahead (list text))))))
         ((and (eq key :rubout) (string= "" (ahead-text ahead))) (type-last-again ahead))
-        ((change-of key) (multiple-value-call #'change-ahead ahead
-                           (funcall (change-of key) (ahead-text ahead) (ahead-point ahead))))
+        ((gethash key *changes*)
+         (multiple-value-call #'change-ahead ahead
+           (funcall (gethash key *changes*) (ahead-text ahead) (ahead-point ahead))))
         (t (case key
              (:return (enter-ahead ahead (lines-in (ahead-text ahead)))
               (change-ahead ahead "" 0))
@@ -63,8 +63,7 @@ before the first."
 ;;; From octets, and to octets.
 
 (defun text-reader (text)
-  "Return a function that returns the next character of TEXT, or NIL, or is given one to return
-first."
+  "Return a function that returns the next character of TEXT, or NIL, or is given one to return."
   (let ((position 0))
     (lambda (&optional again)
       (cond (again (decf position) nil)
@@ -104,8 +103,7 @@ first."
     (and name (string/= name "") (native-path name))))
 
 (defun standard-input (console plain)
-  "Return the typed input of this process. It is edited on CONSOLE if that is possible, unless PLAIN
-is true."
+  "Return the typed input of this process, edited on CONSOLE if that is possible and PLAIN is NIL."
   (let ((octets (octet-input 0)))
     (if (and (not plain) (console-window console) (obeying-terminal-p octets))
         (make-instance 'edited-text :octets octets :by-hand-p t :console console
@@ -184,8 +182,7 @@ or pasted with it.")
       (when (funcall next) (add-octets (edited-ahead input) octets)))))
 
 (defun drop-waiting (input)
-  "Leave the lines that wait to be read of INPUT; the history has them as one entry. Return how many
-there were."
+  "Remove the lines that wait in INPUT, and keep them as one history entry. Return their number."
   (let ((lines (take-waiting input)))
     (when lines (remember-line input (format nil "~{~A~^~%~}" lines) nil))
     (length lines)))
@@ -226,23 +223,20 @@ the prompt at the terminal."
 (defun ahead-of (stream octets)
   (ahead-in octets (history-entries (edited-history stream))))
 
-(defun with-key (stream octets key)
-  "Return OCTETS, which STREAM has not read yet, followed by those of KEY. Until STREAM reads, they
-are type-ahead."
-  (cond ((being-typed-p stream) (uiop:strcat octets (octets-of-key key)))
-        (t (let ((ahead (ahead-of stream octets)))
-             (press-ahead ahead key (history-entries (edited-history stream)))
-             (octets-of-ahead ahead)))))
-
 (defun press-key (stream key)
-  "Pass KEY, as in keys.lisp, to the reader of STREAM."
-  (revise-octets (typed-octets stream) (lambda (octets) (with-key stream octets key))))
+  "Pass KEY, as in keys.lisp, to the reader of STREAM. Until STREAM reads, it is type-ahead."
+  (flet ((with-key (octets)
+           (if (being-typed-p stream)
+               (uiop:strcat octets (octets-of-key key))
+               (let ((ahead (ahead-of stream octets)))
+                 (press-ahead ahead key (history-entries (edited-history stream)))
+                 (octets-of-ahead ahead)))))
+    (revise-octets (typed-octets stream) #'with-key)))
 
 ;;; What waits.
 
 (defun typed-ahead (stream)
-  "Return how many lines of STREAM wait to be read, and the text being typed after them, with the
-position of the cursor in it."
+  "Return how many lines of STREAM wait, the text being typed after them, and the cursor's place."
   (let ((ahead (ahead-of stream (handed-left (typed-octets stream)))))
     (values (+ (length (edited-lines stream)) (length (ahead-lines ahead)))
             (ahead-text ahead)

@@ -3,8 +3,7 @@
 (in-package :ars-magna.cli)
 
 (defun tell-rewound (point simulation)
-  "Queue a message that the robot no longer goes to POINT, a text, because another run has replaced
-SIMULATION."
+  "Queue a message that the robot no longer goes to POINT, as another run has replaced SIMULATION."
   (let ((*message-queue* (simulation-messages (latest simulation))))
     (warning-set (format nil "go-to: The run was rewound on the way to ~A, so the robot no ~
                               longer goes there. Give the line again if it should."
@@ -67,8 +66,7 @@ what USAGE, a function like METHOD-USAGE, returns of its methods."
                    "MANIPULATE lists all.")))
 
 (defun arguments-for (method data robot)
-  "Return the arguments of METHOD for DATA, as typed, with ROBOT; or NIL if they are too many or too
-few."
+  "Return the arguments of METHOD for DATA, as typed, with ROBOT; NIL if their number is wrong."
   (multiple-value-bind (objects by others) (method-shape method)
     (let* ((count (length objects))
            (extra (- (length data) count (length others))))

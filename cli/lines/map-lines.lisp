@@ -5,8 +5,7 @@
 ;;; On a terminal a map is made to fit, and has colours; elsewhere it shows the whole world.
 
 (defun terminal-size (session)
-  "Return how many columns and lines the terminal of SESSION has, as far as is known; NIL without a
-terminal."
+  "Return the known columns and lines of the terminal of SESSION; 80 and NIL without a terminal."
   (flet ((size-said (variable)
            (ignore-errors (parse-integer (environment-value variable)))))
     (multiple-value-bind (columns lines)
@@ -28,11 +27,6 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
       (reject-line "~A does not know ~A.~@[ Did you mean ~A?~] It takes ~?." line text
                    (nearest-name text words) takes (list words)))
     (make-keyword word)))
-
-(defun map-word (text)
-  "Return the keyword of one of WORDS-OF-MAP, the one that begins with TEXT, as TEXT-MAP calls it."
-  (text-layer-named (word-meant text (words-of-map) "MAP"
-                                "a radius, or LEFT TOP RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}")))
 
 (defun number-typed (text)
   (let ((datum (ignore-errors (values (read-data-from-string text 0)))))
@@ -57,17 +51,18 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
                     numbers))))
 
 (defun map-options (text)
-  (loop for word in (split-words (or text ""))
+  "Return options of TEXT-MAP for TEXT, as typed after MAP."
+  (loop with takes = "a radius, or LEFT TOP RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}"
+        for word in (split-words (or text ""))
         for number = (number-typed word)
         if number collect number into numbers
-        else collect (map-word word) into words
+        else collect (text-layer-named (word-meant word (words-of-map) "MAP" takes)) into words
         finally (return (append (map-part numbers)
                                 (list :layers (remove :legend words)
                                       :only-legend (and (member :legend words) t))))))
 
 (defun map-text (session options &optional (lines-below 1))
-  "Return the map that OPTIONS of TEXT-MAP ask for, as it fits into the terminal of SESSION above
-LINES-BELOW lines."
+  "Return the map for OPTIONS of TEXT-MAP, fit for the terminal of SESSION above LINES-BELOW lines."
   (let ((robot (session-robot))
         (console (session-console session)))
     (multiple-value-bind (columns lines) (terminal-size session)

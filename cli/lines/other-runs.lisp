@@ -15,13 +15,6 @@
 
 (attend *rewind-hooks* let-errands-go)
 
-(defun rewind-here (session ticks)
-  (rewind ticks)
-  ;; No session waits for commands that are in progress again.
-  (setf (session-after-rewind session) nil
-        (session-lisp-p session) t)
-  (take-up-plans session))
-
 (defun check-rewindable (session)
   (check-run)
   (when (session-visit session)
@@ -29,7 +22,11 @@
 
 (defun rewind-and-tell (session ticks)
   (let ((tick (- (simulation-tick *simulation*) ticks)))
-    (rewind-here session ticks)
+    (rewind ticks)
+    ;; No session waits for commands that are in progress again.
+    (setf (session-after-rewind session) nil
+          (session-lisp-p session) t)
+    (take-up-plans session)
     (tell-others session *simulation*
                  (format nil "Another prompt has rewound the run to tick ~D.~%" tick))
     (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
@@ -81,8 +78,8 @@ command, such as that of GO-TO, receive :INTERRUPT."
 (defun write-experiments ()
   (if (all-experiments)
       (dolist (experiment (all-experiments))
-        (write-filled (whole-sentence (or (experiment-documentation experiment) "Not documented."))
-                      27 (format nil "  ~(~A~)" (experiment-name experiment))))
+        (write-filled (whole-sentence (experiment-text experiment)) 27
+                      (format nil "  ~(~A~)" (experiment-name experiment))))
       (format t "No experiment is defined. (load \"FILE\") loads a file that has some.~%")))
 
 (defun write-conditions (experiment)
@@ -126,12 +123,6 @@ command, such as that of GO-TO, receive :INTERRUPT."
     (say-here session "This is not the experiment's result: the run was changed at tick ~D."
               (visit-changed visit))))
 
-(defun write-comparison (session visit result parts row)
-  (let ((differences (row-differences (visit-experiment visit) result parts row
-                                      (visit-directory visit))))
-    (say-here session "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]"
-              differences)))
-
 (defun stay (session visit result parts row)
   "Read lines of SESSION where the trial of VISIT has ended, with RESULT, until one leads out."
   (setf (visit-result visit) result)
@@ -139,7 +130,11 @@ command, such as that of GO-TO, receive :INTERRUPT."
   (call-aside (lambda ()
                 (show-messages session)
                 (write-result session visit result)
-                (when row (write-comparison session visit result parts row))))
+                (when row
+                  (say-here session
+                            "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]"
+                            (row-differences (visit-experiment visit) result parts row
+                                             (visit-directory visit))))))
   (loop (visit-line session visit)))
 
 ;;; Going there, and out again.
@@ -260,15 +255,13 @@ opens one of them."
 ;;; one leads out.
 
 (defun read-in-fork (session)
-  (loop until (session-over-p session)
-        do (call-guarded session (lambda () (next-line-inside session)))
-           (call-guarded session (lambda () (show-messages session)))))
-
-(defun tell-fork (session)
   (format (session-console session)
           "~&In a fork, at tick ~D. STEP lets time pass, FORK OFF leads back.~@[ Plans under way: ~
            ~{~A~^, ~}.~]~%"
-          (simulation-tick *simulation*) (mapcar #'task-label (plans))))
+          (simulation-tick *simulation*) (mapcar #'task-label (plans)))
+  (loop until (session-over-p session)
+        do (call-guarded session (lambda () (next-line-inside session)))
+           (call-guarded session (lambda () (show-messages session)))))
 
 (defun enter-fork (session fork)
   "Run SESSION in FORK until a line leads out. Its earlier errands do not count there."
@@ -276,9 +269,7 @@ opens one of them."
         (depth (session-forks session)))
     (setf (session-forks session) (1+ depth))
     (unwind-protect (catch 'left-fork
-                      (call-in-fork fork (lambda ()
-                                           (tell-fork session)
-                                           (read-in-fork session))))
+                      (call-in-fork fork (lambda () (read-in-fork session))))
       (drop-errands session)
       (setf (session-errands session) errands
             (session-forks session) depth))))

@@ -13,22 +13,16 @@ that one first and last; NIL if it does not."
         when (and (rest names) (string= name (first alias))) return names
         when (< (length aliases) (length names)) return nil))
 
-(defun check-alias (name text)
-  "Signal BAD-LINE if TEXT, the meaning of the alias NAME, begins with no command, or leads back to
-NAME."
-  (let ((circle (circle-of name text)))
-    (when circle
-      (reject-line "The alias ~A would stand for itself: ~{~A~^ = ~}. Give a command after its ~
-                    name."
-                   name circle)))
-  (let ((expansion (expand-alias text)))
-    (unless (lisp-p expansion)
-      (find-line (values (split-line expansion))))))
-
 (defun define-alias (name text)
-  (when (find name (all-line-names) :test #'string=)
-    (reject-line "~A is a command already; choose another name for the alias." name))
-  (check-alias name text)
+  "Make NAME an alias of TEXT. Signals BAD-LINE if NAME is a command, or TEXT begins with none."
+  (let ((circle (circle-of name text)) (expansion (expand-alias text)))
+    (cond ((find name (all-line-names) :test #'string=)
+           (reject-line "~A is a command already; choose another name for the alias." name))
+          (circle
+           (reject-line "The alias ~A would stand for itself: ~{~A~^ = ~}. Give a command after ~
+                         its name."
+                        name circle))
+          ((not (lisp-p expansion)) (find-line (values (split-line expansion))))))
   (setf *aliases* (cons (list name text) (remove name *aliases* :key #'first :test #'string=))))
 
 (define-line "ALIAS" (session (alias :token "a name" :optional)
@@ -51,8 +45,7 @@ NAME."
   (let ((*asker* (asker-for (session-account session)))) (evaluate-text session exp)))
 
 (defun switch-setting (name word)
-  "Return true if WORD, the argument of the line NAME, is on, NIL if it is off. Signals BAD-LINE for
-another."
+  "Return true if WORD, after the line NAME, is on, NIL if it is off. Signals BAD-LINE for another."
   (cond ((string-equal word "on") t)
         ((string-equal word "off") nil)
         (t (reject-line "~A does not know ~A. It is ~A ON or ~A OFF." name word name name))))

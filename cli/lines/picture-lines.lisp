@@ -103,8 +103,7 @@ says why."
   "How to install McCLIM.")
 
 (defun ensure-windows ()
-  "Load what opens windows, if needed. Signals BAD-LINE if there is no X server or McCLIM, or if CLX
-does not work."
+  "Load what opens windows, if needed. Signals BAD-LINE without X server, McCLIM or a working CLX."
   (unless *display-opener*
     (when (member (environment-value "DISPLAY") '(nil "") :test #'equal)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
@@ -125,8 +124,7 @@ does not work."
 ;;;; WINDOW
 
 (defun robot-at-work-called (name)
-  "Return the robot called NAME, of this run or of another that is live. Signals BAD-LINE if there
-is none."
+  "Return the robot called NAME of this run or of another live one. Signals BAD-LINE if none."
   (let* ((name (robot-called name))
          (robot (or (find name (and *simulation* (simulation-robots *simulation*))
                           :key #'robot-name)

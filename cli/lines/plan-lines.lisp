@@ -38,11 +38,6 @@ package; NIL if there is none."
                                          (symbol-package (procedure-name plan)))))
                        collect part)))
 
-(defun whole-sentence (text)
-  "Return TEXT up to its first full stop."
-  (let* ((text (one-line text)) (end (search ". " text)))
-    (if end (subseq text 0 (1+ end)) text)))
-
 (defun write-plan-menu ()
   (let ((parts (parts-of-plans)))
     (dolist (name (plan-names))
@@ -101,15 +96,11 @@ at once, otherwise when the plan has ended."
 
 ;;; Those under way.
 
-(defun plan-package (name)
-  "Return the package of the plan called NAME, or NIL."
-  (let ((plan (plan-called (string name))))
-    (if plan (symbol-package (procedure-name plan)) (user-package))))
-
 (defun call-reading-plan (name function)
   "Call FUNCTION, which returns text with forms of the plan called NAME. Return it as who reads the
 plan would write it: few symbols have a package."
-  (let* ((*package* (plan-package name))
+  (let* ((plan (plan-called (string name)))
+         (*package* (if plan (symbol-package (procedure-name plan)) (user-package)))
          (*print-pretty* nil)
          (text (funcall function)))
     (dolist (prefix '("ars-user::" "ars-worlds::" "ars-worlds:") text)

@@ -65,10 +65,6 @@
         do (put-line "~ACamera ~D: ~:[~;TRACK ~]~{~,2F~^ ~}" start
                      (getf camera :number) (getf camera :tracks) (getf camera :view))))
 
-(defun write-sensor (sensor)
-  "Show SENSOR, a part of a kind of the user's own: its state and memory."
-  (put-line "~A:~:{ ~(~A~) ~A~:^,~}" (getf sensor :name) (getf sensor :slots)))
-
 (defun write-designator (designator)
   (put-line "~D ~A @ ~A" (getf designator :number) (kind-text designator)
             (bearing-text designator))
@@ -105,7 +101,9 @@
   (loop for (label key) in '(("Angle:" :angle) ("Speed:" :speed) ("Turn Angle:" :turn-angle))
         do (format t "~19A~,2F~%" label (hundredths (getf status key))))
   (write-views (getf status :cameras))
-  (mapc #'write-sensor (getf status :sensors))
+  ;; Parts of the user's own kinds, with their state and memory.
+  (dolist (sensor (getf status :sensors))
+    (put-line "~A:~:{ ~(~A~) ~A~:^,~}" (getf sensor :name) (getf sensor :slots)))
   (format t "~19A~A~%" "Place:" (getf status :place))
   (write-ownership status)
   (let ((thinking (thinking-text status)))
@@ -193,8 +191,7 @@ inside a wall."
         collect (value-for-json key value)))
 
 (defun report-status (session robot)
-  "Report the state of ROBOT, whose world stands still, if SESSION reports objects. True if it
-does."
+  "Report the state of ROBOT, whose world stands still, if SESSION reports objects; true if so."
   (let ((account (session-account session)))
     (when (reports-p account)
       (apply #'report-object account "status"

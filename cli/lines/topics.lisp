@@ -118,8 +118,7 @@
                      :test #'string= :from-end t))
 
 (defun lisp-names ()
-  "Return a sorted list of the documented names of the simulator, the worlds and the user, except
-parameters."
+  "Return the sorted documented names of simulator, worlds and user, without parameters."
   (let ((names '()))
     (dolist (package (remove-if-not #'find-package '(:ars :nisp :ars-worlds :ars-fiveam)))
       (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
@@ -140,8 +139,7 @@ parameters."
   (format nil "~{~A~^~%~}" (documentation-texts symbol)))
 
 (defun typed-name (symbol)
-  "Return how SYMBOL is typed at the prompt: with its package, if ARS-USER has another of its name,
-or none."
+  "Return how to type SYMBOL: with its package unless ARS-USER has it under that name."
   (if (eq symbol (find-symbol (symbol-name symbol) (user-package)))
       (symbol-name symbol)
       (format nil "~A:~A" (package-name (symbol-package symbol)) symbol)))
@@ -216,8 +214,7 @@ kind, an object's name and its description; WRITER writes its help. TITLE may be
   (funcall (fourth (topic-kind topic)) (topic-object topic)))
 
 (defun bare-name (name)
-  "Return NAME in upper case, without the marks that Lisp has around it: red of :red, max-speed of
-max-speed*."
+  "Return NAME in upper case, without Lisp's marks around it: red of :red, max-speed of max-speed*."
   (string-trim ":*'()" (string-upcase name)))
 
 (defun topics-called (name)

@@ -258,8 +258,7 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
     (sort found #'string<)))
 
 (defun users-symbols ()
-  "Return the names for users: marked ones, and the exports of the packages of worlds and of test
-checks."
+  "Return the names for users: marked ones, and the exports of the worlds and of test checks."
   (remove-duplicates (append (public-symbols :ars) (public-symbols :nisp)
                              (exported-symbols :ars-worlds) (exported-symbols :ars-fiveam))
                      :from-end t))

@@ -56,16 +56,6 @@ ended.")
   "Return what the entry is looked for by: its name in lower case."
   (string-downcase (entry-name entry)))
 
-(defun entry-sentence (entry)
-  (let* ((text (entry-text entry))
-         (end (loop for i = (position #\. text) then (position #\. text :start (1+ i))
-                    while i
-                    when (or (= (1+ i) (length text))
-                             (find (char text (1+ i)) '(#\Space #\Newline)))
-                      return (1+ i)
-                    finally (return (length text)))))
-    (one-line (subseq text 0 end))))
-
 ;;; What is known of symbols.
 
 (defun project-name (path)

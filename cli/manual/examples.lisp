@@ -63,8 +63,7 @@ its own variables. ID is that of the heading above it."
     (#\; (or (position #\Newline text :start start) (length text)))))
 
 (defun map-names (function text)
-  "Call FUNCTION with each name in TEXT, of Lisp, and where it starts and ends. Strings and comments
-have none."
+  "Call FUNCTION with each name in TEXT, of Lisp, its start and end; not in strings and comments."
   (loop with i = 0
         while (< i (length text))
         do (let ((skipped (text-end text i)))
@@ -83,8 +82,7 @@ looks like a name of the simulator."
       (and (plusp start) (find (char text (1- start)) "('"))))
 
 (defun lisp-names (text &optional (test (constantly t)))
-  "Return the names of Lisp in TEXT, each once, for which TEST, of the name, TEXT and its start, is
-true."
+  "Return each name of Lisp in TEXT once, if TEST is true of the name, TEXT and its start."
   (let ((names '()))
     (map-names (lambda (name start end)
                  (declare (ignore end))
@@ -128,8 +126,7 @@ which a block has shown if USED-P is true; EXAMPLES are those found, the last fi
   (examples '() :type list))
 
 (defun take-names (walk names &key keep)
-  "Make NAMES those that the following blocks show; with KEEP, beside those that no block has shown
-yet."
+  "Make NAMES those that the following blocks show; with KEEP, besides those not shown yet."
   (when names
     (setf (walk-names walk) (if (and keep (not (walk-used-p walk)))
                                 (append (walk-names walk) names)

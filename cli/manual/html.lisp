@@ -107,8 +107,7 @@ addresses, and differs for different names."
             (subseq tag end))))
 
 (defun element-at (tokens)
-  "Return the tokens of the element that TOKENS begin with, both its tags included, and the tokens
-that follow it."
+  "Return the tokens of the element, tags included, that TOKENS begin with, and the rest."
   (let ((name (tag-name (first tokens))))
     (loop with depth = 0
           for rest on tokens
@@ -120,8 +119,7 @@ that follow it."
           finally (return (values element (rest rest))))))
 
 (defun parts-of (tokens whole-p)
-  "Return TOKENS in lists: whole elements if WHOLE-P is true of their first tag, and other tokens
-alone."
+  "Return TOKENS in lists: whole elements whose first tag satisfies WHOLE-P, other tokens alone."
   (loop with rest = tokens
         while rest
         collect (if (funcall whole-p (first rest))

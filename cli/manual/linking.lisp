@@ -42,8 +42,7 @@ show by themselves is called a text."
           (member (pathname-type name) '("svg" "png" "txt" "html") :test #'equal)))
 
 (defun file-address (name book)
-  "Return where the project's file NAME is in the manual: a copy; of a directory its page, or the
-first page."
+  "Return the address of the project's file NAME: a copy; for a directory its page, or the first."
   (if (uiop:directory-exists-p (project-path (format nil "~A/" name)))
       (let ((page (page-of-source (format nil "~A/README.md" name) book)))
         (if page (page-file page) "index.html"))
@@ -99,8 +98,7 @@ first page."
 ;;; Pages of the guide.
 
 (defun linked-tokens (tokens page book)
-  "Return TOKENS, of PAGE, with addresses as they are in the manual, and names that lead to their
-entries."
+  "Return TOKENS, of PAGE, with the manual's addresses and with names linked to their entries."
   (flet ((linked-p (token) (member (tag-name token) '("pre" "code" "a") :test #'equal)))
     (loop for part in (parts-of tokens #'linked-p)
           for token = (first part)
@@ -176,8 +174,7 @@ entries."
                                out))))))
 
 (defun prose-html (text book &optional own)
-  "Return the HTML of TEXT, prose in which names are in backquotes or in capitals; OWN as for
-WORD-HTML."
+  "Return the HTML of TEXT, prose with names in backquotes or capitals; OWN as for WORD-HTML."
   (with-output-to-string (out)
     (loop for part in (uiop:split-string text :separator "`")
           for code-p = nil then (not code-p)

@@ -26,4 +26,4 @@ from what is defined in this Lisp.")
   (:import-from :ars-magna.cli
                 #:all-lines #:line-name #:line-family #:line-sentence #:line-details
                 #:line-parameters #:line-full-name #:line-action #:usage #:slot-help
-                #:manipulation-usages #:documentation-texts))
+                #:manipulation-usages #:documentation-texts #:whole-sentence))

@@ -129,25 +129,16 @@ Leave out a, an, the and my: the search ignores them.")
 
 (defun entry-row (entry)
   (make-row (entry-name entry) (chapter-title (entry-chapter entry)) (entry-address entry)
-            (entry-sentence entry)))
-
-(defun synonym-target (name rows)
-  "Return the first of ROWS called NAME, or NIL if there is none."
-  (find name rows :key #'row-name :test #'string-equal))
+            (whole-sentence (entry-text entry))))
 
 (defun synonym-rows (rows)
   "Return rows that lead from each synonym to one of ROWS."
   (loop for (name . synonyms) in *synonyms*
-        for target = (synonym-target name rows)
+        for target = (find name rows :key #'row-name :test #'string-equal)
         when target
           append (loop for synonym in synonyms
                        collect (make-row synonym (format nil "see ~A" (row-name target))
                                          (row-address target) (row-sentence target)))))
-
-(defun all-rows (book)
-  "Return the rows for the entries of BOOK and the headings of its pages."
-  (append (mapcar #'entry-row (book-entries book))
-          (mapcan #'page-rows (copy-list (book-pages book)))))
 
 (defun row-text (row)
   (format nil "[~{~A~^,~}]"
@@ -157,6 +148,7 @@ Leave out a, an, the and my: the search ignores them.")
 
 (defun write-index (out book)
   "Write the index as JavaScript. Synonyms come first: of equally good rows the first wins."
-  (let ((rows (all-rows book)))
+  (let ((rows (append (mapcar #'entry-row (book-entries book))
+                      (mapcan #'page-rows (copy-list (book-pages book))))))
     (format out "var SEARCH_INDEX = [~%~{~A~^,~%~}~%];~%"
             (mapcar #'row-text (append (synonym-rows rows) rows)))))

@@ -195,7 +195,7 @@ up on that page."
                                               (link (entry-address entry)
                                                     (escaped (entry-name entry)))
                                               (escaped (chapter-title (entry-chapter entry)))
-                                              (escaped (entry-sentence entry))))))))
+                                              (escaped (whole-sentence (entry-text entry)))))))))
 
 ;;;; The whole
 
@@ -224,8 +224,7 @@ up on that page."
       (page (chapter-file chapter) #'write-chapter chapter))))
 
 (defun write-manual (directory)
-  "Write the manual into DIRECTORY, a name, which is made if there is none. Return the path of its
-first page."
+  "Write the manual into DIRECTORY, a name, made if there is none. Return its first page's path."
   (let ((directory (uiop:ensure-directory-pathname
                     (merge-pathnames (path-called directory) (base-directory))))
         (book (let ((pages (read-guide)) (entries (all-entries)))
@@ -239,8 +238,7 @@ first page."
     (merge-pathnames "index.html" directory)))
 
 (defun main (directory)
-  "Write the manual into DIRECTORY, a name, and say where it begins, or why not. Return the status
-to exit with."
+  "Write the manual into DIRECTORY, a name; print its first page, or why not. Return the status."
   (handler-case (progn (format t "~A~%" (native-name (write-manual directory)))
                        0)
     (error (condition)

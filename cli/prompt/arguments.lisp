@@ -13,9 +13,10 @@
 Signal BAD-LINE if it means none. Parts are given by number. Without a method for TYPE, return
 DATUM.")
   (:method (type datum robot)
-    (if (part-type-p type)
-        (numbered datum (parts-of-kind robot type) (kind-words type) robot)
-        datum)))
+    (cond ((part-type-p type)
+           (numbered datum (parts-of-kind robot type) (kind-words type) robot))
+          ((by-number-p type) (designator-numbered datum robot))
+          (t datum))))
 
 (defun part-type-p (type)
   (and (find-kind-name type 'part) t))
@@ -38,12 +39,6 @@ DATUM.")
   (or (find-designator robot datum)
       (reject-line "There is no designator ~S. STATUS lists the designators." datum)))
 
-(defmethod read-argument ((type (eql :designator)) datum robot)
-  (designator-numbered datum robot))
-
-(defmethod read-argument ((type (eql :destination)) datum robot)
-  (designator-numbered datum robot))
-
 (defmethod read-argument ((type (eql :designator-type)) datum robot)
   (declare (ignore robot))
   (if (and datum (symbolp datum)) (make-keyword (symbol-name datum)) datum))
@@ -52,15 +47,13 @@ DATUM.")
   (or (member type '(:designator :destination))
       (part-type-p type)))
 
-(defun number-words (type)
-  (format nil "the number of a ~A" (if (part-type-p type) (kind-words type) "designator")))
-
 (defun type-key (type) (make-keyword (symbol-name type)))
 
 (defmethod argument-words ((type symbol))
-  (if (by-number-p (type-key type))
-      (number-words (type-key type))
-      (format nil "~A~@[, such as ~A~]" (argument-type-text type) (quantity-examples type))))
+  (let ((key (type-key type)))
+    (if (by-number-p key)
+        (format nil "the number of a ~A" (if (part-type-p key) (kind-words key) "designator"))
+        (format nil "~A~@[, such as ~A~]" (argument-type-text type) (quantity-examples type)))))
 
 (defmethod argument-words ((type (eql 'designator-type)))
   "local or non-local")
@@ -160,20 +153,15 @@ units or another datum, and where that ends."
              (line-parameters line))
        (session-robot)))
 
-(defparameter *hints-on-more*
-  '(("GO" "GO-TO x y drives to a place."))
-  "Lists (line hint): hints for lines with too many arguments.")
-
 (defun reject-rest (line text)
-  "Signal BAD-LINE as TEXT follows the arguments of LINE. If a unit could stand there, list the
-units."
+  "Signal BAD-LINE as TEXT follows the arguments of LINE; list the units if one could stand there."
   (let* ((slot (first (last (line-parameters line))))
          (dimension (and slot (dimension-of (slot-type slot)))))
     (if (and dimension (alpha-char-p (char text 0)))
         (reject-line "~A is too much: it is no unit of ~A. Known: ~{~A~^, ~}. ~A" text
                      (words-for dimension) (unit-names dimension) (takes line))
         (reject-line "~A is too much. ~A~@[ ~A~]" text (takes line)
-                     (second (assoc (line-name line) *hints-on-more* :test #'string=))))))
+                     (and (string= "GO" (line-name line)) "GO-TO x y drives to a place.")))))
 
 (defun read-arguments (line text)
   "Return the arguments that TEXT, what follows the name of LINE, holds for it."
@@ -232,8 +220,7 @@ May signal BAD-LINE, as when there is no robot.")
 ;;; Files.
 
 (defun entries-of (directory)
-  "Return the names of the files in DIRECTORY, as the system names it; directories end with a
-slash."
+  "Return the names of the files in DIRECTORY as the system has them; directories end in a slash."
   (let ((path (path-called directory)))
     (flet ((without-directory (entry)
              (let ((name (native-name entry)))

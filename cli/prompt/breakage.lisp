@@ -64,8 +64,7 @@ about first. Any thread may ask."
   (mapcar (lambda (breakage) (break-line session breakage)) (breaks-awaiting session)))
 
 (defun ways-awaited (session)
-  "Return in words the restarts that the user of SESSION can choose now, or NIL if there is no
-question. Any thread may ask."
+  "Return in words the restarts that SESSION's user can choose now, or NIL. Any thread may ask."
   (let ((breakage (first (breaks-awaiting session))))
     (and breakage
          (format nil "~{~A~^, ~}"
@@ -74,8 +73,7 @@ question. Any thread may ask."
                        collect (format nil "~D ~A" number (plain-name (restart-name restart))))))))
 
 (defun simulator-broken-p (session)
-  "True if the user of SESSION is asked about a break in the simulator's thread. Any thread may
-ask."
+  "True if SESSION's user is asked about a break in the simulator's thread. Any thread may ask."
   (some (lambda (breakage) (simulator-p session (breakage-thread breakage)))
         (breaks-awaiting session)))
 
@@ -132,8 +130,7 @@ prompt in which it started."
     (and (own-thread-p) (null *hooks-at-work*) hook (not (disabled-hook-p hook)))))
 
 (defun call-sharing (hook function)
-  "Call FUNCTION, a prompt, while HOOK is this thread's debugger hook, and one that other threads
-may share."
+  "Call FUNCTION, a prompt, with HOOK as this thread's debugger hook, which others may share."
   (with-debugger-hook (hook)
     (if (answered-elsewhere-p)
         (funcall function)
@@ -155,8 +152,7 @@ may share."
 for each line, or, without a terminal or window, reads from the original input."))
 
 (defun ask-for-answer ()
-  "Ask the user of a prompt for the line that a program reads. Return it, or NIL if the user has
-gone."
+  "Ask a prompt's user for the line that a program reads. Return it, or NIL if the user has gone."
   (restart-case (invoke-debugger (make-condition 'answer-wanted))
     (answer (&optional line)
       :report "Give it the text that follows, or is typed next."

@@ -209,9 +209,8 @@ that could not be read."
               :test #'string=)))
 
 (defun text-width (session)
-  "Return how many characters a line of running text may have for SESSION: as its window has room
-for, or 79."
-  (if (session-terminal-p session) (max 40 (min 79 (1- (size-of-window session)))) 79))
+  "Return the most characters of a line of running text for SESSION: its window's, at most 79."
+  (if (session-terminal-p session) (clamp (1- (size-of-window session)) 40 79) 79))
 
 (defun run-line (session line text)
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."

@@ -69,7 +69,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
            (list-choices stream texts)
            (setf (edited-listed stream) texts)))))
 
-(define-action (:tab) (stream)
+(define-key *actions* (:tab) (stream)
   "Complete what was begun."
   (let ((line (line-of stream)))
     (when (and *completer* (not *program-reads*))
@@ -92,9 +92,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
 
 (defun matching (typed choices)
   "Return those of CHOICES that begin with TYPED, in whatever case, as they are typed, in order."
-  (flet ((begins-p (text)
-           (and (<= (length typed) (length text))
-                (string-equal typed text :end2 (length typed)))))
+  (flet ((begins-p (text) (starts-with-subseq typed text :test #'char-equal)))
     (remove-duplicates (stable-sort (remove-if-not #'begins-p (mapcar #'text-of-choice choices))
                                     #'string<)
                        :test #'string=)))
@@ -155,13 +153,12 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
   (let ((names '()))
     (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
 
-(defun merely-read-p (symbol)
-  "True if SYMBOL has no meaning and was only typed."
-  (and (eq *package* (symbol-package symbol)) (not (defined-p symbol))))
-
 (defun symbols-here ()
+  "Return the symbols of this package, but for those that have no meaning and were only typed."
   (let ((symbols '()))
-    (do-symbols (symbol *package* (remove-if #'merely-read-p symbols)) (push symbol symbols))))
+    (do-symbols (symbol *package* symbols)
+      (when (or (defined-p symbol) (not (eq *package* (symbol-package symbol))))
+        (push symbol symbols)))))
 
 (defun symbol-choices (typed operator-p operator)
   "Return the symbols that TYPED may be the beginning of; only those of functions and the like if
@@ -206,14 +203,12 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
 ;;; Arguments.
 
 (defun unit-end (text position)
-  "Return where the unit ends that is in TEXT from POSITION on, or POSITION if there is none, or it
-is being typed."
+  "Return where the unit at POSITION in TEXT ends; POSITION if there is none or it is being typed."
   (let ((end (nth-value 1 (unit-after text position))))
     (if (and end (< end (length text))) end position)))
 
 (defun slot-end (slot text start)
-  "Return where the argument for SLOT in TEXT from START on ends, or NIL if it may continue at the
-end of TEXT."
+  "Return where the argument for SLOT at START ends, or NIL if it may continue at the end of TEXT."
   (let ((end (typecase (slot-type slot)
                (rest-type nil)
                (keyword (token-end text start))
@@ -269,10 +264,6 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
   (let ((start (1+ (or (position-if #'blank-p text :from-end t) -1))))
     (as-arguments start (matching (subseq text start) words) nil)))
 
-(defun line-meant (name)
-  "Return the line command that NAME or the alias NAME means. Signals BAD-LINE."
-  (find-line (split-line (expand-alias (format nil "~A " name)))))
-
 (defun line-completions (session text start)
   (let* ((start (or (position-if-not #'blank-p text :start start) (length text)))
          (end (if (< start (length text)) (token-end text start) start))
@@ -280,7 +271,8 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
     (cond ((starts-with-subseq "(" typed) (lisp-completions session text (length text)))
           ((= end (length text))
            (values start (matching typed (choices :command session typed)) " "))
-          (t (argument-completions session (line-meant typed) text end)))))
+          (t (let ((line (find-line (split-line (expand-alias (format nil "~A " typed))))))
+               (argument-completions session line text end))))))
 
 (defun completions-in (session text point)
   "Return where the part to complete begins in TEXT, typed in SESSION up to POINT, all its

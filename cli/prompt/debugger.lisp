@@ -14,8 +14,7 @@
 ;;; What the user says.
 
 (defun hand-order (session breakage function)
-  "Let the thread of BREAKAGE, another thread, call FUNCTION as soon as it can, with this thread's
-package and syntax."
+  "Make BREAKAGE's thread, another one, call FUNCTION soon, with this one's package and syntax."
   (flet ((call-ordered ()
            (let* ((console (session-console session))
                   (*standard-output* console)
@@ -45,20 +44,14 @@ package and syntax."
                       BACKTRACE, PLAN-TREE, QUIT, or a form in parentheses."
                      word (mapcar #'plain-name (mapcar #'restart-name restarts))))))
 
-(defun broken-calls ()
-  "Return the user's calls that led into the debugger, the newest first."
-  (let* ((calls (calls-under-way 100))
-         (start (position 'invoke-debugger calls :key #'first))
-         (user-calls (if start (nthcdr (1+ start) calls) calls)))
-    (subseq user-calls 0 (position-if (lambda (name)
-                                        (member name
-                                                '(eval-quietly call-user-code call-until-error
-                                                  call-with-care)))
-                                      user-calls :key #'first))))
-
 (defun write-backtrace ()
-  (dolist (call (broken-calls))
-    (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300)))))
+  "Write the user's calls that led into the debugger, the newest first."
+  (let* ((calls (calls-under-way 100))
+         (start (position 'invoke-debugger calls :key #'first)))
+    (loop for call in (if start (nthcdr (1+ start) calls) calls)
+          until (member (first call)
+                        '(eval-quietly call-user-code call-until-error call-with-care))
+          do (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300))))))
 
 (defun debug-line (session breakage text)
   (flet ((says-p (word) (string-equal word (split-line text))))
@@ -76,8 +69,7 @@ package and syntax."
                (choose session breakage (restart-called word breakage) rest))))))
 
 (defun choose (session breakage restart rest)
-  "Continue BREAKAGE by RESTART. If that needs a value, it is REST, the text after its name, or else
-what the user types next."
+  "Continue BREAKAGE by RESTART. A value that it needs is REST, or else what the user types next."
   (let* ((asks-p (and (asks-p restart) (not (here-p breakage))))
          (answer (cond ((not asks-p) nil)
                        ((every #'blank-p rest) (read-input session "Value> "))
@@ -100,8 +92,7 @@ what the user types next."
 ;;; How a program waits.
 
 (defun call-debugging (session breakage function)
-  "Call FUNCTION, which reads lines for BREAKAGE, of this thread. What breaks elsewhere meanwhile
-comes after that."
+  "Call FUNCTION, which reads lines for BREAKAGE, of this thread; other threads' breaks come after."
   (let* ((state (session-break-state session)) (before (shiftf (break-state-own state) breakage)))
     (unwind-protect (funcall function)
       (setf (break-state-own state) before)

@@ -93,8 +93,7 @@ if it does not within the limit, when only the waiting lets time pass."
   (remove-if #'errand-over-p (session-errands session)))
 
 (defun await-errands (session &optional (errands (session-errands session)))
-  "Wait until ERRANDS of SESSION, by default all, are done, or its run is paused and nobody can
-resume it."
+  "Wait until ERRANDS of SESSION, by default all, are done, or time stands still for good."
   (unwind-protect (mapc #'await-errand (reverse errands))
     (setf (session-errands session)
           (if (and *simulation* (held-up-p *simulation*))
@@ -113,8 +112,7 @@ resume it."
     (and (typep event 'operation) (not (grip-watched-p resource)))))
 
 (defun some-request-p (test)
-  "True if TEST, a function of a request, is true of one that waits to begin, or is carried out, in
-the current simulation."
+  "True if TEST, a function, is true of a request of the current run that waits or is carried out."
   (flet ((busy-p (resource)
            (and (at-work-p resource) (funcall test (resource-event resource)))))
     (or (some test (timeline-inbox (timeline-of *simulation*)))
@@ -122,8 +120,7 @@ the current simulation."
               (simulation-robots *simulation*)))))
 
 (defun settled-p ()
-  "True if no command except those of plans waits to begin, or is in progress, in the current
-simulation."
+  "True if no command, except those of plans, waits or is in progress in the current simulation."
   (not (some-request-p #'awaited-p)))
 
 (defun await-requests (&optional (test #'awaited-p))
@@ -171,8 +168,7 @@ of patience. True if there is none."
         (t :ok)))
 
 (defun lisp-goes-on-p (session)
-  "True if time stands still, and Lisp in the running line of SESSION has issued something that has
-not ended."
+  "True if time stands still and Lisp in the running line of SESSION has unfinished requests."
   (let ((account (session-account session)))
     (and (account-text account)
          (waits-for-resume-p session)
@@ -188,8 +184,7 @@ function that returns what HOW-ENDED does."
       (lambda () (how-ended errands lisp-p)))))
 
 (defun unended-p (session)
-  "True if something that SESSION has issued, itself or by Lisp, has not ended because time stands
-still."
+  "True if something that SESSION or its Lisp has issued has not ended because time stands still."
   (and *simulation*
        (or (errands-under-way session)
            (and (session-lisp-p session)

@@ -135,8 +135,7 @@ one whose name begins all the others. Signals BAD-LINE."
 ;;; Functions that nobody has defined.
 
 (defun advice-on-function (condition)
-  "Return a sentence of advice if CONDITION reports an undefined function; NIL for other
-conditions."
+  "Return a sentence of advice if CONDITION reports an undefined function; otherwise NIL."
   (let ((name (and (typep condition 'undefined-function) (cell-error-name condition))))
     (when (and name (symbolp name))
       (or (plan-advice name)
@@ -149,8 +148,7 @@ conditions."
 ;;; Calls.
 
 (defun check-typed-call (form)
-  "Signal BAD-LINE if FORM, as typed, calls a function with another number of arguments than it
-takes."
+  "Signal BAD-LINE if FORM, as typed, calls a function with a wrong number of arguments."
   (when (and (typep form '(cons symbol))
              (proper-list-p form)
              (fboundp (first form))

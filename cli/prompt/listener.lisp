@@ -6,7 +6,7 @@
 ;;; every one. For an error of a line, the count begins again with the next line. For code that runs
 ;;; by itself, it continues until that code changes or is in another run.
 
-(defstruct (tally (:copier nil))
+(defstruct tally
   "How often an error was reported, in CODE, a function that runs by itself, or NIL, last at TICK."
   (count 0 :type (integer 0))
   (code nil)
@@ -61,9 +61,7 @@
   (maphash (lambda (text tally)
              (let ((own (gethash text told)))
                (when (or (null own) (< (tally-count own) (tally-count tally)))
-                 (setf (gethash text told)
-                       (make-tally :count (tally-count tally) :code (tally-code tally)
-                                   :tick (tally-tick tally))))))
+                 (setf (gethash text told) (copy-tally tally)))))
            others))
 
 ;;; Plans may give more messages than anybody can read.
@@ -71,26 +69,6 @@
 (define-constant +flood+ 50
   :documentation "After this many messages from others' commands, with no line between them, a
 message says how to hide them.")
-
-(defstruct (flood (:copier nil))
-  "How many messages from others' commands were SHOWN since the last line was read; or, after too
-many, in all."
-  (shown 0 :type fixnum))
-
-(defun flood-text (flood count)
-  "Count COUNT more messages in FLOOD. Return, once, the message to show if they are too many; else
-NIL."
-  (let* ((before (flood-shown flood)) (now (+ before count)))
-    (setf (flood-shown flood) now)
-    (and (< before +flood+)
-         (<= +flood+ now)
-         (format nil "ECHO OFF hushes what comes of the commands that plans and programs ~
-                      give.~%"))))
-
-(defun begin-flood-anew (flood)
-  "Start counting again in FLOOD, unless there were too many."
-  (when (< (flood-shown flood) +flood+)
-    (setf (flood-shown flood) 0)))
 
 ;;;; Messages
 
@@ -107,7 +85,9 @@ NIL."
   (quiet-p nil :type boolean)
   ;; The counts of errors, by text, as above: any thread may report, so the lock guards them.
   (told (make-hash-table :test 'equal) :type hash-table :read-only t)
-  (flood (make-flood) :type flood :read-only t)
+  ;; How many messages from others' commands were shown since the last line was read; after too
+  ;; many, in all.
+  (others-shown 0 :type fixnum)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)
@@ -121,6 +101,19 @@ NIL."
   (account nil :type (or null account) :read-only t)
   ;; Its user is lost, but has not left it: others are asked what this user was to answer.
   (abandoned-p nil :type boolean))
+
+(defun flood-text (listener count)
+  "Count COUNT more messages from others' commands. Return, once, a message if they are too many."
+  (let ((before (listener-others-shown listener)))
+    (and (< before +flood+)
+         (<= +flood+ (incf (listener-others-shown listener) count))
+         (format nil "ECHO OFF hushes what comes of the commands that plans and programs ~
+                      give.~%"))))
+
+(defun begin-flood-anew (listener)
+  "Start counting again in LISTENER, unless there were too many."
+  (when (< (listener-others-shown listener) +flood+)
+    (setf (listener-others-shown listener) 0)))
 
 ;;; Complaints and messages.
 
@@ -142,8 +135,7 @@ NIL."
 ;;; Commands from others than the prompt, such as plans, end with the same messages.
 
 (defun left-to-program-p (message)
-  "True if MESSAGE reports the end of a command that a program has issued with a continuation, which
-may recover from an error."
+  "True if MESSAGE ends a command that has a program's continuation, which may handle errors."
   (and (message-robot message)
        (message-told-p message)
        (not (line-asker-p (message-asker message)))))
@@ -154,8 +146,7 @@ may recover from an error."
     (not (or (null asker) (equal asker +asker+)))))
 
 (defun ink-of (kind)
-  "Return the ink of messages of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, for others'
-commands."
+  "Return the ink of messages of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, others' commands."
   (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
 
 (defun message-words (message listener)
@@ -186,8 +177,7 @@ command; and with the place of its line, if it is an error or warning in a scrip
         (write-fitted console "~A" text))))
 
 (defun count-error (listener message)
-  "Count the error MESSAGE in LISTENER: for its own line, if that is an earlier one, and not for the
-running line."
+  "Count the error MESSAGE in LISTENER: for the line that caused it, if that is an earlier one."
   (let ((account (listener-account listener)))
     (incf (listener-errors listener))
     (when (and account (not (eql (line-of-message account message) (line-under-way account))))
@@ -214,8 +204,7 @@ running line."
   (remove nil (append (loop for message in messages
                             collect (repetition-text message (listener-told listener)))
                       (and (listener-terminal-p listener)
-                           (list (flood-text (listener-flood listener)
-                                             (count-if #'others-p messages)))))))
+                           (list (flood-text listener (count-if #'others-p messages)))))))
 
 (defun tell-messages (listener messages)
   (with-lock ((listener-lock listener))

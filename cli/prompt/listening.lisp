@@ -267,4 +267,4 @@ show messages from there. Do nothing if it does so already. Any thread may ask."
         (tell-of-run session simulation name)
         (go-to-run simulation)
         (setf *prompt-robot* name)
-        (call-by-name (mapcar #'robot-name (simulation-robots simulation)))))))
+        (call-by-name (robots-here))))))

@@ -14,8 +14,7 @@
   (or (existing-file name) (reject-line "There is no file ~A." name)))
 
 (defun foreign-text (path)
-  "Return a sentence that says what is in the file PATH, and what reads it, if that is neither Lisp
-nor lines; or NIL."
+  "Return a sentence on what is in the file PATH and what reads it, or NIL if it is Lisp or lines."
   (let ((advice (file-advice path :lisp)))
     (and advice (format nil "~A: ~A." (native-name path) advice))))
 

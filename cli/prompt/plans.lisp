@@ -221,8 +221,7 @@ answer to the last check."
     (when (live-p *simulation*) (start-watching-plan errand))))
 
 (defun take-up-plans (session)
-  "Let SESSION, whose plans belong to a run that was rewound, wait for those that have replaced
-them."
+  "Make SESSION wait for the plans that have replaced its own, whose run was rewound."
   (flet ((let-go-p (errand) (and (plan-errand-p errand) (plan-errand-let-go-p errand))))
     (mapc #'close-errand (remove-if-not #'let-go-p (session-errands session)))
     (setf (session-errands session) (remove-if #'let-go-p (session-errands session))))

@@ -101,8 +101,7 @@ waits, since time stands still."
     (tell-of-unended session)))
 
 (defun tell-of-unended (session)
-  "Report if something that SESSION, without a terminal or window, has requested has not ended
-because time stands still."
+  "Report if SESSION, without a user, has requested something that waits since time stands still."
   (when (and (unended-p session) (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
     (complain session (format nil "Time stands still, so not all that was asked for has ended. ~
                                    RESUME lets it go on."))
@@ -156,25 +155,18 @@ unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual
 
 ;;; Each has a thread, a robot and a current simulation of its own.
 
-(defun call-apart (simulation robot-name function)
-  "Call FUNCTION, in whose thread a prompt commands the robot ROBOT-NAME of SIMULATION,
-independently of other prompts."
+(defun run-session-apart (session simulation robot-name)
+  "Read lines of SESSION and run them for the robot ROBOT-NAME of SIMULATION, in this thread, beside
+other sessions, until QUIT or the end of its input. Return SESSION."
   (let ((*session* nil)
         (*prompt-robot* robot-name)
         (*simulation* simulation)
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
         (*forks-to-keep* t))
-    (handler-case (funcall function)
+    (handler-case (call-typing (lambda () (run-session session)) (session-input session))
       ;; A message that came before the session was ready for it, or after.
-      (user-interrupt () nil))))
-
-(defun run-session-apart (session simulation robot-name)
-  "Read lines of SESSION and run them for the robot ROBOT-NAME of SIMULATION, in this thread, beside
-other sessions, until QUIT or the end of its input. Return SESSION."
-  (call-apart simulation robot-name
-              (lambda ()
-                (call-typing (lambda () (run-session session)) (session-input session))))
+      (user-interrupt () nil)))
   session)
 
 ;;; What other users than those who type do to it.
@@ -186,8 +178,7 @@ is lost is not ended: others are asked, as soon as the session is over."
     (heed-interrupt)))
 
 (defun interrupt-session (session)
-  "Act as Control-C in SESSION, from another thread: clear the line being typed, or end the running
-one."
+  "Act as Control-C in SESSION, from another thread: clear the typed line or end the running one."
   (cond ((being-typed-p (session-input session)) (press-key (session-input session) :control-c))
         ((session-thread session)
          (interrupt-thread (session-thread session) #'heed-in-session)))

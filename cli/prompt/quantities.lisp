@@ -92,8 +92,7 @@
 ;;; As the next word.
 
 (defun unit-after (text position)
-  "Return the unit, a list, in TEXT from POSITION on, after blanks, and where it ends; NIL if there
-is none."
+  "Return the unit, a list, that follows POSITION in TEXT after blanks, and where it ends; or NIL."
   (let* ((start (or (position-if-not #'blank-p text :start position) (length text)))
          (end (word-end text start))
          (unit (find-unit (subseq text start end))))

@@ -63,7 +63,7 @@ those."
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console)))
         (count-anew (session-told session))
-        (begin-flood-anew (session-flood session)))
+        (begin-flood-anew session))
       line)))
 
 ;;; Forms that cannot be read.

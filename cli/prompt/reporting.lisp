@@ -28,8 +28,7 @@ of the faulty line in a running form, or NIL if that is not known."
   (and *simulation* (simulation-tick *simulation*)))
 
 (defun report-object (account type &rest properties)
-  "Write an object of TYPE, a string, with PROPERTIES, a property list, if ACCOUNT reports objects.
-True if it does."
+  "Write an object of TYPE, a string, with the plist PROPERTIES, and return T, if ACCOUNT reports."
   (when (reports-p account)
     (with-console (stream (account-console account))
       (write-object (list* :type type properties) stream))
@@ -165,8 +164,7 @@ of a line that is not Lisp."
   (when account (push (cons (asker-note plan) (line-under-way account)) (account-plans account))))
 
 (defun line-of-message (account message)
-  "Return the number of the line of ACCOUNT, or NIL, that has caused MESSAGE; the running line if
-that is not known."
+  "Return the number of the line that caused MESSAGE, or of the running one; ACCOUNT may be NIL."
   (when account
     (let* ((asker (message-asker message))
            (plan (assoc asker (account-plans account) :test #'equal)))

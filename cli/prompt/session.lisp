@@ -181,8 +181,7 @@ or NIL. Where Lisp at the prompt runs a simulation of its own, that has perhaps 
   (find *prompt-robot* (simulation-robots *simulation*) :key #'robot-name))
 
 (defun session-robot ()
-  "Return the robot that the prompt commands. Signals BAD-LINE when there is none, or its run is
-over."
+  "Return the robot that the prompt commands. Signals BAD-LINE if there is none or its run is over."
   (check-run)
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (or (and robots (robot-commanded))
@@ -198,6 +197,5 @@ over."
        (typep (source-of (session-input session)) '(or descriptor-stream handed-octets))))
 
 (defun display-wanted-p (session)
-  "True if a robot that starts for SESSION is to have a window. Where none is to be had, only
-DISPLAY says so."
+  "True if a robot that starts for SESSION gets a window. If windows fail, only DISPLAY says so."
   (and (session-terminal-p session) *display-opener* t))

@@ -61,8 +61,7 @@
         (t "paused")))
 
 (defun pace-of-visit (visit)
-  "Return how time passes in VISIT: :RUNNING, :PAUSED or :ENDED; and at what rate, or NIL where it
-has none."
+  "Return how time passes in VISIT: :RUNNING, :PAUSED or :ENDED; and at what rate, or NIL."
   (cond ((visit-result visit) :ended)
         ((plusp (visit-steps visit)) :running)
         ((visit-running-p visit) (values :running (visit-rate visit)))
@@ -77,8 +76,7 @@ has none."
 ;;; unwinds it; nothing else needs to be ended.
 
 (defun leave-visit (session &optional (next #'values))
-  "Leave the trial of SESSION; then call NEXT, a function. Messages of the trial on this are not
-shown."
+  "Leave the trial of SESSION; then call NEXT. The trial's messages on this are not shown."
   (setf (visit-left-p (session-visit session)) t)
   (stop-listening session)
   (throw 'left-visit next))
@@ -124,7 +122,7 @@ shown."
 (defun begin-visit (session visit)
   "Let users call robots by their names, and see them if there can be a window."
   (unless (shiftf (visit-begun-p visit) t)
-    (call-by-name (mapcar #'robot-name (simulation-robots *simulation*)))
+    (call-by-name (robots-here))
     (when (display-wanted-p session)
       (announce-display (session-robot) '()))))
 

@@ -52,15 +52,13 @@
 ;;; Others come from files: Lisp files that define a map and at least one robot in it.
 
 (defun package-of-caller ()
-  "Return the package of a prompt that is opened from here: the current one, unless it does not use
-the simulator's."
+  "Return the package for a prompt opened here: the current one if it uses the simulator's."
   (if (eq 'simulator (find-symbol (string 'simulator) *package*))
       *package*
       (user-package)))
 
 (defun call-with-syntax (float-format function &optional (package (user-package)))
-  "Call FUNCTION with PACKAGE and the syntax for users; numbers with a point are floats of
-FLOAT-FORMAT."
+  "Call FUNCTION with PACKAGE and the syntax for users; numbers with a point are of FLOAT-FORMAT."
   (let ((*package* package)
         (*readtable* *readtable*)
         (*read-default-float-format* float-format))
@@ -78,8 +76,7 @@ otherwise. Signals BAD-LINE if it is something else."
                     (lambda () (call-quietly (lambda () (load-forms path))))))
 
 (defun blueprints-defined-by (function)
-  "Call FUNCTION. Return the blueprints that it defines and that are still defined at its end, in
-order."
+  "Call FUNCTION. Return, in order, the blueprints that it defined and that are still defined."
   (let* ((defined '())
          (*definition-listener* (lambda (object) (push object defined))))
     (funcall function)

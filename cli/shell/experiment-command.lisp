@@ -114,8 +114,7 @@ UNDER-WAY says which trial took long, or is NIL."
         (say "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
 
 (defun call-stoppable (function command arguments options)
-  "Call FUNCTION, which runs COMMAND with ARGUMENTS, and return its exit status, or that of an
-interruption."
+  "Call FUNCTION, which runs COMMAND with ARGUMENTS. Return its exit status, or 130 if interrupted."
   (let ((under-way nil))
     (flet ((look (condition)
              (declare (ignore condition))

@@ -18,8 +18,7 @@ none, those of the files that it loads."
       experiments))
 
 (defun load-experiments (path)
-  "Load the Lisp file at PATH. Return the experiments that it defines. Signals BAD-LINE if there are
-none."
+  "Load the Lisp file at PATH. Return the experiments that it defines. Signals BAD-LINE if none."
   ;; Output of the file goes to the error output.
   (let ((before (all-experiments)) (*standard-output* *error-output*))
     (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
@@ -45,8 +44,7 @@ none."
       (first experiments)))
 
 (defun experiments-called (word)
-  "Return the experiments that WORD means: those of a file, which is loaded, or one by its name.
-Signals BAD-LINE."
+  "Return the experiments in the file WORD, which is loaded, or of that name. Signals BAD-LINE."
   (let* ((path (path-called word))
          (known (experiment-among word (all-experiments)))
          (file (or (and (pathname-name path) (existing-path path))

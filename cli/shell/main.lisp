@@ -186,8 +186,7 @@ E. A batch with plans to run does not wait for lines."
            (and (not (option-p argument)) (script-path argument)))))
 
 (defun script-last-p (arguments)
-  "True if the last of ARGUMENTS, of which the first is an option, is a script, and not an option's
-value."
+  "True if ARGUMENTS begin with an option and end with a script that is no option's value."
   (and (option-p (or (first arguments) ""))
        (script-p (first (last arguments)))
        (ignore-errors (parse-options (butlast arguments)) t)))

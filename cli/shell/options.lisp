@@ -57,8 +57,7 @@ value that is empty counts as none.")
         (values argument nil))))
 
 (defun value-that-follows (option arguments table)
-  "Return the value of OPTION, an element of TABLE, from ARGUMENTS, which follow it, and the
-remaining ones."
+  "Return the value of OPTION, an element of TABLE, from ARGUMENTS after it, and those that remain."
   (destructuring-bind (name key parser &optional optional) option
     (declare (ignore key))
     (cond ((null parser) (values nil arguments))

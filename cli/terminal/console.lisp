@@ -54,8 +54,7 @@ HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest firs
   "True in the thread that ends this process, when no output is needed any more.")
 
 (defun try-to-write (function console)
-  "Call FUNCTION with the stream below CONSOLE, unless that has failed before. True if it fails
-now."
+  "Call FUNCTION with the stream below CONSOLE unless that has failed before. True if it fails now."
   (with-lock ((console-lock console))
     (unless (console-trouble console)
       (handler-case (progn (funcall function (console-stream console)) nil)

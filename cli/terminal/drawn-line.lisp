@@ -22,17 +22,10 @@ not on the screen" :writable :export)
 
 ;;; Rows.
 
-(defun shown-char (char)
-  (cond ((char= char #\Newline) (string char))
-        ((char= char #\Tab) " ")
-        ((obeyed-p char) (if (< (char-code char) 32)
-                             (format nil "^~C" (code-char (+ 64 (char-code char))))
-                             "?"))
-        (t (string char))))
-
 (defun shown-chars (label text)
   "Return a list of the text to show for each character of LABEL, unchanged, and of TEXT."
-  (append (map 'list #'string label) (map 'list #'shown-char text)))
+  (append (map 'list #'string label)
+          (map 'list (lambda (char) (visible (substitute #\Space #\Tab (string char)))) text)))
 
 (defun rows-of (label text point columns)
   "Return LABEL and TEXT as a list of rows of COLUMNS, each a list of a string and of what ends it:
@@ -69,8 +62,7 @@ not on the screen" :writable :export)
     (values (subseq rows start (min (length rows) (+ start height))) start)))
 
 (defun rows-to-show (label text point columns height)
-  "Return the rows of a line in a window of COLUMNS and HEIGHT, and the row and column of the
-cursor."
+  "Return the rows of a line in a window of COLUMNS and HEIGHT, and the cursor's row and column."
   (multiple-value-bind (rows row column) (rows-of label text point columns)
     (multiple-value-bind (rows start) (window-on rows row height)
       (values rows (- row start) column))))
@@ -86,8 +78,7 @@ cursor."
            (when (and more (or how (string= "" (first (first more))))) (terpri stream))))
 
 (defun draw-line (line stream columns height)
-  "Draw LINE from the cursor on, which is at the beginning of a row, in a window of COLUMNS and
-HEIGHT."
+  "Draw LINE at the cursor, which is in the first column, in a window of COLUMNS and HEIGHT."
   (with-accessors ((label drawn-line-label) (text drawn-line-text) (point drawn-line-point)) line
     (multiple-value-bind (rows row column) (rows-to-show label text point columns height)
       (write-rows rows stream)

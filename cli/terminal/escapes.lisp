@@ -30,8 +30,7 @@
   (or (uiop:split-string text :separator '(#\Newline)) (list "")))
 
 (defun paint (text ink)
-  "Return TEXT as a terminal shows it in INK, the name of a colour, line by line; TEXT itself if INK
-is no ink."
+  "Return TEXT as a terminal shows it in INK, a colour's name, line by line; TEXT if INK is no ink."
   (let ((code (and ink (string/= text "") (ink-code ink))))
     (flet ((paint-line (line)
              (if (string= line "") line (uiop:strcat (escape "~Am" code) line (escape "0m")))))
@@ -186,8 +185,7 @@ Further lines are indented like LINE."
         (list line))))
 
 (defun broken-text (text columns &optional (used 0))
-  "Return TEXT with its lines broken to at most COLUMNS, if blanks allow it. Its first line begins
-after USED columns."
+  "Return TEXT with its lines broken at blanks to COLUMNS; its first begins after USED columns."
   (loop with lines = (uiop:split-string text :separator '(#\Newline))
         for line in lines
         for first = (- columns used) then columns

@@ -187,8 +187,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
         (handed-start stream) 0))
 
 (defun revise-octets (stream function)
-  "Replace the octets left in STREAM, a string, by what FUNCTION returns for them. No other thread
-reads meanwhile."
+  "Replace the unread octets of STREAM, a string, by what FUNCTION returns for them, undisturbed."
   (with-lock ((handed-lock stream))
     (leave-octets stream (funcall function (handed-left stream))))
   (signal-semaphore (handed-ready stream))

@@ -7,10 +7,6 @@
 ;;; becomes an array; T, :FALSE and NIL become true, false and null; other symbols become strings in
 ;;; lower case.
 
-(defun write-json-number (number stream)
-  (let ((*read-default-float-format* 'double-float))
-    (prin1 (if (integerp number) number (double number)) stream)))
-
 (defun write-json-elements (elements open close stream writer)
   (write-char open stream)
   (loop for (element . more) on elements
@@ -29,7 +25,8 @@
       (null (write-string "null" stream))
       ((eql t) (write-string "true" stream))
       ((eql :false) (write-string "false" stream))
-      (real (write-json-number value stream))
+      (integer (prin1 value stream))
+      (real (let ((*read-default-float-format* 'double-float)) (prin1 (double value) stream)))
       (string (write-json-string value stream))
       (symbol (write-json-string (string-downcase value) stream))
       (vector (write-json-elements (coerce value 'list) #\[ #\] stream

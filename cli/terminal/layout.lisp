@@ -139,6 +139,11 @@ has a line of its own if it is too long."
                       return i)))
     (subseq text 0 end)))
 
+(defun whole-sentence (text)
+  "Return TEXT up to its first full stop, on one line."
+  (let* ((text (one-line text)) (end (search ". " text)))
+    (if end (subseq text 0 (1+ end)) text)))
+
 ;;; A live world is read between two ticks.
 
 (defun call-still (function)

@@ -52,8 +52,7 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
   (setf (progress-line-width progress) (length text)))
 
 (defun note-progress (progress control &rest arguments)
-  "Show in the line of PROGRESS, unless that is NIL, CONTROL formatted with ARGUMENTS, if it is time
-to."
+  "Show CONTROL formatted with ARGUMENTS in the line of PROGRESS, unless NIL, if it is time to."
   (when (and progress (>= (seconds-now) (progress-line-due progress)))
     (setf (progress-line-due progress) (+ (seconds-now) 0.2d0))
     (write-over progress (apply #'format nil control arguments))))

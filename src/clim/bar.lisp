@@ -7,20 +7,21 @@
 
 (defstruct (button (:constructor make-button (label key command help &optional lit-p))
                    (:copier nil))
-  "A button. A click on LABEL, or the character KEY, calls COMMAND, a function of no arguments; HELP
-describes that. LABEL may be a function of the window; LIT-P, a function of it, says whether the
-button is on."
+  "A button. A click on LABEL, or the character KEY if not NIL, calls COMMAND, a function of no
+arguments; HELP describes that. LIT-P says whether the button is on. In the tool bar, LABEL may be a
+function of the window, and LIT-P is one or NIL."
   (label "" :read-only t)
-  (key #\Space :type character :read-only t)
-  (command nil :type symbol :read-only t)
+  (key nil :type (or null character) :read-only t)
+  (command nil :type (or symbol function) :read-only t)
   (help "" :type string :read-only t)
-  (lit-p (constantly nil) :read-only t))
+  (lit-p nil :read-only t))
 
 (defun key-text (key)
   (if (char= key #\Space) "space" (string key)))
 
 (defmethod subject-title ((button button))
-  (format nil "~A (key: ~A)" (button-help button) (key-text (button-key button))))
+  (let ((key (button-key button)))
+    (format nil "~A~@[ (key: ~A)~]" (button-help button) (and key (key-text key)))))
 
 (defun pause-label (window)
   (if (paused-here-p (window-simulation window)) "Resume" "Pause"))
@@ -51,8 +52,9 @@ button is on."
   (let ((window (window-of pane)))
     (loop for button in *buttons*
           for label = (button-label button)
+          for lit-p = (button-lit-p button)
           collect (list (if (stringp label) label (funcall label window))
-                        (and (funcall (button-lit-p button) window) t)))))
+                        (and lit-p (funcall lit-p window) t)))))
 
 (defmethod paint ((pane bar-pane))
   (painting (canvas pane)

@@ -37,8 +37,7 @@
   (* (canvas-magnification canvas) (max 1 (gcontext-line-width gcontext))))
 
 (defun dashes (canvas gcontext)
-  "Return the lengths of the dashes and gaps of GCONTEXT on CANVAS, a list, in pixels of the screen;
-NIL if its lines are solid."
+  "Return a list of the lengths of GCONTEXT's dashes and gaps in screen pixels; NIL if solid."
   (let ((dashes (gcontext-dashes gcontext)))
     (unless (eq :solid (gcontext-line-style gcontext))
       (loop for length in (if (listp dashes) dashes (list dashes dashes))

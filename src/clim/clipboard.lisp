@@ -114,8 +114,7 @@ start) of texts that go in pieces: START is where the next piece begins."
   (xlib:change-property window property (list (length (held-octets held))) :incr 32))
 
 (defun hand-next-piece (held window property)
-  "Hand over the next piece in PROPERTY of WINDOW, if one is awaited there; an empty one at the
-end."
+  "Put the next piece into PROPERTY of WINDOW if one is awaited there; an empty one at the end."
   (let ((transfer (find-if (lambda (transfer)
                              (and (xlib:window-equal window (first transfer))
                                   (eq property (second transfer))))

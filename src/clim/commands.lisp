@@ -3,8 +3,7 @@
 (in-package :ars-magna.clim)
 
 (defmacro define-window-command ((name title) (window) &body body)
-  "Define NAME, a function without arguments, as the action of the menu entry TITLE. Errors in BODY
-are shown in the window."
+  "Define NAME, a function, as the action of the menu entry TITLE. The window shows errors in BODY."
   `(defun ,name ()
      (let ((,window clim:*application-frame*))
        (with-guarded-command (,window ,title) ,@body))))
@@ -74,7 +73,7 @@ are shown in the window."
   (let-rate-be window :free))
 
 (define-window-command (com-interrupt "Interrupt") (window)
-  (interrupt-conversation (window-conversation window)))
+  (ars-magna.cli:interrupt-session (window-session window)))
 
 (define-window-command (com-copy "Copy") (window)
   (copy-text window))
@@ -121,8 +120,7 @@ are shown in the window."
   (switch-color window))
 
 (defun button-left (window command)
-  "Return where the button that does COMMAND begins in the bar of WINDOW; near its left edge if none
-does."
+  "Return where the button that does COMMAND begins in the bar of WINDOW, or 8 pixels if none does."
   (loop for (subject left) in (pane-subjects (pane-named window 'bar))
         when (and (button-p subject) (eq command (button-command subject))) return (floor left)
         finally (return 8)))

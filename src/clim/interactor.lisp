@@ -53,7 +53,9 @@
          (shown (line-shown conversation))
          (busy (busy-with conversation)))
     (cond (shown (append shown (row-above conversation (second shown))))
-          (busy (multiple-value-bind (count text point) (waiting-in conversation)
+          (busy (multiple-value-bind (count text point)
+                    (ars-magna.cli:typed-ahead
+                     (ars-magna.cli:session-input (conversation-session conversation)))
                   (list (waiting-label count) text point
                         (line-text "At work on ~A" busy) :red))))))
 
@@ -157,7 +159,7 @@
 (defun take-key (window key)
   "Pass KEY to the prompt of WINDOW. Control-C ends the running line, too."
   (if (eq key :control-c)
-      (interrupt-conversation (window-conversation window))
+      (ars-magna.cli:interrupt-session (window-session window))
       (give-key (window-conversation window) key)))
 
 (defun press-in-window (window event)
@@ -191,16 +193,10 @@
       (when before (request-refresh before))
       (request-refresh window))))
 
-(defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:keyboard-event))
-  (give-keys-by port event))
-
-(defmethod clim:distribute-event :before ((port clim:basic-port)
-                                          (event clim:pointer-button-press-event))
-  (give-keys-by port event))
-
-(defmethod clim:distribute-event :before ((port clim:basic-port)
-                                          (event clime:window-manager-focus-event))
-  (give-keys-by port event))
+(defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:event))
+  (when (typep event '(or clim:keyboard-event clim:pointer-button-press-event
+                       clime:window-manager-focus-event))
+    (give-keys-by port event)))
 
 (defmethod clim:handle-event :around ((sheet clime:top-level-sheet-mixin)
                                       (event clime:window-manager-focus-event))

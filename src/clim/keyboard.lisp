@@ -35,8 +35,7 @@
     (:down (values 0 +arrow-step+))))
 
 (defun do-key (window key-name character)
-  "Do what the key called KEY-NAME, which types CHARACTER or NIL, does in WINDOW. True if it does
-anything."
+  "Do in WINDOW what the key KEY-NAME, which types CHARACTER or NIL, does. True if anything."
   (let ((button (and character (find character *buttons* :key #'button-key)))
         (shown (line-shown (window-conversation window))))
     (multiple-value-bind (dx dy) (arrow key-name)
@@ -112,8 +111,7 @@ own. SYMBOL-AT is a function from the place of a symbol in X's list for the key.
   "That function itself, as it was.")
 
 (defun read-key (port kind code state)
-  "Return character, modifiers and name of the key CODE that was pressed or released, by KIND, in
-STATE."
+  "Return character, modifiers and name of the key CODE, pressed or released (KIND) in STATE."
   (let* ((display (clim-clx:clx-port-display port))
          (symbol (altgr-symbol (lambda (index)
                                  ;; The list may be shorter.

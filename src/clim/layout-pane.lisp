@@ -49,8 +49,7 @@
 ;;; arrangement or what is shown, or when another display needs the room.
 
 (defun needs-now (layout)
-  "Return the wanted height in pixels of each open section in the column of LAYOUT, as (section
-pixels)."
+  "Return lists (section pixels): the wanted height of each open section in LAYOUT's column."
   (let* ((window (clim:pane-frame layout)) (wishes (pane-wishes layout))
          (width (pane-size layout)) (column (details-width wishes width)))
     (loop for section in (column-sections wishes width)
@@ -233,8 +232,7 @@ pixels wide.")
 (defun foldable-p (section) (and (member section +sections+) t))
 
 (defun world-title (window)
-  "Return the map that WINDOW shows, the robot if there are several, and whether that is a fork or
-trial."
+  "Return the map that WINDOW shows, the robot if there are several, and if it is a fork or trial."
   (let ((map (and (window-snapshot window) (window-map window)))
         (simulation (window-simulation window)))
     (format nil "World~@[: ~(~A~)~]~@[, ~A~]~@[, ~A of ~D robots~]" (and map (map-name map))

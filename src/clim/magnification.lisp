@@ -48,11 +48,6 @@ pixels.")
     (values (floor (clim:pointer-event-x event) magnification)
             (floor (clim:pointer-event-y event) magnification))))
 
-(defun call-magnified (function medium magnification)
-  "Call FUNCTION, which paints on MEDIUM in pixels that are each MAGNIFICATION screen pixels wide."
-  (clim:with-scaling (medium magnification)
-    (funcall function)))
-
 ;;; How many that is.
 
 (defun graft-size (graft)

@@ -151,8 +151,7 @@ and NIL for a gap."
     (scroll-to popup (clamp offset (- (+ top 6 +row-height+) height) top))))
 
 (defun point-further (popup step)
-  "Point at the row of POPUP that is STEP further than the present one, or at the first or last.
-True if there is one."
+  "Point at the row of POPUP STEP further, or at the first or last. True if there is one."
   (let* ((rows (remove nil (pane-rows popup) :key #'row-action))
          (place (position (pane-pointed popup) rows))
          (row (nth (cond (place (mod (+ place step) (length rows)))

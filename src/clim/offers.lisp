@@ -29,8 +29,7 @@ LINE for that and ARGUMENTS."
 ;;; Looking into.
 
 (defun looking-into (form)
-  "Return the offers to look into the value of FORM, a string, also in the editor that is connected,
-if there is one."
+  "Return the offers to inspect the value of FORM, a string, also in a connected editor."
   (cons (list "All that Lisp has of it" (format nil "(describe ~A)" form))
         (and (editor-server)
              (list (list "Inspect in the editor" (format nil "(inspect-in-editor ~A)" form))))))
@@ -74,8 +73,7 @@ if there is one."
           collect (camera-image-index camera)))
 
 (defun denoted-offers (numbers window)
-  "Return what can be done with what the designators with NUMBERS denote: which cameras could track
-it that do not yet."
+  "Return the offers to track, with each camera that does not yet, the designators with NUMBERS."
   (loop for number in numbers
         append (loop for camera in (robot-image-cameras (window-robot window))
                      for index = (camera-image-index camera)
@@ -129,8 +127,7 @@ if the robot itself holds it (HELD-P)."
                            "Put hand ~D with it into storage bin ~D"))))
 
 (defun held-offers (image window)
-  "Return what can be done with the thing of IMAGE if the robot of WINDOW holds it, or has it in a
-bin."
+  "Return the offers for the thing of IMAGE if the robot of WINDOW holds it or has it in a bin."
   (let* ((robot (window-robot window))
          (hand (hand-with image window))
          (bin (find-if (lambda (bin) (member image (bin-image-contents bin) :test #'same-subject-p))

@@ -177,8 +177,7 @@ prompt in that case, or another of the same run if another window shows that one
                      (shown-robot window) reason))))
 
 (defun leave-run (window reason)
-  "Let WINDOW, whose run is over for REASON, show another run, or else close if other windows show
-all its robots."
+  "Make WINDOW, whose run is over for REASON, show another; close it if other windows show all."
   (multiple-value-bind (name simulation) (robot-to-show window)
     (cond (name
            (show-robot-called window name simulation)

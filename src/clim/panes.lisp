@@ -27,8 +27,7 @@
     (pane-buffer pane)))
 
 (defun call-in-buffer (function pane width height)
-  "Call FUNCTION, which paints PANE, of WIDTH times HEIGHT screen pixels; then show all of that at
-once."
+  "Call FUNCTION, which paints PANE, WIDTH x HEIGHT screen pixels large; then show that at once."
   (let ((buffer (buffer-of pane width height)) (medium (clim:sheet-medium pane)))
     (setf (clim:medium-drawable medium) buffer)
     (unwind-protect (funcall function)
@@ -39,7 +38,7 @@ once."
 (defun call-buffered (function pane)
   "Call FUNCTION, which paints PANE; nothing of that is visible before it returns."
   (multiple-value-bind (width height) (size-on-screen pane)
-    (flet ((paint () (call-magnified function pane (magnification pane))))
+    (flet ((paint () (clim:with-scaling (pane (magnification pane)) (funcall function))))
       (cond ((not (and (plusp width) (plusp height))))
             ((clim:sheet-direct-mirror pane) (call-in-buffer #'paint pane width height))
             (t (clim:with-output-buffered (pane) (paint)))))))

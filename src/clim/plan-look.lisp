@@ -43,8 +43,7 @@ in words how the last plan ended."
          t)))
 
 (defun plans-mark (look interface)
-  "Return a value that is EQUAL to the last one if LOOK, at the plans of INTERFACE, would show the
-same."
+  "Return a value that is EQUAL to the last if LOOK would show the same of the plans of INTERFACE."
   (let ((runner (and interface (interface-runner interface)))
         (timeline-p (eq :timeline (plan-look-view look))))
     (list (plan-look-simulation look) interface (plan-look-view look) (plan-look-folded look)
@@ -109,8 +108,7 @@ reactions. Return its value, or :BUSY."
       t)))
 
 (defun look-at-plans (look)
-  "Look at the plans again if they have progressed and are displayed. True if something has
-changed."
+  "Look at the plans again if they are displayed and have progressed. True if something changed."
   (when (and (funcall (plan-look-shown-p look))
              (plan-look-simulation look)
              (>= (seconds-now) (plan-look-due look)))
@@ -152,8 +150,7 @@ changed."
                (cut (one-line (failure-text (task-result task))) 300))))
 
 (defun note-ending (task)
-  "Tell the windows that show the plans with TASK how it ended. Return NIL: its failure is reported
-elsewhere."
+  "Tell the windows that show TASK how it ended. Return NIL: its failure is reported elsewhere."
   (let ((interface (runner-client (task-runner task))))
     (when (and *plan-looks* (interface-p interface))
       (dolist (look (with-lock (*plan-looks-lock*) (copy-list *plan-looks*)))

@@ -2,26 +2,17 @@
 
 (in-package :ars-magna.clim)
 
-;;; It paints what the watcher's look at the plans has (plan-look.lisp). A row of switches stays on
+;;; It paints what the watcher's look at the plans has (plan-look.lisp). A row of buttons stays on
 ;;; top; below it the picture scrolls.
 
-(defconstant +plan-head+ 23 "How high the row of switches is, in pixels.")
+(defconstant +plan-head+ 23 "How high the row of buttons is, in pixels.")
 
 (defclass plan-pane (display-pane) ()
   (:documentation "The pane that shows the plans of the run."))
 
 (defun plan-look-of (pane) (watcher-plans (window-watcher (window-of pane))))
 
-;;; Switches.
-
-(defstruct (switch (:constructor make-switch (label help action &optional lit-p)) (:copier nil))
-  "A switch: a click on LABEL calls ACTION, a function; HELP describes that."
-  (label "" :type string :read-only t)
-  (help "" :type string :read-only t)
-  (action nil :type function :read-only t)
-  (lit-p nil :read-only t))
-
-(defmethod subject-title ((switch switch)) (switch-help switch))
+;;; Its buttons have no keys.
 
 (defun look-again (pane)
   "Request a look at the plans soon, as PANE is to show something else of them."
@@ -41,44 +32,43 @@
               (cons serial (plan-look-folded look))))
     (look-again pane)))
 
-(defun line-switch (pane label line help &optional lit-p)
-  "Return a switch called LABEL that gives LINE to the prompt of the window of PANE."
-  (make-switch label help
-               (lambda () (give-line (window-conversation (window-of pane)) line))
+(defun line-button (pane label line help &optional lit-p)
+  "Return a button called LABEL that gives LINE to the prompt of the window of PANE."
+  (make-button label nil (lambda () (give-line (window-conversation (window-of pane)) line)) help
                lit-p))
 
-(defun plan-switches (pane)
+(defun plan-buttons (pane)
   (let* ((look (plan-look-of pane))
          (view (plan-look-view look))
          (traced-p (plan-look-traced-p look)))
-    (list (make-switch "Tree" "Show what the tasks of the plans do and wait for"
-                       (lambda () (show-plans-as pane :tree)) (eq view :tree))
-          (make-switch "Timeline" "Show what the tasks have done, over ticks"
-                       (lambda () (show-plans-as pane :timeline)) (eq view :timeline))
-          (line-switch pane "Trace" (format nil "trace-plans ~:[on~;off~]" traced-p)
+    (list (make-button "Tree" nil (lambda () (show-plans-as pane :tree))
+                       "Show what the tasks of the plans do and wait for" (eq view :tree))
+          (make-button "Timeline" nil (lambda () (show-plans-as pane :timeline))
+                       "Show what the tasks have done, over ticks" (eq view :timeline))
+          (line-button pane "Trace" (format nil "trace-plans ~:[on~;off~]" traced-p)
                        (format nil "~:[Keep a trace of what plans do, for the timeline and for ~
                                     WHY~;A trace of plans is kept; click to forget it~]"
                                traced-p)
                        traced-p))))
 
-(defun draw-switch (canvas switch x y)
-  (let ((label (switch-label switch)))
-    (draw-button canvas switch label (switch-lit-p switch) x y
+(defun draw-plan-button (canvas button x y)
+  (let ((label (button-label button)))
+    (draw-button canvas button label (button-lit-p button) x y
                  (+ 10 (* +character-width+ (length label))) 17)))
 
 (defun draw-plan-head (canvas pane)
   (let ((x 4) (robot (plan-look-robot (plan-look-of pane))))
-    (dolist (switch (plan-switches pane)) (setf x (+ 5 (draw-switch canvas switch x 3))))
+    (dolist (button (plan-buttons pane)) (setf x (+ 5 (draw-plan-button canvas button x 3))))
     (when robot
       (draw-glyphs canvas draw-gcontext* (+ x 4) 15 (format nil "of ~(~A~)" robot)))))
 
 ;;; If there is nothing to show, it says how to change that.
 
 (defun say-lines (canvas y &rest lines)
-  "Write LINES from Y down: strings, and switches. Return where they end."
+  "Write LINES from Y down: strings, and buttons. Return where they end."
   (dolist (line lines y)
     (cond ((null line))
-          ((switch-p line) (draw-switch canvas line 8 (+ y 2)) (incf y 24))
+          ((button-p line) (draw-plan-button canvas line 8 (+ y 2)) (incf y 24))
           (t (draw-glyphs canvas draw-gcontext* 8 (+ y 13) line) (incf y +line-height+)))))
 
 (defun say-text (canvas pane y text)
@@ -101,7 +91,7 @@
         (let ((y (say-text canvas pane +plan-head+
                            "No plan is under way. PLAN name ... starts one.")))
           (say-ending canvas pane
-                      (say-lines canvas y (line-switch pane "Which plans are there?" "plan"
+                      (say-lines canvas y (line-button pane "Which plans are there?" "plan"
                                                        "List the plans that can be started")))))))
 
 ;;; Painting.
@@ -130,7 +120,7 @@
       (:untraced (say-lines canvas
                             (say-text canvas pane +plan-head+
                                       "No trace is kept of these plans, so there is no timeline.")
-                            (line-switch pane "Keep a trace from now on" "trace-plans on"
+                            (line-button pane "Keep a trace from now on" "trace-plans on"
                                          "Keep a trace of what plans do")))
       (:too-long (say-text canvas pane +plan-head+
                            (format nil "The trace is too long to be drawn again and again. ~
@@ -218,10 +208,10 @@
          (tick-at x (scale-for page (content-width pane))))))
 
 (defun plan-subject-at (pane x y)
-  "Return the subject at X, Y of PANE: a switch, the mark or image of a task, a moment; or NIL."
+  "Return the subject at X, Y of PANE: a button, the mark or image of a task, a moment; or NIL."
   (let* ((subjects (pane-subjects pane))
          (subject (subject-at (if (< y +plan-head+)
-                                  (remove-if-not #'switch-p subjects :key #'first)
+                                  (remove-if-not #'button-p subjects :key #'first)
                                   subjects)
                               x y))
          (tick (tick-under pane x y)))
@@ -237,10 +227,10 @@
 
 (defmethod click ((pane plan-pane) button x y)
   (let ((subject (plan-subject-at pane x y)))
-    (cond ((typep subject '(or switch fold-mark))
+    (cond ((typep subject '(or button fold-mark))
            (when (eq button :left)
              (etypecase subject
-               (switch (funcall (switch-action subject)))
+               (button (funcall (button-command subject)))
                (fold-mark (fold-task pane (fold-mark-serial subject))))))
           ((eq button :right) (offer pane (and subject (list subject)) x y))
           ((plan-moment-p subject) (go-back-to pane (plan-moment-tick subject)))

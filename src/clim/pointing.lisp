@@ -44,8 +44,7 @@
                               (floor y (magnification pane)))))))))))
 
 (defun point-at-mouse (window)
-  "Describe in the strip of WINDOW what the mouse is on; it has not moved, but something over it, or
-dragged, has gone."
+  "Describe in the strip of WINDOW what is under the mouse now, though it has not moved."
   (multiple-value-bind (pane x y) (pane-at-mouse window)
     (when pane (hover pane x y))))
 

@@ -146,10 +146,6 @@ this thread."
     (mapc (lambda (key) (give-key conversation key))
           (list :control-e :control-u text))))
 
-(defun interrupt-conversation (conversation)
-  "End the running line, or clear the one being typed."
-  (ars-magna.cli:interrupt-session (conversation-session conversation)))
-
 (defun busy-with (conversation)
   "Return the running line, or NIL if the prompt waits for one."
   (and (conversation-thread conversation)
@@ -161,7 +157,3 @@ this thread."
   (let ((console (conversation-console conversation)))
     (and (ars-magna.cli:console-asked-p console) (console-entered console))))
 
-(defun waiting-in (conversation)
-  "Return how many lines wait for the running one to end, and the text being typed after them, with
-the position of the cursor in it."
-  (ars-magna.cli:typed-ahead (ars-magna.cli:session-input (conversation-session conversation))))

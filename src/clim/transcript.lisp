@@ -53,8 +53,7 @@
   (incf (transcript-newest transcript)))
 
 (defun add-part (transcript part)
-  "Add PART, of a line, to the last line of TRANSCRIPT; a return goes back to its beginning, as
-where something is counted."
+  "Add PART to the last line of TRANSCRIPT; a return character goes back to the line's beginning."
   (let ((return (position #\Return part :from-end t)))
     (when return (setf (first (transcript-lines transcript)) ""))
     (when (< +longest-line+ (length (first (transcript-lines transcript))))

@@ -19,10 +19,6 @@ at which measuring the rate began, and that rate."
   (seconds 0d0 :type double-float)
   (reached nil :type (or null real)))
 
-(defun begin-pulse (simulation)
-  (let ((tick (simulation-tick simulation)))
-    (make-pulse :last-tick tick :tick tick :seconds (seconds-now))))
-
 (defun state-words (state)
   (ecase state
     (:running "running")
@@ -258,14 +254,16 @@ itself: it will come with the next tick."
 ;; Other threads read the watched run of WATCHER: between two runs there must always be one.
 (defun watch-simulation (watcher simulation)
   "Make WATCHER watch SIMULATION from now on, instead of its present run. Return WATCHER."
-  (let ((old (watcher-simulation watcher)) (observer (watcher-observer watcher)))
+  (let ((old (watcher-simulation watcher)) (observer (watcher-observer watcher))
+        (tick (simulation-tick simulation)))
     (unless (eq simulation old)
       (keep-history simulation)
       (setf (watcher-observer watcher) (lambda (simulation)
                                          (if (watcher-wanted-p watcher)
                                              (publish watcher simulation)
                                              (setf (watcher-stale-p watcher) t)))
-            (watcher-pulse watcher) (begin-pulse simulation)
+            (watcher-pulse watcher) (make-pulse :last-tick tick :tick tick
+                                                :seconds (seconds-now))
             (watcher-simulation watcher) simulation)
       (leave-simulation old observer)
       (direct-look (watcher-plans watcher) simulation)

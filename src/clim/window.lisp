@@ -103,8 +103,7 @@
     (and snapshot (snapshot-robot snapshot (shown-robot window)))))
 
 (defun shown-robot-p (window image)
-  "True if IMAGE is of the robot whose details WINDOW shows, then or now: each snapshot has new
-images."
+  "True if IMAGE, of any snapshot, is of the robot whose details WINDOW shows."
   (let ((shown (window-robot window)))
     (and shown (eq (robot-image-name image) (robot-image-name shown)))))
 
@@ -129,8 +128,7 @@ images."
   (funcall (function-to-call event) (clim:pane-frame sheet)))
 
 (defun call-in-window (function window)
-  "Make WINDOW's thread call FUNCTION with it, if it is on the screen. Any thread may ask. Return
-nothing."
+  "Make WINDOW's thread call FUNCTION with it if it is on the screen. Any thread may ask."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (when sheet
       (clim:queue-event sheet (make-instance 'call-event :sheet sheet :function function)))

@@ -214,8 +214,8 @@
       (setf (pane-terrain pane)
             (multiple-value-bind (screen-width screen-height) (size-on-screen pane)
               (clim:with-output-to-pixmap (medium pane :width screen-width :height screen-height)
-                (call-magnified (lambda () (paint-terrain pane medium width height))
-                                medium (magnification pane))))
+                (clim:with-scaling (medium (magnification pane))
+                  (paint-terrain pane medium width height))))
             (pane-terrain-key pane) key))
     (pane-terrain pane)))
 

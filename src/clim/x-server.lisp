@@ -28,8 +28,7 @@ for, or NIL.")
                          "")))))
 
 (defun lose-port (port)
-  "Close the windows on PORT, whose X server has gone, if there were any; end the thread that reads
-its events."
+  "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
   (when (with-lock (*windows-lock*) (member port (shiftf *ports* (remove port *ports*))))
     (lose-windows port)
     (ignore-errors (clim:destroy-port port))
@@ -130,8 +129,7 @@ bytes, and CLX reads 32 of them first."
     (error () nil)))
 
 (defun words-for-fault (condition clx-fails-p)
-  "Return the message on CONDITION, with which McCLIM fails on an X server that answers: CLX is at
-fault if CLX-FAILS-P."
+  "Return the message on CONDITION, an error of McCLIM's, or CLX's if CLX-FAILS-P, while X answers."
   (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
           (ars-magna.clx:library-text (if clx-fails-p "CLX" "McCLIM"))
           (lisp-implementation-version)
@@ -177,8 +175,7 @@ come when COME-P is true of ARGUMENTS."
     (if (eq end :come) nil end)))
 
 (defun wait-unless-come (wait display timeout)
-  "Do what WAIT, CLX's function, does with DISPLAY and TIMEOUT, but return :COME if what is read for
-has come."
+  "Do what WAIT, CLX's function, does; but return :COME if what is read for has come."
   (if (funcall *come-p*) :come (funcall wait display timeout)))
 
 (wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-for)
