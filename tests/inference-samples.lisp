@@ -28,7 +28,7 @@
   (stats::deviation-of (as-sample numbers)))
 
 (defun sample-quantile (numbers share)
-  (stats::sorted-quantile (stats::sorted (as-sample numbers)) (stats::meant share)))
+  (stats::sorted-quantile (stats::sorted (as-sample numbers)) (stats:as-written share)))
 
 (test averages.as-fisher-has-them
   (is-printed 3 '("20.933") (stats:mean *maize*))

@@ -73,8 +73,8 @@
 succeed. True if they do."
   (check-rates 'is-success-rate at-least trials level)
   (check-argument is-success-rate workers (whole-p workers 1 1000) "how many threads, 1 to 1000")
-  (let ((check (run-check (make-check experiment condition subject (exact-rate at-least) trials
-                                      (exact-rate level) workers))))
+  (let ((check (run-check (make-check experiment condition subject (as-written at-least) trials
+                                      (as-written level) workers))))
     (cond ((eq :passed (check-verdict check))
            (pass "~A: ~A" (subject-text check) (numbers-text check))
            t)

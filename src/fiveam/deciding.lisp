@@ -9,10 +9,6 @@
 ;;; after each trial, by evidence that allows so many looks. The other half is for the end, by the
 ;;; exact interval. So trials can end early with either answer.
 
-(defun exact-rate (rate)
-  "Return RATE as a double-float; a single-float as the decimals that are written."
-  (double (rationalize rate)))
-
 (defun early-verdict (successes trials rate level)
   "Return :PASSED, :FAILED or NIL for SUCCESSES of TRIALS, with more to come."
   (if (= rate 1)
@@ -61,7 +57,7 @@ with .003. Both values are exact except for rounding: they add up all courses th
 take, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."
   (check-argument pass-probability rate (probability-p rate) "a number from 0 to 1")
   (check-rates 'pass-probability at-least trials level)
-  (let ((rate (exact-rate rate)) (at-least (exact-rate at-least)) (level (exact-rate level))
+  (let ((rate (as-written rate)) (at-least (as-written at-least)) (level (as-written level))
         (odds (vector 1)) (passed 0) (run 0))
     (loop for count from 1 to trials
           do (incf run (reduce #'+ odds))

@@ -6,7 +6,7 @@
 for test suites written with FiveAM. Use it beside FIVEAM.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :fiveam #:pass #:fail)
-  (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval)
+  (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval #:as-written)
   (:import-from :ars-magna.run #:variables-among)
   (:import-from :ars-magna.experiment
                 #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.statistics)
 
-(export '(mean median))
+(export '(mean median as-written))
 
 (deftype doubles ()
   "A sample, as it is worked on."
@@ -19,22 +19,20 @@ WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
     (reject-argument operator name numbers "a list or vector of numbers from -1e15 to 1e15"))
   (map 'doubles #'double numbers))
 
-;;; A single-float .95 is 0.949999988 as a double-float. The decimals as written are meant.
-
-(defun meant (share)
-  "Return SHARE as a double-float; a single-float as the number that is written so."
+(defun as-written (share)
+  "Return SHARE as a double-float: the single-float .95 is .95, not 0.949999988."
   (double (if (typep share 'single-float) (rationalize share) share)))
 
 (defun inner-share-p (value)
   "True if VALUE is a number that lies between 0 and 1, by 1e-12 at least."
-  (and (probability-p value) (<= 1d-12 (meant value) (- 1 1d-12))))
+  (and (probability-p value) (<= 1d-12 (as-written value) (- 1 1d-12))))
 
 (defmacro check-share (operator place)
   "Signal WRONG-ARGUMENT unless PLACE lies between 0 and 1; return it as a double-float."
   `(progn
      (check-argument ,operator ,place (inner-share-p ,place)
                      "a number between 0 and 1, such as .95, at least 1e-12 from either")
-     (meant ,place)))
+     (as-written ,place)))
 
 (defmacro check-count (operator place &optional (most '+largest+))
   "Signal WRONG-ARGUMENT unless PLACE is an integer from 0 to MOST."

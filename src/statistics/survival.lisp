@@ -74,17 +74,17 @@ then, and HIGH that of the step before, or 1. Signals WRONG-ARGUMENT unless TIME
       (call-with-moments #'note dated))
     (nreverse steps)))
 
-(defun curve-p (value)
-  (and (proper-list-p value)
-       (every (lambda (step) (and (proper-list-p step) (= 6 (length step)) (every #'realp step)))
-              value)))
-
 (addition median-survival)
 (defun median-survival (curve)
   "Return the time by which half are done, by CURVE, a result of SURVIVAL-CURVE, and the bounds for
 it, low and high: the first times at which survival, its low and its high bound are a half or less
 (Brookmeyer and Crowley 1982). Each is NIL if that never comes. Signals WRONG-ARGUMENT."
-  (check-argument median-survival curve (curve-p curve) "a list that SURVIVAL-CURVE returned")
+  (check-argument median-survival curve
+                  (and (proper-list-p curve)
+                       (every (lambda (step)
+                                (and (proper-list-p step) (= 6 (length step)) (every #'realp step)))
+                              curve))
+                  "a list that SURVIVAL-CURVE returned")
   (flet ((halved (reader)
            (first (find-if (lambda (step) (<= (funcall reader step) (+ .5d0 1d-12))) curve))))
     (values (halved #'fourth) (halved #'fifth) (halved #'sixth))))

@@ -189,7 +189,7 @@ probability of at most .05. The order is kept, and equal p values have equal res
 WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
   (check-argument holm-adjusted p-values (elements-p p-values #'probability-p)
                   "a list or vector of numbers from 0 to 1")
-  (let ((shares (map 'doubles #'meant p-values)))
+  (let ((shares (map 'doubles #'as-written p-values)))
     (loop with worth = 0d0
           for index in (stable-sort (loop for i below (length shares) collect i) #'<
                                     :key (lambda (i) (aref shares i)))

@@ -7,16 +7,8 @@
 ;;; In :VARY stands (KIND N range...) or (KIND N :SEED seed range...). A RANGE is (what low high),
 ;;; or that with a word behind it: :INTEGER or :LOG.
 
-(defparameter *designs* '(:latin-hypercube :sobol :random) "The kinds of designs.")
-(defparameter *scales* '(:integer :log) "What may stand behind a range.")
-(defconstant +most-points+ 100000 "How many points a design may have.")
-
-(defparameter *design-usage*
-  "(:sobol n (what low high)...), or :latin-hypercube or :random, with N from 1 to 100000, perhaps ~
-   (:sobol n :seed integer ...), and :integer or :log behind a range")
-
 (defun design-part-p (part)
-  (member (first part) *designs*))
+  (member (first part) '(:latin-hypercube :sobol :random)))
 
 (defun design-ranges (part)
   (if (eq :seed (third part)) (cddddr part) (cddr part)))
@@ -28,11 +20,6 @@
   (if (design-part-p part)
       (mapcar #'first (design-ranges part))
       (list (first part))))
-
-(defun range-form-p (form)
-  (and (proper-list-p form)
-       (or (= 3 (length form))
-           (and (= 4 (length form)) (member (fourth form) *scales*)))))
 
 ;;; Values. They are rounded, so that conditions have short names.
 
@@ -64,12 +51,6 @@
              (rounded-to (+ (rational low) (* (rational share) width))
                          (- (power-of-ten width) (1- +design-digits+)))))))
 
-(defun settings-at (point ranges bounds)
-  (loop for share in point
-        for (name nil nil scale) in ranges
-        for (low high) in bounds
-        collect (list name (value-between low high scale share))))
-
 (defun design-choices (definition part bounds)
   "Return lists of settings, one for each point of the design PART, whose ranges have BOUNDS, lists
 (low high). Points that come twice, as those of few integers do, count once."
@@ -80,7 +61,10 @@
     (remove-duplicates
      (loop for point in (design-points (first part) (second part) (length ranges)
                                        (design-seed part))
-           collect (settings-at point ranges bounds))
+           collect (loop for share in point
+                         for (name nil nil scale) in ranges
+                         for (low high) in bounds
+                         collect (list name (value-between low high scale share))))
      :test #'equal :from-end t)))
 
 ;;;; All clauses
@@ -107,8 +91,8 @@
 (defun usage-of (key)
   (format nil (second (assoc key *clauses*))))
 
-(defun reject (definition clause &optional (expected (usage-of (first clause))))
-  (reject-clause definition clause expected))
+(defun reject (definition clause)
+  (reject-clause definition clause (usage-of (first clause))))
 
 (defun clause-key (definition clause)
   (unless (and (proper-list-p clause) (assoc (first clause) *clauses*))
@@ -190,7 +174,9 @@ true of; or about CLAUSE if there is none at all."
 
 (defun check-range (definition range)
   "Signal MALFORMED-DEFINITION unless RANGE can be one, of something whose values are numbers."
-  (unless (range-form-p range)
+  (unless (and (proper-list-p range)
+               (or (= 3 (length range))
+                   (and (= 4 (length range)) (member (fourth range) '(:integer :log)))))
     (reject-clause definition range "a range (what low high), perhaps with :integer or :log"))
   (when (surrounding-p (first range))
     (reject-clause definition range "a parameter, or a variable, whose values are numbers"))
@@ -198,9 +184,12 @@ true of; or about CLAUSE if there is none at all."
 
 (defun check-design (definition part)
   (let ((ranges (and (proper-list-p part) (> (length part) 2) (design-ranges part))))
-    (unless (and ranges (typep (second part) `(integer 1 ,+most-points+))
+    (unless (and ranges (typep (second part) '(integer 1 100000))
                  (integerp (design-seed part)))
-      (reject-clause definition part (format nil *design-usage*)))
+      (reject-clause definition part
+                     (format nil "(:sobol n (what low high)...), or :latin-hypercube or :random, ~
+                                  with N from 1 to 100000, perhaps (:sobol n :seed integer ...), ~
+                                  and :integer or :log behind a range")))
     (dolist (range ranges) (check-range definition range))
     (when (and (eq :sobol (first part)) (> (length ranges) +most-dimensions+))
       (reject-clause definition part
@@ -245,11 +234,11 @@ true of; or about CLAUSE if there is none at all."
 CLAUSES vary, and what the clause KEY names."
   (flet ((check (name clause)
            (check-legible definition clause name)
-           (when (member (column-name name) taken :test #'string=)
+           (when (member name taken :test #'string-equal)
              (reject-clause definition clause
-                            (format nil "another name; the table has a column ~A already"
-                                    (column-name name))))
-           (push (column-name name) taken)))
+                            (format nil "another name; the table has a column ~(~A~) already"
+                                    name)))
+           (push name taken)))
     (dolist (name (varied-names clauses)) (check name name))
     (dolist (part (clause-called key clauses)) (check (first part) part))))
 

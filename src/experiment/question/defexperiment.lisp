@@ -18,18 +18,9 @@ list needs no quote."
         ((eq :in (second part)) (third part))
         (t `(list ,@(loop for form in (rest part) collect (value-form (first part) form))))))
 
-(defun factors-form (clauses)
-  `(list ,@(loop for part in (clause-called :vary clauses)
-                 collect `(list ',part ,(values-form part)))))
-
-(defun cases-form (clauses)
-  (flet ((setting-form (part) `(list ',part ,(value-form (first part) (second part)))))
-    `(list ,@(loop for (name . parts) in (clause-called :conditions clauses)
-                   collect `(list ',name (list ,@(mapcar #'setting-form parts)))))))
-
-(defun settings-form (clauses)
-  `(list ,@(loop for part in (clause-called :parameters clauses)
-                 collect `(list ',part ,(second part)))))
+(defun parts-form (parts value-of)
+  "Return the form of a list of lists (part value) for PARTS; VALUE-OF returns a part's value form."
+  `(list ,@(loop for part in parts collect `(list ',part ,(funcall value-of part)))))
 
 (defun function-form (clauses forms)
   "Return a function of the variables that CLAUSES vary, which evaluates FORMS; NIL if there are
@@ -64,11 +55,13 @@ none."
   `(define-experiment ',name
      :documentation ,documentation
      :robots ',(clause-called :robots clauses)
-     :parameters ,(settings-form clauses)
+     :parameters ,(parts-form (clause-called :parameters clauses) #'second)
      :clean ,(clean-p clauses)
      :thinking ,(thinking-form clauses)
-     :factors ,(factors-form clauses)
-     :cases ,(cases-form clauses)
+     :factors ,(parts-form (clause-called :vary clauses) #'values-form)
+     :cases (list ,@(loop for (name . parts) in (clause-called :conditions clauses)
+                          collect `(list ',name ,(parts-form parts (lambda (part)
+                                                                     (apply #'value-form part))))))
      ,@(loop for key in '(:trials :seed :limit :time-limit)
              for value = (first (clause-called key clauses))
              when value append (list key value))
@@ -192,17 +185,14 @@ tells what is kept."
   (dolist (value values) (check-value definition part value))
   (check-values-differ definition part (mapcar #'value-text values)))
 
-(defun check-sampled (definition part choices)
-  (dolist (choice choices)
-    (loop for (nil value) in choice
-          for range in (design-ranges part)
-          do (check-value definition range value))))
-
 (defun axis-from (definition part values)
   "Return the axis that PART, of :vary, makes of VALUES, as VALUES-FORM has them."
   (cond ((design-part-p part)
          (let ((choices (design-choices definition part values)))
-           (check-sampled definition part choices)
+           (dolist (choice choices)
+             (loop for (nil value) in choice
+                   for range in (design-ranges part)
+                   do (check-value definition range value)))
            (list (part-names part) choices)))
         (t (check-values definition part values)
            (list (part-names part)

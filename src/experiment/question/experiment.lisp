@@ -163,9 +163,6 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
   "Return the seed of the trial numbered TRIAL, the same under all conditions."
   (+ (experiment-seed experiment) trial))
 
-(defun column-name (name)
-  (string-downcase name))
-
 (defparameter *columns-before* '("experiment" "fingerprint" "condition")
   "What stands in the table before what varies.")
 (defparameter *columns-between* '("seed" "trial" "outcome" "reason" "ticks")
@@ -177,10 +174,10 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
 
 (defun factor-columns (experiment)
   (append (and (experiment-cases experiment) (list "case"))
-          (mapcar #'column-name (factor-names experiment))))
+          (mapcar #'string-downcase (factor-names experiment))))
 
 (defun part-columns (parts)
-  (mapcar (lambda (part) (column-name (first part))) parts))
+  (mapcar (lambda (part) (string-downcase (first part))) parts))
 
 (defun columns (experiment)
   (append *columns-before* (factor-columns experiment) *columns-between*

@@ -127,18 +127,12 @@ which way, and a line for the prompt that opens one of them. Return nothing."
       (reject-use "trial-series: there is no trial ~D of ~A in these results." trial
                   (sample-condition sample))))
 
-(defun row-beginning (sample place)
-  "Return the texts with which the row at PLACE of SAMPLE begins, up to the number of the trial."
-  (append (list (sample-experiment sample) (sample-fingerprint sample) (sample-condition sample))
-          (sample-texts sample)
-          (list (integer-text (aref (sample-seeds sample) place))
-                (integer-text (aref (sample-trials sample) place)))))
-
 (defun block-of-trial (index sample place)
   "Return the block in INDEX of the trial at PLACE of SAMPLE; NIL if it has no lines. Signals MISUSE
 if not all of them are there."
   (when (aref (sample-digests sample) place)
-    (or (whole-block (blocks-of index (row-beginning sample place))
+    (or (whole-block (blocks-of index (row-key sample) (aref (sample-seeds sample) place)
+                                (aref (sample-trials sample) place))
                      (1+ (aref (sample-ticks sample) place)))
         (reject-use "trial-series: not all lines of trial ~D of ~A are in series.csv. Run the ~
                      experiment again with that directory: it runs such trials again."

@@ -94,17 +94,14 @@ result where the trial has ended, before its simulation is gone. Return the resu
         while (plusp left)
         do (wait-a-while never (min left 0.02))))
 
-(defun show-if-possible ()
-  (when *display-opener*
-    (handler-case (open-display (first (simulation-robots (current-simulation))))
-      (error (condition) (warning-set (text-of-condition condition))))))
-
 (defun paced-gate (rate)
-  "Return a gate by which RATE ticks a second pass."
+  "Return a gate by which RATE ticks a second pass. It opens a display first, if it can."
   (let ((due nil))
     (lambda (simulation)
       (unless due
-        (show-if-possible)
+        (when *display-opener*
+          (handler-case (open-display (first (simulation-robots simulation)))
+            (error (condition) (warning-set (text-of-condition condition)))))
         (setf due (seconds-now)))
       (unless (eq rate :free)
         (await-time due simulation)
@@ -145,10 +142,6 @@ there is none."
     (reject-use "There is no row of trial ~D of ~A in ~A." trial (condition-name condition)
                 (native-name (directory-called directory)))))
 
-(defun code-difference (condition parts directory)
-  (format nil "its code or configuration is another~@[; changed since: ~{~A~^, ~}~]"
-          (changes-since condition parts (directory-called directory))))
-
 (defun row-differences (experiment result parts row directory)
   "Return in words, in a list, in what RESULT differs from ROW, which is in DIRECTORY."
   (loop for column in (columns experiment)
@@ -156,7 +149,10 @@ there is none."
         for then in row
         unless (string= now then)
           collect (if (string= "fingerprint" column)
-                      (code-difference (result-condition result) parts directory)
+                      (format nil "its code or configuration is another~@[; changed since: ~
+                                   ~{~A~^, ~}~]"
+                              (changes-since (result-condition result) parts
+                                             (directory-called directory)))
                       (format nil "~A is ~:[~A~;~*empty~], and ~:[~A~;~*empty~] in the row"
                               column (string= "" now) now (string= "" then) then))))
 

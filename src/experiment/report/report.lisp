@@ -158,14 +158,12 @@ they are too large or small for that."
 
 ;;; Columns of estimates.
 
-(defun estimate-numbers (estimate)
-  (remove nil (list (estimate-value estimate) (estimate-low estimate) (estimate-high estimate))))
-
 (defun writer-for (estimates)
   (if (eq :rate (estimate-kind (first estimates)))
       (let ((trials (reduce #'max estimates :key #'estimate-count)))
         (lambda (share) (hundredths-text share trials)))
-      (number-writer-for (mapcan #'estimate-numbers estimates))))
+      (number-writer-for (loop for reader in (list #'estimate-value #'estimate-low #'estimate-high)
+                               append (remove nil (mapcar reader estimates))))))
 
 (defun aligned-texts (numbers writer)
   "Return NUMBERS, any of which may be NIL, as texts of equal length."

@@ -63,27 +63,21 @@ least one is tried, and others as long as less than SECONDS have passed."
 (defun part-name (part)
   (format nil "~(~A~) ~A" (first part) (second part)))
 
-(defun parts-changed (before now)
-  (set-exclusive-or before now :test #'equal))
-
-(defun bound-in-trials-p (name condition)
-  (find name (condition-variables condition)
-        :key (lambda (variable) (qualified (first variable))) :test #'string=))
-
 (defun without-package (name)
   (subseq name (1+ (or (position #\: name) -1))))
 
-(defun sharing-advice (before now condition)
-  "Return what to do if trials of CONDITION changed what a variable holds, or else a function or
-what it has closed over; or NIL."
-  (flet ((changed (kind) (second (find kind (parts-changed before now) :key #'first))))
-    (let ((variable (changed :variable)) (function (changed :function)))
+(defun sharing-advice (changed condition)
+  "Return what to do if CHANGED, the parts that trials of CONDITION changed, has a variable or else
+a function; or NIL."
+  (flet ((name (kind) (second (find kind changed :key #'first))))
+    (let ((variable (name :variable)) (function (name :function)))
       (cond (variable
              (format nil "~:[No trial can bind the global variable ~A: define it with DEFVAR ~
                           instead. ~;~*~]If trials change what ~A holds, give each its own: ~
                           (:run (let ((~:*~A ...)) ...))."
-                     (bound-in-trials-p variable condition) (without-package variable)
-                     (without-package variable)))
+                     (find variable (condition-variables condition)
+                           :key (lambda (bound) (qualified (first bound))) :test #'string=)
+                     (without-package variable) (without-package variable)))
             (function
              (format nil "If trials replace ~A, or leave something in it for others, keep that in ~
                           a variable, which each trial binds." (without-package function)))))))
@@ -96,17 +90,18 @@ what it has closed over; or NIL."
         for added = (loop for part being the hash-keys of (condition-weak-parts condition)
                           unless (gethash part weak) collect part)
         unless (and (equal before now) (null added))
-          do (call-noting-refusal (lambda ()
-                                    (reject-changed before (append added now) condition
-                                                    directory))
-                                  directory)))
+          do (call-noting-refusal
+              (lambda ()
+                (reject-changed (set-exclusive-or before (append added now) :test #'equal)
+                                condition directory))
+              directory)))
 
-(defun reject-changed (before now condition directory)
+(defun reject-changed (changed condition directory)
   (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
                ~A~] may be of either. ~@[~A ~]~@(~A~)."
-              (remove-duplicates (mapcar #'part-name (parts-changed before now)) :test #'string=)
+              (remove-duplicates (mapcar #'part-name changed) :test #'string=)
               (and *directory-given-p* (native-name directory))
-              (sharing-advice before now condition)
+              (sharing-advice changed condition)
               (way-to-begin-again)))
 
 (defun call-noting-refusal (function directory)

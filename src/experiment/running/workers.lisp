@@ -11,10 +11,6 @@
   (let ((text (nth-value 1 (run-command "nproc" '() :output :string))))
     (max 1 (or (and text (parse-integer text :junk-allowed t)) 1))))
 
-(defun trouble-of (function)
-  (handler-case (progn (funcall function) nil)
-    ((or error storage-condition) (condition) condition)))
-
 (defun await-result (channel left)
   "Take a result from CHANNEL if there is one soon. Return how many are LEFT then, and the result."
   (multiple-value-bind (trouble there-p) (lparallel:try-receive-result channel :timeout 0.2)
@@ -49,7 +45,9 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
                  do (let ((number number))
                       (lparallel:submit-task
                        channel
-                       (lambda () (trouble-of (lambda () (funcall function number)))))))
+                       (lambda ()
+                         (handler-case (progn (funcall function number) nil)
+                           ((or error storage-condition) (condition) condition))))))
            (loop with trouble
                  while (plusp left)
                  do (setf (values left trouble) (await-result channel left))
@@ -171,13 +169,6 @@ function STOPPING-P returns true."
           (setf open-p nil))))
     nil))
 
-;; How far it has come differs from run to run. So that is left out: its row is always the same.
-(defun timed-out-result (condition trial seed)
-  "Return the result of TRIAL of CONDITION, which has SEED, as its time was up."
-  (let ((result (make-result condition trial seed)))
-    (setf (result-outcome result) "timeout" (result-ticks result) nil)
-    result))
-
 (defun run-guarded (experiment condition trial stopping-p &optional seconds)
   "Run TRIAL of CONDITION of EXPERIMENT in a worker's thread, for at most so many SECONDS, unless
 these are NIL. Return its result, whatever the trial does to the thread unless the function
@@ -191,7 +182,11 @@ STOPPING-P returns true."
                          seconds)))
          stopping-p)
         (note-error result "The trial has ended the thread that it ran in.")
-        (when late-p (setf result (timed-out-result condition trial seed))))
+        ;; How far it has come differs from run to run, so the row does not have that.
+        (when late-p
+          (setf result (make-result condition trial seed)
+                (result-outcome result) "timeout"
+                (result-ticks result) nil)))
     result))
 
 ;;;; Which trials are to be run

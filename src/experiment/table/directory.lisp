@@ -30,12 +30,6 @@
 (defvar *stores-in-use* '() "The directories that this process writes to.")
 (defvar *stores-lock* (make-lock "directories of experiments"))
 
-(defun claim-directory (path)
-  "True if no other thread of this process has PATH, which this one has then."
-  (with-lock (*stores-lock*)
-    (unless (member path *stores-in-use* :test #'equal)
-      (push path *stores-in-use*))))
-
 (defun call-with-directory (function path)
   "Call FUNCTION while nobody else writes to the directory PATH. Signals MISUSE if somebody does."
   (flet ((reject ()
@@ -43,7 +37,10 @@
                        (native-name path))))
     (check-files-plain path)
     (check-plain (lock-file path))
-    (unless (claim-directory path) (reject))
+    (unless (with-lock (*stores-lock*)
+              (unless (member path *stores-in-use* :test #'equal)
+                (push path *stores-in-use*)))
+      (reject))
     (unwind-protect
          (multiple-value-bind (done value)
              (call-with-file-lock function (lock-file path)
@@ -116,14 +113,9 @@ DAMAGED-TABLE."
              (setf (store-series store)
                    (open-table (series-file directory) (series-columns experiment))))
            (funcall function store))
-      (close-table (store-series store))
-      (close-table (store-rows store))
-      (close-table (store-machine store)))))
-
-(defun close-table (stream)
-  "Close STREAM, to a table, or NIL. Errors are ignored: they were reported before."
-  (when stream
-    (ignore-errors (close stream))))
+      ;; Errors were reported before.
+      (dolist (stream (list (store-series store) (store-rows store) (store-machine store)))
+        (when stream (ignore-errors (close stream)))))))
 
 (defun write-table-line (line stream &optional (finish #'finish-output))
   "Write LINE to STREAM, a table, and FINISH that. Signals DAMAGED-TABLE if that cannot be."
@@ -164,9 +156,6 @@ there for good when this returns."
 
 ;;; What is there: the presence of rows is a table from conditions to bits, one for each trial.
 
-(defun make-presence ()
-  (make-hash-table :test 'eq))
-
 (defun bits-of (condition presence)
   (or (gethash condition presence)
       (setf (gethash condition presence)
@@ -193,7 +182,7 @@ there for good when this returns."
 EXPERIMENT has none of its name."
   (let* ((seed (seed-column (columns experiment)))
          (trial (parse-integer (nth (1+ seed) texts))))
-    (unless (string= (first texts) (column-name (experiment-name experiment)))
+    (unless (string= (first texts) (string-downcase (experiment-name experiment)))
       (reject-table file number "this is a row of another experiment, ~A. Give another directory."
                     (first texts)))
     (when (or (and condition (not (equal (condition-texts condition) (subseq texts 3 seed))))
@@ -210,7 +199,7 @@ EXPERIMENT has none of its name."
 well, and the index of these. FOREIGN is called with the condition and the texts of a row of another
 fingerprint, SAMPLE with those of all that are present. What a process that was killed has begun to
 write is cut off. Signals DAMAGED-TABLE."
-  (let ((presence (make-presence)) (file (rows-file directory))
+  (let ((presence (make-hash-table :test 'eq)) (file (rows-file directory))
         (series (series-there experiment directory))
         (place (1+ (seed-column (columns experiment)))))
     (when (cut-broken-line file (columns experiment))

@@ -6,34 +6,30 @@
 ;;; a time, so that a table may be larger than memory. The last line counts only if it is whole:
 ;;; what a process that was killed has written is cut there.
 
-(defun call-with-octets (function path)
-  "Call FUNCTION with a stream from which the octets of the file PATH are read as characters."
-  (with-open-file (in path :external-format :latin-1)
-    (funcall function in)))
-
 (defun map-lines (function path)
   "Call FUNCTION with each whole line of the file PATH, of octets, where it begins, and its number
 from 1. Return where the last one ends."
-  (call-with-octets
-   (lambda (in)
-     (loop with start = 0
-           for number from 1
-           do (multiple-value-bind (line cut-off-p) (read-line in nil nil)
-                (when (or (null line) cut-off-p) (return start))
-                (funcall function line start number)
-                (incf start (1+ (length line))))))
-   path))
+  (with-open-file (in path :external-format :latin-1)
+    (loop with start = 0
+          for number from 1
+          do (multiple-value-bind (line cut-off-p) (read-line in nil nil)
+               (when (or (null line) cut-off-p) (return start))
+               (funcall function line start number)
+               (incf start (1+ (length line)))))))
 
 (defun first-line (file)
   "Return the first line of FILE, of octets, and whether its end is missing; NIL if it is empty."
-  (call-with-octets (lambda (in) (read-line in nil nil)) file))
+  (with-open-file (in file :external-format :latin-1) (read-line in nil nil)))
 
 (defun header-of (file &optional (layout *rows-layout*))
   "Return the names of the columns of FILE, a table with LAYOUT. Signals DAMAGED-TABLE."
   (let ((line (first-line file)))
-    (if line
-        (columns-in line file layout)
-        (reject-table file nil "it is empty. Delete it."))))
+    (unless line (reject-table file nil "it is empty. Delete it."))
+    (check-header-line line file)
+    (let ((columns (ignore-errors (csv-texts (line-text line)))))
+      (unless (table-columns-p columns layout)
+        (reject-table file 1 "this is no table of an experiment. Give another directory."))
+      columns)))
 
 (defun check-beginning (file columns)
   "Signal DAMAGED-TABLE unless FILE begins as a table with COLUMNS does, as far as it goes."
@@ -123,10 +119,6 @@ others."
     (or (< rank other)
         (and (= rank other) (< (indexed-trial a) (indexed-trial b))))))
 
-(defun same-trial-p (a b)
-  (and (eq (indexed-group a) (indexed-group b))
-       (= (indexed-trial a) (indexed-trial b))))
-
 ;;; Which rows belong together.
 
 (defun check-groups (groups)
@@ -198,7 +190,7 @@ written."
   (loop with last = nil and last-line = nil and count = 0
         for row across rows
         for line = (funcall line-of (indexed-file row) (indexed-start row))
-        do (cond ((and last (same-trial-p last row))
+        do (cond ((and last (not (row-before-p last row)))
                   (unless (string= line last-line) (reject-conflict row last)))
                  (t (write-line (line-text line) out)
                     (incf count)))

@@ -119,21 +119,16 @@ whether its series is there. Tables with other columns have none."
 (defun own-fingerprint-p (condition fingerprint)
   (string= fingerprint (condition-fingerprint condition)))
 
-(defun presence-below (experiment directory)
-  (let ((presence (make-presence)))
+(defun missing-shards (experiment trials count directory)
+  "Return the numbers, from 0, of those of COUNT shards of TRIALS trials of each condition of
+EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
+  (prepare-experiment experiment)
+  (let ((presence (make-hash-table :test 'eq)) (missing (make-array count :element-type 'bit)))
     (map-rows-there (lambda (condition trial fingerprint directory complete-p)
                       (declare (ignore directory))
                       (when (and complete-p (own-fingerprint-p condition fingerprint))
                         (note-present condition trial presence)))
                     experiment directory)
-    presence))
-
-(defun missing-shards (experiment trials count directory)
-  "Return the numbers, from 0, of those of COUNT shards of TRIALS trials of each condition of
-EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
-  (prepare-experiment experiment)
-  (let ((presence (presence-below experiment directory))
-        (missing (make-array count :element-type 'bit)))
     (loop for trial from 1 to trials
           do (unless (every (lambda (condition) (present-p condition trial presence))
                             (experiment-conditions experiment))

@@ -6,7 +6,7 @@
 ;;; strings, of which equal ones are the same.
 
 (addition sample-p)
-(define-record (sample (:constructor make-sample (experiment fingerprint condition texts)))
+(define-record (sample (:constructor make-sample (experiment fingerprint condition texts measures)))
   "What came of the trials of one condition, in order of their numbers: vectors of equal length."
   (experiment "" string "what the experiment is called, a string" :addition)
   (fingerprint "" string)
@@ -20,7 +20,7 @@
   (reasons (column) t "a vector of strings that say why trials failed" :addition)
   (ticks (column) t
          "a vector of the ticks that passed in each trial; :NONE where its time was up" :addition)
-  (measures '() list "a list of a vector for each measure" :writable)
+  (measures '() list "a list of a vector for each measure")
   (digests (column) t
            "a vector of integers, or NIL; trials whose digests are equal have been the same run")
   (errors (column) t
@@ -94,11 +94,6 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 (defun shared-text (text shared)
   (or (gethash text shared) (setf (gethash text shared) text)))
 
-(defun new-sample (texts seed measures)
-  (let ((sample (make-sample (first texts) (second texts) (third texts) (subseq texts 3 seed))))
-    (setf (sample-measures sample) (loop repeat measures collect (column)))
-    sample))
-
 (defun digest-in (text)
   "Return a number for the digest in TEXT, of a table, or NIL. Sixty bits of it are enough."
   (and (string/= text "") (ldb (byte 60 0) (parse-integer text :radix 16))))
@@ -117,11 +112,13 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
     (vector-push-extend (digest-in (nth measures rest)) (sample-digests sample))
     (vector-push-extend (shared-text (nth (1+ measures) rest) shared) (sample-errors sample))))
 
+(defun row-key (sample)
+  "Return the texts that the rows of SAMPLE have before the column of the seed."
+  (list* (sample-experiment sample) (sample-fingerprint sample) (sample-condition sample)
+         (sample-texts sample)))
+
 (defun of-sample-p (sample texts)
-  (loop for text in (list* (sample-experiment sample) (sample-fingerprint sample)
-                           (sample-condition sample) (sample-texts sample))
-        for other in texts
-        always (string= text other)))
+  (every #'string= (row-key sample) texts))
 
 (defun last-trial (sample)
   (let ((count (length (sample-trials sample))))
@@ -140,7 +137,9 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
       (unless (and samples (of-sample-p (first samples) texts))
         (when (some (lambda (sample) (of-sample-p sample texts)) samples)
           (return-from results-in-order nil))
-        (push (new-sample texts seed measures) samples))
+        (push (make-sample (first texts) (second texts) (third texts) (subseq texts 3 seed)
+                           (loop repeat measures collect (column)))
+              samples))
       (unless (< (last-trial (first samples)) (parse-integer (nth (1+ seed) texts)))
         (return-from results-in-order nil))
       (note-row (first samples) (nthcdr seed texts) measures shared))

@@ -10,7 +10,7 @@
 (defun trial-texts (experiment result)
   "Return the texts that say of which trial of EXPERIMENT RESULT is: each line begins with them."
   (let ((condition (result-condition result)))
-    (append (list (column-name (experiment-name experiment))
+    (append (list (string-downcase (experiment-name experiment))
                   (condition-fingerprint condition)
                   (condition-name condition))
             (condition-texts condition)
@@ -102,15 +102,6 @@ its own."
     (reject-table file 1 "an editor or spreadsheet has saved this with line ends or marks of its ~
                           own. Take the table as it was; or save it as plain UTF-8 with line feeds ~
                           only.")))
-
-(defun columns-in (line file layout)
-  "Return the names of the columns in LINE, of octets, the first of FILE, a table with LAYOUT.
-Signals DAMAGED-TABLE."
-  (check-header-line line file)
-  (let ((columns (ignore-errors (csv-texts (line-text line)))))
-    (unless (table-columns-p columns layout)
-      (reject-table file 1 "this is no table of an experiment. Give another directory."))
-    columns))
 
 (defun seed-column (columns)
   (position "seed" columns :test #'string=))

@@ -28,13 +28,16 @@ begin and end, and on which line."
   (or (gethash key (series-index-groups index))
       (setf (gethash key (series-index-groups index)) (make-hash-table))))
 
-(defun blocks-of (index texts)
-  "Return the blocks in INDEX of the trial that a row is of which begins with TEXTS."
-  (let* ((seed (seed-column (series-index-columns index)))
-         (group (gethash (subseq texts 0 seed) (series-index-groups index))))
-    (destructuring-bind (its-seed trial) (mapcar #'parse-integer (subseq texts seed (+ seed 2)))
-      (and group
-           (remove its-seed (gethash trial group) :key #'block-seed :test-not #'=)))))
+(defun blocks-of (index key seed trial)
+  "Return the blocks in INDEX of TRIAL with SEED, whose row has KEY before the seed's column."
+  (let ((group (gethash key (series-index-groups index))))
+    (and group
+         (remove seed (gethash trial group) :key #'block-seed :test-not #'=))))
+
+(defun blocks-of-row (index texts)
+  (let ((seed (seed-column (series-index-columns index))))
+    (blocks-of index (subseq texts 0 seed) (parse-integer (nth seed texts))
+               (parse-integer (nth (1+ seed) texts)))))
 
 ;;; Lines.
 
@@ -148,7 +151,7 @@ the row says nothing of how it ended, as its time was up or it ended its thread.
   (find-if (lambda (block) (and (zerop (block-first block)) (= count (block-count block)))) blocks))
 
 (defun block-of-row (index texts)
-  (whole-block (blocks-of index texts)
+  (whole-block (blocks-of-row index texts)
                (count-expected texts (seed-column (series-index-columns index)))))
 
 (defun series-there (experiment directory)
@@ -211,7 +214,7 @@ DAMAGED-TABLE."
 (defun chosen-block (index texts line-of)
   (let ((whole (block-of-row index texts)))
     (when whole
-      (dolist (block (blocks-of index texts) whole)
+      (dolist (block (blocks-of-row index texts) whole)
         (unless (eq block whole) (check-same-lines block whole line-of))))))
 
 ;; There may be rows of conditions for which nothing was recorded, from before there was the clause.

@@ -22,15 +22,12 @@
   (loop for slot in (class-slot-names (class-of structure))
         when (slot-boundp structure slot) collect (slot-value structure slot)))
 
-;; What is in a weak table depends on when garbage is collected. See WEAK-NUMBERS.
-(defun lasting-table-p (value)
-  (and (hash-table-p value) (not (weak-table-p value))))
-
 (deftype plain-atom ()
   '(or number symbol character string bit-vector pathname))
 
+;; What is in a weak table depends on when garbage is collected. See WEAK-NUMBERS.
 (deftype compound ()
-  '(or cons array (satisfies lasting-table-p) (satisfies plain-structure-p)))
+  '(or cons array (and hash-table (not (satisfies weak-table-p))) (satisfies plain-structure-p)))
 
 ;;; Walking.
 

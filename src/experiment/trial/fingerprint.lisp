@@ -173,10 +173,6 @@ empty table count as no data, since they often stand where a table or structure 
           do (visit (pop list) reach))
     (visit list reach)))
 
-(defun visit-setter (name reach)
-  (when (and (symbolp (second name)) (users-symbol-p (second name)) (fboundp name))
-    (visit-function (fdefinition name) name reach)))
-
 (defun visit (object reach)
   (typecase object
     (null)
@@ -184,10 +180,10 @@ empty table count as no data, since they often stand where a table or structure 
     (function (visit-function object nil reach))
     (simple-vector (when (first-visit-p object reach)
                      (loop for element across object do (visit element reach))))
-    (cons (if (and (eq 'setf (first object)) (proper-list-p object) (= 2 (length object))
-                   (symbolp (second object)))
-              (visit-setter object reach)
-              (visit-list object reach)))))
+    ((cons (eql setf) (cons symbol null))
+     (when (and (users-symbol-p (second object)) (fboundp object))
+       (visit-function (fdefinition object) object reach)))
+    (cons (visit-list object reach))))
 
 ;;;; The number
 
@@ -244,12 +240,6 @@ it has been changed since."
   "Return the definitions that the run of a trial of CONDITION begins with; see src/run."
   (call-in-trial (lambda () (definitions-of (current-simulation))) experiment condition 1))
 
-(defun definitions-without-entry (definitions)
-  "Return those of DEFINITIONS that nothing else stands for: manipulations, what is undefined."
-  (remove-if (lambda (definition)
-               (or (eq :file (first definition)) (definition-entry definition)))
-             definitions))
-
 (defun reach-of (experiment condition definitions)
   (let ((reach (make-reach)))
     (dolist (entry (remove nil (mapcar #'definition-entry definitions)))
@@ -271,7 +261,9 @@ reach."
     (values
      (sort (remove-duplicates (append (configuration-parts experiment condition)
                                       (reach-parts reach)
-                                      (definitions-without-entry definitions)
+                                      ;; Manipulations, and what is undefined.
+                                      (remove :file (remove-if #'definition-entry definitions)
+                                              :key #'first)
                                       (file-parts (reach-files reach)))
                               :test #'equal)
            #'string< :key #'part-text)

@@ -37,15 +37,12 @@
     (:limit (values "limit" ""))
     (t (values "failure" (value-text state)))))
 
-(defun task-outcome (task)
-  (if (task-over-p task)
-      (plan-outcome (task-result task) (task-state task))
-      (values "failure" "unfinished")))
-
 (defun outcome-of-values (&optional result reason &rest others)
   (declare (ignore others))
   (cond ((member reason *plan-states*) (plan-outcome result reason))
-        ((task-p result) (task-outcome result))
+        ((and (task-p result) (task-over-p result))
+         (plan-outcome (task-result result) (task-state result)))
+        ((task-p result) (values "failure" "unfinished"))
         (result (values "success" ""))
         (t (values "failure"
                    (if (and reason (typep reason '(or symbol string))) (value-text reason) "")))))

@@ -34,14 +34,8 @@ is a gate to ask besides, or NIL."
                            (throw 'broken-off condition)))
       (funcall function))))
 
-(defun call-with-variables-of (condition function)
-  "Call FUNCTION with the variables that trials of CONDITION can reach bound to what they were when
-it was looked up: what a trial sets, no other sees."
-  (progv (mapcar #'first (condition-variables condition))
-      (mapcar #'second (condition-variables condition))
-    (funcall function)))
-
 ;; Fluents and valves have states of their own in each trial, as in forks, whatever leads to them.
+;; Variables that trials can reach are bound, so no trial sees what another sets.
 (defun call-in-trial (function experiment condition trial &key gate journal)
   "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE, if given, is a
 gate to be asked besides that of the limit. With JOURNAL the simulation keeps one."
@@ -56,7 +50,9 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
             (call-with-simulation
              (lambda ()
                (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
-               (call-with-variables-of condition function))
+               (progv (mapcar #'first (condition-variables condition))
+                   (mapcar #'second (condition-variables condition))
+                 (funcall function)))
              (condition-robots condition)
              :seed seed :journal journal :thinking (condition-thinking condition)
              :errors :signal
@@ -73,10 +69,6 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
 :measure. NIL if it did not return, and before it has."
   *trial-values*)
 
-(defun pass-ticks-until (function condition)
-  (loop until (truth-of :until function condition) do (run-ticks 1))
-  t)
-
 (defun run-forms (experiment condition)
   "Do what EXPERIMENT says under CONDITION. Return the values of :run, or T if it has :until; NIL
 and :LIMIT if too few ticks were left."
@@ -86,16 +78,12 @@ and :LIMIT if too few ticks were left."
         (setf *trial-values* values)
         (signal-trouble *message-queue*)
         (check-run-something values)
-        (if (experiment-until experiment)
-            (list (pass-ticks-until (experiment-until experiment) condition))
-            values))))
+        (when (experiment-until experiment)
+          (loop until (truth-of :until (experiment-until experiment) condition)
+                do (run-ticks 1))
+          (setf values '(t)))
+        values)))
   (list nil :limit))
-
-(defun failed-plan (error)
-  "Return the failure of a begun plan that ERROR, a USER-CODE-ERROR, is of; NIL if it is an error of
-Lisp."
-  (let ((cause (user-code-error-cause error)))
-    (and (typep cause 'plan-failure) (not (typep cause 'lisp-failure)) cause)))
 
 (defun run-noting-failures (experiment condition result)
   "Return what RUN-FORMS returns; if a plan that was begun fails, and :run does not handle that,
@@ -103,10 +91,10 @@ what RUN-PLAN would have returned of it. Enter it into RESULT as well."
   (block run
     (handler-bind ((user-code-error
                      (lambda (error)
-                       (let ((failure (failed-plan error)))
-                         (when failure
+                       (let ((cause (user-code-error-cause error)))
+                         (when (typep cause '(and plan-failure (not lisp-failure)))
                            (add-error result (text-of-condition error))
-                           (return-from run (list failure :failed)))))))
+                           (return-from run (list cause :failed)))))))
       (run-forms experiment condition))))
 
 (defun decide-trial (experiment condition outcome reason)
