@@ -24,7 +24,7 @@ taken care of, or that somebody ended; :ERROR in users' code; :NOTE of a user's"
   (x nil (or null real) "where the robot was then, in metres, or NIL if that is unknown" :addition)
   (y nil (or null real) "where the robot was then, in metres, or NIL if that is unknown" :addition)
   (robot nil symbol "the name of the robot, a symbol, or NIL if that is unknown" :addition)
-  (code nil symbol "the error code of a command that failed, or NIL"))
+  (code nil symbol "the error code of a command that failed, or NIL" :export))
 
 (defmethod print-object ((moment moment) stream)
   (print-unreadable-object (moment stream)
