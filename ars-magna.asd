@@ -185,7 +185,7 @@
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
                  (:file "plans-errands") (:file "plans-locks") (:file "trials")
                  (:file "plans-searching")
-                 (:file "course") (:file "errand") (:file "going") (:file "experiments") (:file "choosing")))))
+                 (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"

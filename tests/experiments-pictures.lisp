@@ -302,7 +302,7 @@
              (ars-worlds::with-table
               '("a" "<!-- table of x -->" "old" "older" "<!-- end of table -->" "b"
                 "<!-- table of y -->" "old" "<!-- end of table -->")
-              'x (format nil "1 2~%")))))
+              'x '("```" "1 2" "```")))))
 
 (test figures.of-choosing-are-rates-and-pairs
   (is (string= "96 % (94 to 97)" (ars-worlds::rate-text 479 500)))

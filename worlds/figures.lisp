@@ -40,20 +40,19 @@ to draw; NIL is the whole map.")
 (defun comment-line (what)
   (format nil "<!-- ~(~A~) -->" what))
 
-(defun with-table-lines (lines experiment table)
+(defun with-table (lines experiment table)
   "Return LINES of a page, the table of EXPERIMENT replaced by TABLE, a list of lines."
   (let* ((start (position (comment-line (format nil "table of ~A" experiment)) lines
                              :test #'string=))
             (end (position (comment-line "end of table") lines :test #'string= :start start)))
     (append (subseq lines 0 (1+ start)) table (nthcdr end lines))))
 
-(defun with-table (lines experiment table)
-  "Return LINES of a page, the table of EXPERIMENT replaced by TABLE, a text."
-  (with-table-lines lines experiment (list "```" (string-right-trim '(#\Newline) table) "```")))
-
-(defun save-page (lines page)
-  (with-open-file (out page :direction :output :if-exists :supersede :external-format :utf-8)
-    (format out "~{~A~%~}" lines)))
+(defun results-lines (results)
+  "Return the lines of the page that show RESULTS as they are printed."
+  (list "```"
+        (string-right-trim '(#\Newline)
+                           (with-output-to-string (out) (print-results results out)))
+        "```"))
 
 ;;; Worlds.
 
@@ -177,17 +176,16 @@ the short way."
 and save their pictures."
   (save-quick-figures)
   (let* ((page (in-worlds "README.md"))
-         (lines (with-table-lines (uiop:read-file-lines page :external-format :utf-8)
+         (lines (with-table (uiop:read-file-lines page :external-format :utf-8)
                   'choosing-by-rollouts
                   (choosing-lines (run-experiment 'choosing-by-rollouts)))))
     (loop for (experiment . names) in *pictures-kept*
-             do (let ((results (run-experiment experiment)))
-                  (setf lines (with-table lines experiment
-                                          (with-output-to-string (out)
-                                            (print-results results out))))
-                  (save-pictures-kept experiment results names)))
+          do (let ((results (run-experiment experiment)))
+               (setf lines (with-table lines experiment (results-lines results)))
+               (save-pictures-kept experiment results names)))
     (loop for (experiment condition trials part) in *ways-shown*
-             do (save-ways-picture experiment condition
-                                   (merge-pathnames "ways.svg" (pictures-of experiment))
-                                   :trials trials :part part))
-    (save-page lines page)))
+          do (save-ways-picture experiment condition
+                                (merge-pathnames "ways.svg" (pictures-of experiment))
+                                :trials trials :part part))
+    (with-open-file (out page :direction :output :if-exists :supersede :external-format :utf-8)
+      (format out "~{~A~%~}" lines))))

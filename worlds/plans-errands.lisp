@@ -45,8 +45,7 @@ DESCRIPTION. Stow the first one found in BIN. ME is the robot's reckoning. Retur
 START and put the thing on the floor there. START is the robot's position, a list (x y heading); the
 default is the true one. If the thing is in the hand or in BIN already, because an earlier errand
 was interrupted, the robot brings that one. Return the estimated position at the end, a point. Fails
-with
-:NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
+with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
   (check-points 'fetch-thing 'places places)
   (with-valve ((rpl-robot-valve))
     (let* ((start (or start (here (rpl-robot))))

@@ -21,15 +21,13 @@
         (angle-difference (bearing-to robot x y) (robot-angle robot)))))
 
 (defun ready-p (operation robot designator)
-  "True if ROBOT, which faces DESIGNATOR but for the error of turning, is to drive: it has aimed
-well enough, or often enough, or is on its way."
+  "True if ROBOT, which faces DESIGNATOR roughly, has aimed at it well or often enough to drive."
   (when (or (>= (incf (operation-count operation)) +aiming-turns+)
             (<= (abs (angle-to-goal robot designator)) +aim+))
     (setf (operation-count operation) +aiming-turns+)))
 
 (defun drive-to-goal (robot designator)
-  "Drive ROBOT for a tick, no farther than to DESIGNATOR where it was last seen. Return whether it
-has then arrived, and what blocked it, or NIL."
+  "Drive ROBOT for a tick towards DESIGNATOR. Return whether it has arrived, and what blocked it."
   (let* ((distance (distance-to robot (designator-x designator) (designator-y designator)))
          (block (drive-tick robot distance)))
     (values (at-designator-p robot designator (<= distance (longest-step robot)) block)

@@ -120,8 +120,7 @@ that is false."
   (and (get name 'step) (fboundp name) t))
 
 (defun using-step (form)
-  "Return FORM, a call with a step as its second argument. If the step is quoted, USE-STEP registers
-it when the form is loaded."
+  "Return FORM, a call with a step as its second argument, in which USE-STEP checks a quoted step."
   (destructuring-bind (function operation step &rest more) form
     (if (typep step '(cons (eql quote) (cons (and symbol (not null)) null)))
         `(,function ,operation (load-time-value (use-step ,step)) ,@more)

@@ -15,16 +15,14 @@
     (if (<= rest least) 0d0 (float-sign number rest))))
 
 (defun drive-in-time (operation)
-  "Drive the robot of OPERATION for a tick, or for the rest of its time if that is shorter. Return
-what blocks it, :WALL, :THING or NIL."
+  "Drive for a tick, or for the time left to OPERATION if shorter. Return as DRIVE-TICK does."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation)))
     (setf (operation-left operation) (lessen left (double tick-quantum*) 0d0))
     (drive-tick robot (* left (the double-float (robot-speed-now robot))))))
 
 (defun drive-what-is-left (operation)
-  "Drive the robot of OPERATION for a tick, or as many metres as are left if those are fewer. Return
-what blocks it, :WALL, :THING or NIL."
+  "Drive for a tick, or for the metres left to OPERATION if fewer. Return as DRIVE-TICK does."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation)))
     ;; What rounding leaves is not driven.
@@ -61,8 +59,7 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
       (:thing (fail-with operation :robot-blocked)))))
 
 (define-step coast (operation (robot-p (operation-resource operation)))
-  "Drive for a tick of those that are left; OPERATION succeeds after the last, where it is blocked,
-and if the robot has stopped meanwhile."
+  "Drive for a tick. OPERATION succeeds after its last tick, at an obstacle, or if the speed is 0."
   (if (standing-p (operation-resource operation))
       (succeed operation)
       (drive-on (block operation drive-in-time)
@@ -173,8 +170,7 @@ once more meanwhile does not prolong that."
     (ecase (mod quarter 4) (0 (- 1 x)) (1 (- 1 y)) (2 x) (3 y))))
 
 (defun wall-to-follow (robot)
-  "Return the side of ROBOT, in quarter turns, of the wall to follow, and the heading along it; NIL
-if no wall is near."
+  "Return the side of ROBOT where a wall is and the heading along it, in quarter turns; or NIL."
   (let* ((heading (axis (robot-angle robot)))
          (sides (remove-if-not (lambda (quarter) (neighbour-wall-p robot quarter))
                                (list (1+ heading) (1- heading))))

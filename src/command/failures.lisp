@@ -23,8 +23,7 @@ known."
   (interrupter '() :type list :read-only t))
 
 (defun interruption-of (request tick)
-  "Return a record of the interruption of REQUEST, just now, in TICK once that is counted; or NIL.
-Where requests are performed, the tick they begin has not been counted yet."
+  "Return the record of an interruption of REQUEST in TICK or in the tick that begins, or NIL."
   (let ((interruption (resource-interruption (event-resource request))))
     (and interruption
          (<= tick (interruption-tick interruption) (1+ tick))

@@ -58,8 +58,7 @@
       (part-reaches-p part container)))
 
 (defun has-room-p (container size)
-  "True if CONTAINER can hold anything, and SIZE more than is in it; rounding is
-forgiven (readings 153 and 237)."
+  "True if CONTAINER has room for SIZE more, but for rounding (readings 153 and 237)."
   (and (plusp (if (storage-bin-p container)
                   (storage-bin-capacity container)
                   (thing-capacity container)))

@@ -106,8 +106,7 @@
 ;;; Cameras.
 
 (defun camera-misses-p (camera destination container)
-  "True if CAMERA, on its way into DESTINATION, bumps it, or reaches for something false. It cannot
-bump what it cannot reach."
+  "True if CAMERA bumps CONTAINER, of DESTINATION, which it can reach, or DESTINATION is false."
   (cond ((null container) (eq (designator-type destination) :local))
         ((reaches-container-p camera container)
          (chance camera-insert-miss-prob* (handling-dice camera)))))

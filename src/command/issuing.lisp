@@ -82,8 +82,7 @@ of WORLD passed."
   (not (or (command-instant-p command) (trait-p :stops command))))
 
 (defun by-program-p ()
-  "True if the asker is a program: WITH-SIMULATION, a REPL or a continuation; not a plan, the prompt
-or a journal."
+  "True if a program issues the command (a continuation too), not a plan, the prompt or a journal."
   (or (null *asker*)
       (and (stringp *asker*) (starts-with-subseq "the continuation of " *asker*))))
 
@@ -105,9 +104,8 @@ or a journal."
          event)))
 
 (defun corrects-p (command resource arguments before)
-  "True if COMMAND of RESOURCE with ARGUMENTS may be meant to replace BEFORE: it is the same
-command, and RESOURCE is a part, or ARGUMENTS are other ones or none, or the world is a map's
-resident one, where BEFORE may have been issued at another time."
+  "True if COMMAND may be meant to replace BEFORE, the same command: RESOURCE is a part, ARGUMENTS
+are none or others, or BEFORE may be from an earlier time, as in a map's resident world."
   (and (eq command (operation-command before))
        (not (and (robot-p resource)
                  arguments
@@ -116,9 +114,8 @@ resident one, where BEFORE may have been issued at another time."
                    (not (eq world (map-resident (world-map world)))))))))
 
 (defun doubt-hurry (command resource arguments timeline)
-  "Warn once for a pair of commands if COMMAND is issued to RESOURCE, with ARGUMENTS, in the same
-tick as another (live: one tick later) by the same asker, without a continuation for the end of
-that. The same command to a robot again, as in a loop, counts, too."
+  "Warn once for a pair of commands if COMMAND, issued to RESOURCE with ARGUMENTS, interrupts one
+that the same program issued in this tick (live: or the last), without a continuation."
   (when (and (by-program-p) (lasting-p command))
     (let ((before (or (not-yet-begun resource timeline) (barely-begun resource timeline))))
       (when (and before
@@ -140,8 +137,8 @@ that. The same command to a robot again, as in a loop, counts, too."
                        (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
 (defun doubt-again (command resource arguments timeline)
-  "Warn once if COMMAND, which turns by ARGUMENTS, is issued again to RESOURCE, headless, while it
-is in progress for the same asker, who has no continuation for its end: it starts over."
+  "Warn once if COMMAND starts over in a headless run: a relative turn of RESOURCE by ARGUMENTS that
+the same program issues again while it is in progress without a continuation."
   (let ((before (resource-event resource)))
     (when (and (operation-p before)
                (eq command (operation-command before))
@@ -221,8 +218,7 @@ ticks of WORLD pass. Then forget the recorded parameters."
                               (command-name command) symbol (global-value symbol) value))))
 
 (defun note-bindings (command world)
-  "If COMMAND is issued in WORLD between ticks, and not by a plan, record the parameters. In a live
-run, warn if they are bound in this thread only."
+  "Record parameters bound around COMMAND, issued in WORLD between ticks. In a live run, warn."
   (let ((timeline (world-timeline world)))
     (unless (or (asker-forked-p *asker*) (timeline-passing-p timeline))
       (let ((bindings (parameters-bound timeline world)))
@@ -249,34 +245,26 @@ continue."
       (storage-bin `(robot-storage-bin ,name ,index))
       (part `(robot-part ,name ,(make-keyword (type-of resource)) ,index)))))
 
-(defun resource-here-text (resource)
-  "Return in sentences what to write instead of RESOURCE, if its robot is in our run too; or NIL."
-  (let ((name (robot-name (resource-robot resource))))
-    (when (find name (world-robots *world*) :key #'robot-name)
-      (format nil "This ~(~A is of the ~A~) outside of this WITH-SIMULATION, which has a ~(~A~) of ~
-                   its own. Inside write ~(~A~)."
-              (type-of resource) name name (safe-text (form-of-resource resource))))))
-
 (defun way-to-run (resource)
-  (let* ((robot (resource-robot resource))
-         (map (world-map (robot-world robot))))
-    (if (and *world*
-             (not (eq *world* (robot-world robot)))
-             (eq map (world-map *world*)))
-        (or (resource-here-text resource)
-            (format nil "A robot is in the run of WITH-SIMULATION if it is named there, as ~(~A~) ~
-                         is in (with-simulation ((ROBOT ~:*~(~A~))) ...)."
-                    (robot-name robot)))
-        (format nil "(simulator '~(~A~)) begins one, and does then what was asked before."
-                (robot-name robot)))))
+  "Return in sentences how to have RESOURCE in a run."
+  (let* ((robot (resource-robot resource)) (name (robot-name robot)) (world (robot-world robot)))
+    (cond ((or (null *world*)
+               (eq *world* world)
+               (not (eq (world-map world) (world-map *world*))))
+           (format nil "(simulator '~(~A~)) begins one, and does then what was asked before." name))
+          ((find name (world-robots *world*) :key #'robot-name)
+           (format nil "This ~(~A is of the ~A~) outside of this WITH-SIMULATION, which has a ~
+                        ~(~A~) of its own. Inside write ~(~A~)."
+                   (type-of resource) name name (safe-text (form-of-resource resource))))
+          (t (format nil "A robot is in the run of WITH-SIMULATION if it is named there, as ~(~A~) ~
+                          is in (with-simulation ((ROBOT ~:*~(~A~))) ...)." name)))))
 
 (defvar *ticks-follow-p* nil
   "True if the caller lets ticks pass for its commands, or says that none do.")
 
 (defun tell-if-kept (command resource robot)
   "Warn once for ROBOT, that of RESOURCE, if COMMAND is kept for a later run, and once for each
-WITH-SIMULATION in another thread that has bound the name of ROBOT. Commands of plans are left out,
-as running a plan lets ticks pass."
+WITH-SIMULATION in another thread that binds its name. Not of plans: running one passes ticks."
   (when (and (between-runs-p (robot-world robot))
              (not (asker-forked-p *asker*))
              (not *ticks-follow-p*))

@@ -36,8 +36,7 @@ that the attributes can have, and of a range the lower end first"
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
 (defun name-sightings (camera sightings)
-  "Return designators for those of SIGHTINGS that CAMERA still has. Of more than a robot keeps, the
-first are pushed out by the last."
+  "Return designators for those of SIGHTINGS that CAMERA still has, as many as a robot keeps."
   (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
     (remove-if-not #'designator-valid-p (remove nil designators))))
 

@@ -30,17 +30,15 @@
                for known = (and type (find-argument-type type nil))
                always (or (null known) (argument-of-type-p value type))))))
 
-(defun method-usage (method)
-  (format nil "~(~A~)" (parameter-variables (method-parameters method))))
-
 (defun methods-for (manipulation arguments)
   "Return the methods of MANIPULATION that take ARGUMENTS. Signals WRONG-ARGUMENT if none does."
   (or (remove-if-not (lambda (method) (method-takes-p method arguments))
                      (manipulation-methods manipulation))
       (reject-argument (manipulation-name manipulation) "argument list" arguments
-                       (format nil "~{~A~^ or ~}, objects as designators and the resource as a ~
+                       (format nil "~{~(~A~)~^ or ~}, objects as designators and the resource as a ~
                                     robot or part, and then a continuation"
-                               (mapcar #'method-usage (manipulation-methods manipulation))))))
+                               (loop for method in (manipulation-methods manipulation)
+                                     collect (parameter-variables (method-parameters method)))))))
 
 ;; As reading 176 says.
 (defun method-resource (method arguments)
@@ -70,14 +68,8 @@
 
 ;;; In its tick.
 
-(defun call-body (method arguments)
-  (let ((things (method-things method arguments)))
-    (multiple-value-list
-     (apply (method-body method) (append things (nthcdr (length things) arguments))))))
-
 (defun doubt-code (operation code)
-  "Say once for a manipulation if CODE, with which the body of that of OPERATION ends, is no error
-code."
+  "Warn once for the manipulation of OPERATION if CODE, which its body returned, is no error code."
   (unless (typep code '(or null keyword))
     (let ((name (command-prefix (operation-command operation))) (text (unqualified-text code)))
       (warn-once (list :code name) (operation-world operation)
@@ -87,10 +79,13 @@ code."
 
 (defun run-body (operation method)
   "Run the body of METHOD; end OPERATION with the code and value it returns, or with :FAILED."
-  (let ((results '(:failed)) (*world* (operation-world operation)))
+  (let* ((arguments (operation-arguments operation)) (things (method-things method arguments))
+         (results '(:failed)) (*world* (operation-world operation)))
     (in-any-case
       (call-user-code (lambda ()
-                        (setf results (call-body method (operation-arguments operation))))
+                        (setf results (multiple-value-list
+                                       (apply (method-body method)
+                                              (append things (nthcdr (length things) arguments))))))
                       (list "manipulation " (command-prefix (operation-command operation))))
       (progn (doubt-code operation (first results))
              (finish operation (first results) (second results))))))
@@ -107,8 +102,7 @@ code."
         (fail-with operation :failed))))
 
 (defun begin-manipulation (operation resource &rest arguments)
-  "Choose the method for ARGUMENTS, and let it be carried out when its delay has passed. There is
-none if the manipulation has been undefined since."
+  "Choose the method for ARGUMENTS, and carry it out when its delay has passed. Fail without one."
   (let* ((manipulation (find-manipulation (command-name (operation-command operation)) nil))
          (method (and manipulation (applicable-method manipulation arguments resource))))
     (setf (operation-subject operation) method)
@@ -122,8 +116,7 @@ none if the manipulation has been undefined since."
   (remove-if-not #'designator-p (operation-arguments operation)))
 
 (defun outcome-text (operation value)
-  "Return in words what OPERATION has done to what, and the VALUE that it has returned, unless that
-is NIL (manual E)."
+  "Return a text of the objects and the resource of OPERATION, and its VALUE if any (manual E)."
   (format nil "~{~A~^, ~} by ~A~@[: ~A~]"
           (mapcar #'destination-name (designators-given operation)) (operation-resource operation)
           (and value (one-line (safe-text value :escape nil :length 100)))))

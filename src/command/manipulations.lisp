@@ -112,8 +112,7 @@ for its resource, and such lists for all that follows. The type is NIL where non
        "the list of options stands behind the parameters, () if there are none"))
 
 (defun outdated-p (name method source)
-  "True if METHOD of NAME is from an earlier version of the file of SOURCE, which has it no more. If
-it still has it, it will come yet, unless loading fails before."
+  "True if METHOD of NAME is from an earlier version of the file of SOURCE, now without it."
   (let ((old (method-source method)))
     (and source
          (equal (source-file old) (source-file source))
@@ -131,8 +130,7 @@ it still has it, it will come yet, unless loading fails before."
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
 (defun with-method (name methods method)
-  "Return METHODS, the list for NAME, with METHOD in front, without any that has the same parameter
-list or of which it is a new version (reading 174)."
+  "Return METHODS of NAME with METHOD in front, without those that it replaces (reading 174)."
   (let* ((current (remove-if (lambda (old) (outdated-p name old (method-source method))) methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
                   (find-if (lambda (old) (retyped-p old method)) current))))

@@ -106,8 +106,7 @@ command that it cut short, or NIL"))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
 (defun tell-of-failure (operation kind code text)
-  "Queue TEXT, a message of KIND, for the end of OPERATION with CODE, which its continuation gets,
-too."
+  "Queue TEXT, a message of KIND, for the end of OPERATION with CODE, and record the failure."
   (queue-message (make-message kind (list text)
                                :about (command-name (operation-command operation))
                                :told-p (and (operation-continuation operation) t))
@@ -172,8 +171,7 @@ the resource and RESULTS. The second end of an operation changes nothing."
   (not (eq (operation-step operation) 'start-body)))
 
 (defun known-results (operation)
-  "Return the results of OPERATION that are known before it ends, those that it echoes: arguments of
-the same name, or else its subject, once it has begun."
+  "Return the results of OPERATION if it is interrupted: what :ECHO names, NIL for all others."
   (let* ((command (operation-command operation))
          (names (mapcar #'spec-name (command-parameters command))))
     (loop for result in (command-results command)
@@ -188,8 +186,8 @@ the same name, or else its subject, once it has begun."
 ;;; Beginning and going on.
 
 (defun call-guarded (operation step)
-  "Call STEP, of a user's command. Trouble in it, and that it neither ends OPERATION nor lets it go
-on, are messages and end that with :FAILED."
+  "Call STEP, of a user's command. If it fails, or neither ends nor continues OPERATION, queue a
+message and end OPERATION with :FAILED."
   (let ((origin (list "command " (command-prefix (operation-command operation))))
         (returned nil))
     (in-any-case
@@ -209,8 +207,7 @@ on, are messages and end that with :FAILED."
       (funcall (the symbol step) operation)))
 
 (defun run-operation (operation)
-  "Call the step of OPERATION for this tick. If the step is left by a non-local exit, as by a time
-limit, OPERATION is interrupted."
+  "Call the step of OPERATION for this tick. A non-local exit from it interrupts OPERATION."
   (unless (operation-finished-p operation)
     (let ((returned nil))
       (unwind-protect
@@ -241,9 +238,8 @@ limit, OPERATION is interrupted."
          operation (resource-told operation) (operation-arguments operation)))
 
 (defun make-way (operation agenda rival)
-  "Free the resource of RIVAL, the event pending on it, for OPERATION. A command that takes no time
-and has only just been issued is executed first; anything else is interrupted. So \(robot-set-speed
-...) followed by (robot-go-forward ...) sets the speed (reading 77)."
+  "Free the resource of RIVAL, the event pending on it, for OPERATION. Interrupt RIVAL, or execute
+it first if it takes no time, as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWARD (reading 77)."
   (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
          (cancel-event agenda rival)
          (call-step rival 'start-body))
@@ -251,8 +247,7 @@ and has only just been issued is executed first; anything else is interrupted. S
            (interrupt-event agenda rival))))
 
 (defgeneric note-cut-short (name operation rival)
-  (:documentation "Let OPERATION, which carries out the command called NAME, know what it cuts short
-by interrupting RIVAL, an operation: nothing, if that has not begun.")
+  (:documentation "Note in OPERATION, of the command NAME, which operation, RIVAL, it interrupts.")
   (:method (name operation rival)
     (declare (ignore name))
     (when (begun-p rival)

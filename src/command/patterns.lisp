@@ -35,8 +35,8 @@
            (reject-clause definition clause "a number, or a range: two numbers in a list")))))
 
 (defun parse-pattern (definition specification)
-  "Return the pattern that SPECIFICATION, a list of lists (attribute value [threshold]), stands
-for. Signals MALFORMED-DEFINITION about DEFINITION. See reading 126."
+  "Return the pattern of SPECIFICATION, a list of lists (attribute value [threshold]). Signals
+MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (unless (and (proper-list-p specification) (every #'asking-form-p specification))
     (reject-clause definition
                    (if (proper-list-p specification)
@@ -53,8 +53,7 @@ for. Signals MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (<= (- low threshold) number (+ high threshold)))
 
 (defun comparable-value (key value wanted)
-  "Return the part of VALUE, of the attribute KEY, to compare with WANTED: for a substance, its
-parameter or its type."
+  "Return VALUE of the attribute KEY, or the parameter or type of a substance if WANTED is one."
   (cond ((not (eq key :substance)) value)
         ((value-limits wanted) (substance-value-parameter value))
         (t (substance-value-type value))))

@@ -55,8 +55,7 @@
   :documentation "Angles below this, in radians, are rounding errors and count as turned.")
 
 (defun turn-step (robot left)
-  "Turn ROBOT for a tick, of the angle LEFT to be turned. Return what is then left, and the
-odometry's reading of the step. See reading 99."
+  "Turn ROBOT for a tick, by LEFT at most. Return the rest, and the step as read (reading 99)."
   (let* ((most (* (robot-turn-angle-now robot) (double tick-quantum*)))
          (step (clamp left (- most) most)))
     (turn-tick robot step)
@@ -64,8 +63,7 @@ odometry's reading of the step. See reading 99."
             (* 0.5d0 (+ (robot-turned-low robot) (robot-turned-high robot))))))
 
 (defun turn-towards (robot angle close)
-  "Turn ROBOT by ANGLE, unless that is less than CLOSE, but by no more than a tick's turn. True if
-it then faces there, but for the error of turning."
+  "Turn ROBOT for a tick by ANGLE, if not less than CLOSE. True if nothing is left to turn."
   (or (< (abs angle) close)
       (< (abs (turn-step robot angle)) +facing+)))
 
@@ -153,9 +151,8 @@ it then faces there, but for the error of turning."
 
 (defun corner-direction (robot type directions)
   "Return the heading in which ROBOT, coming along one wall of a corner, follows the other. At a
-convex corner it came along one of DIRECTIONS and turns against the other; at a concave one it came
-against one of them and turns along the other. If it already looks along a wall, away from the
-corner, it turns to the other wall (reading 105)."
+convex corner it comes along one of DIRECTIONS and turns against the other; at a concave one it is
+the reverse. If it looks away from the corner already, it turns to the other wall (reading 105)."
   (let* ((opposite (mapcar (lambda (d) (+ d pi)) directions))
          (convex (same-name-p (place-type-name type) 'convex))
          (ways (if convex directions opposite))

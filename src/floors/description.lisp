@@ -79,16 +79,14 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
         (t (reject-entry file entry "trinary, scale or raw"))))
 
 (defun image-path (file entry)
-  "Return the pathname of the image that ENTRY names, relative to the directory of FILE. There may
-be no such file."
+  "Return the pathname of the image, perhaps missing, that ENTRY names relative to that of FILE."
   (let ((name (entry-value entry)))
     (unless (and (stringp name) (string/= "" name))
       (reject-entry file entry "the name of the image, such as floor.pgm"))
     (merge-pathnames (file-called name) (uiop:pathname-directory-pathname file))))
 
 (defun image-in (file entry)
-  "Return the pathname of the image that ENTRY of FILE names. Signals UNUSABLE-FLOOR if that cannot
-be read."
+  "Return the pathname of the image that ENTRY of FILE names. Signals UNUSABLE-FLOOR."
   (let* ((image (image-path file entry)) (trouble (unusable-file-text image)))
     (when trouble
       (reject-floor file (entry-line entry) "the image ~A cannot be read: ~A. Put the image ~

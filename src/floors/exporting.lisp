@@ -9,8 +9,7 @@
   :documentation "How bright, from 0 to 255, pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+ are.")
 
 (defun number-of-substance (map substance)
-  "Return the number that the name SUBSTANCE has in MAP, or NIL if that has no walls of it. Signals
-UNKNOWN-NAME if it is not defined either."
+  "Return the number of SUBSTANCE in MAP, or NIL if no wall is of it. Signals UNKNOWN-NAME."
   (let ((names (map-substance-types map)))
     (or (position substance names :start 1 :test #'same-name-p)
         (unless (find-substance substance nil)
@@ -18,8 +17,8 @@ UNKNOWN-NAME if it is not defined either."
                        (append (rest (coerce names 'list)) (defined-names *substances*)))))))
 
 (defun unknown-wall-test (map unknown)
-  "Return a function of a substance's number and a parameter that is true if such walls of MAP are
-to be written as unknown. UNKNOWN is as for EXPORT-MAP. Signals UNKNOWN-NAME."
+  "Return a predicate of a substance's number and a parameter, true if UNKNOWN, as for EXPORT-MAP,
+stands for such walls of MAP. Signals UNKNOWN-NAME."
   (if (member unknown '(nil :walls))
       (constantly nil)
       (destructuring-bind (name &optional parameter) (ensure-list unknown)
@@ -72,8 +71,7 @@ to be written as unknown. UNKNOWN is as for EXPORT-MAP. Signals UNKNOWN-NAME."
             (name-as-value image) (decimal size) (mapcar #'decimal origin))))
 
 (defun write-floor-file (file format function &key (check #'identity))
-  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals UNUSABLE-FLOOR if that is
-not possible."
+  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals UNUSABLE-FLOOR."
   (handler-case (call-replacing-file function file :external-format format :check check)
     (unusable-floor (condition) (error condition))
     (error (condition)
@@ -95,8 +93,7 @@ not possible."
   (or (ignore-errors (existing-path path)) path))
 
 (defun image-named-in (file)
-  "Return the path of the image that the description FILE names, the truename if the image is there.
-Return NIL if FILE is no description."
+  "Return the path (the truename if it is there) of the image that FILE describes, or NIL."
   (ignore-errors
    (check-description-file file)
    (let ((entries (read-entries file (file-text file))))

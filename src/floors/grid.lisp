@@ -23,8 +23,7 @@
   (count state (grid-cells grid)))
 
 (defun chance-of (description sample white)
-  "Return how likely it is that a pixel with the value SAMPLE is occupied, from 0 to 1; NIL if
-that is not known."
+  "Return the probability that a pixel with the value SAMPLE is occupied, or NIL if it is unknown."
   (let ((brightness (/ sample white)))
     (cond ((eq :raw (description-mode description))
            (let ((percent (round (* 255 brightness))))
@@ -40,8 +39,7 @@ that is not known."
           (t +unknown+))))
 
 (defun state-table (description white)
-  "Return a vector of the states of pixels, by their values from 0 to WHITE; what is one more than
-that is unknown."
+  "Return a vector of the states of pixels by their values, from 0 to WHITE; WHITE + 1 is unknown."
   (let ((table (make-octets (+ 2 white))))
     (setf (aref table (1+ white)) +unknown+)
     (dotimes (sample (1+ white) table)
@@ -58,8 +56,7 @@ unknown if more are that than free."
         (t +free+)))
 
 (defun count-states (image table left top right bottom)
-  "Return how many of the pixels of IMAGE from LEFT to below RIGHT and TOP to below BOTTOM are free,
-occupied and unknown, by TABLE."
+  "Return how many of the pixels of IMAGE in this rectangle are free, occupied, unknown, by TABLE."
   (let ((samples (image-samples image)) (width (image-width image))
         (counts (make-array 3 :initial-element 0)))
     (declare (type samples samples) (type octets table) (dynamic-extent counts))

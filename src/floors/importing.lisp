@@ -69,8 +69,7 @@ UNKNOWN-NAME."
                (and (= 2 (length value)) (quantity-p (second value)))))))
 
 (defun sort-of-wall (option value)
-  "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME if the
-substance is not defined."
+  "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME."
   (check-option option (and value (substance-said-p value)) value
                 "the name of a substance, or a list of that and a parameter, as in (bricks 20)")
   (destructuring-bind (name &optional (parameter nil given)) (ensure-list value)
@@ -113,8 +112,7 @@ package that FILE is called like: letters and digits, with dashes between."
   (loop for (start end) in lines collect `(:wall ,start ,end ,@sort)))
 
 (defun grid-clauses (grid walls unknown)
-  "Return clauses of DEFMAP for the occupied cells of GRID, of the sort WALLS, and for the unknown
-ones, of the sort UNKNOWN, unless that is NIL."
+  "Return clauses of DEFMAP for GRID: of WALLS for occupied cells, of UNKNOWN for unknown ones."
   (flet ((clauses (sort needed &optional (allowed needed))
            (wall-clauses (fewest-lines grid needed allowed) sort)))
     (cond ((null unknown) (clauses walls (list +occupied+)))

@@ -141,8 +141,7 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
     (reject-damaged (png-tape png) "the chunk tRNS has ~D bytes, not 2" (length content))))
 
 (defun keep-chunk (png name content)
-  "Let PNG have the CONTENT of the chunk called NAME. Signals UNUSABLE-FLOOR if it is not known, but
-needed."
+  "Store CONTENT of the chunk NAME in PNG. Signals UNUSABLE-FLOOR if NAME is unknown but needed."
   (cond ((and (string= "PLTE" name) (png-palette-p png))
          (check-palette png content)
          (setf (png-palette png) content))

@@ -59,8 +59,7 @@ the octets to the left of it, in ABOVE, and to the left of that."
                 (setf (aref ,row ,index) (logand 255 (+ (aref ,row ,index) ,expected)))))))
 
 (defun undo-filter (filter row above step)
-  "Let ROW, made by FILTER, be as it was; the row ABOVE is already. Return NIL if there is no such
-filter."
+  "Undo FILTER of ROW; that of the row ABOVE is undone. Return NIL if there is no such filter."
   (declare (type octets row above) (type (integer 1 8) step) #.*hot*)
   (case filter
     (0)
@@ -98,8 +97,7 @@ filter."
     (reject-damaged (png-tape png) "the check sum of its pixels is missing or wrong")))
 
 (defun call-with-row (function png buffer start y row above)
-  "Let ROW be that of PNG at START of BUFFER, as it was before it was filtered, and call FUNCTION
-with Y and it."
+  "Copy the row of PNG at START of BUFFER into ROW, unfiltered, and call FUNCTION with Y and ROW."
   (declare (type octets buffer row above) (type function function) (type fixnum start))
   (let ((step (png-step png)))
     (replace row buffer :start1 step :start2 (1+ start))
@@ -214,8 +212,7 @@ behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
 ;;; Several channels. Of two octets the high one is the first.
 
 (defun shade-row-by-sums (row channels octets step samples start width rule)
-  "Let WIDTH of SAMPLES from START be those of ROW, behind STEP octets, with so many CHANNELS and
-OCTETS to each."
+  "Set WIDTH of SAMPLES from START by ROW, behind STEP octets, with CHANNELS of OCTETS each."
   (declare (type octets row) (type samples samples) (type (unsigned-byte 30) start width)
            (type (integer 1 8) step) (type (integer 2 4) channels) (type (integer 1 2) octets)
            #.*hot*)
@@ -243,10 +240,8 @@ OCTETS to each."
           (shade-row-by-sums row channels (floor depth 8) step samples (* y width) width rule)))))
 
 (defun read-png (tape limit mode)
-  "Return the PNG image in TAPE, of at most LIMIT pixels, in grey. How bright a pixel is is the
-average of red, green and blue, with alpha as MODE has it, as in ROS's nav2_map_server: averaged in
-as a fourth channel if MODE is :TRINARY; nobody knows what is not wholly opaque if it is :SCALE; of
-no account if it is :RAW. Signals UNUSABLE-FLOOR."
+  "Return the PNG image in TAPE, of at most LIMIT pixels, in grey. MODE says how alpha counts.
+Signals UNUSABLE-FLOOR."
   (let* ((png (read-chunks tape limit)) (rule (alpha-rule png mode)))
     (check-pixels-there png (* (png-height png) (1+ (png-row-size png))))
     (let ((samples (make-array (* (png-width png) (png-height png))

@@ -184,13 +184,17 @@ quotes, or behind a backslash in double ones, does not close them."
          (or (= (1+ end) (length text)) (blank-p (char text (1+ end))))
          end)))
 
-(defun read-entry (file line text)
-  (let ((end (key-end text)))
+(defun read-entry (file line text entries)
+  "Return the entry in TEXT, LINE of FILE. Its key may not be among ENTRIES."
+  (let* ((end (key-end text)) (key (subseq text 0 end)) (other (find-entry key entries)))
     (unless end
       (reject-floor file line "~S is no line such as resolution: 0.05, a key at the left edge, a ~
                                colon, a blank and a value"
                     (cut text 60)))
-    (make-entry (subseq text 0 end) line (value-at file line (trim (subseq text (1+ end)))))))
+    (when other
+      (reject-floor file line "~A is on line ~D already; leave one of the two out"
+                    key (entry-line other)))
+    (make-entry key line (value-at file line (trim (subseq text (1+ end)))))))
 
 (defun item-p (text)
   "True if TEXT is an item of a list below its key."
@@ -207,12 +211,6 @@ quotes, or behind a backslash in double ones, does not close them."
         (append (and (consp (entry-value entry)) (entry-value entry))
                 (list (without-comment (trim (subseq (trim text) 1)))))))
 
-(defun check-new-key (file entry entries)
-  (let ((other (find-entry (entry-key entry) entries)))
-    (when other
-      (reject-floor file (entry-line entry) "~A is on line ~D already; leave one of the two out"
-                    (entry-key entry) (entry-line other)))))
-
 (defun read-entries (file text)
   "Return the entries, in order, that TEXT, which FILE has, consists of. Signals UNUSABLE-FLOOR."
   (let ((entries '()))
@@ -223,7 +221,5 @@ quotes, or behind a backslash in double ones, does not close them."
           do (cond ((string= "" (without-comment text)))
                    ((and (null entries) (string= "---" (without-comment text))))
                    ((item-p text) (add-item file line text (first entries)))
-                   (t (let ((entry (read-entry file line text)))
-                        (check-new-key file entry entries)
-                        (push entry entries)))))
+                   (t (push (read-entry file line text entries) entries))))
     (nreverse entries)))

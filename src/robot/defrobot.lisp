@@ -66,12 +66,6 @@
         (when (typep value (kind-slot-type slot))
           (list initarg value))))))
 
-(defun find-part-kind (name)
-  (let ((kind (and name (symbolp name) (find name (all-kinds 'part) :key #'kind-name))))
-    (and kind
-         (not (member (kind-name kind) '(part camera hand storage-bin)))
-         kind)))
-
 (defun parse-values (kind specification reject)
   (loop for (initarg value) on (rest specification) by #'cddr
         append (or (parse-initarg kind initarg value)
@@ -82,8 +76,11 @@
 
 (defun parse-part (specification reject)
   "Return SPECIFICATION, (kind initarg value ...), with values of the types that are wanted."
-  (let ((kind (and (proper-list-p specification) (find-part-kind (first specification)))))
-    (unless (and kind (evenp (length (rest specification))))
+  (let ((kind (and (proper-list-p specification)
+                   (find (first specification) (all-kinds 'part) :key #'kind-name))))
+    (unless (and kind
+                 (not (member (kind-name kind) '(part camera hand storage-bin)))
+                 (evenp (length (rest specification))))
       (funcall reject specification
                (format nil "(kind initarg value ...), a kind of part that DEFINE-KIND has defined; ~
                             cameras, hands and bins have options of their own")))

@@ -124,8 +124,7 @@ a hand is where the hand is."
           (t location))))
 
 (defun denotation-space (designator)
-  "Return the THING-SPACE of the thing that DESIGNATOR denotes, as its robot sees it: another
-robot's hand hides what it holds, and is returned."
+  "Return the THING-SPACE of what DESIGNATOR denotes, or another robot's hand that holds it."
   (let* ((thing (designator-denotation designator)) (location (thing-location thing)))
     (if (and (hand-p location)
              (not (eq (part-robot location) (designator-robot designator))))
@@ -153,15 +152,6 @@ a container or in a bin, and within reach. False of places."
              (eq (denotation-space designator) (designator-location designator)))
          (multiple-value-bind (x y) (designator-position designator)
            (and x (within-reach-p (designator-robot designator) x y))))))
-
-;;; While a robot turns, the world stands still.
-
-(defun turn-designators (robot angle)
-  "Rotate the designators of ROBOT, which has turned by ANGLE, so that they keep their directions in
-the world. Those at the robot's own position have no direction and turn with the robot."
-  (loop for designator across (robot-designators robot)
-        when (and designator (designator-bearing-p designator))
-          do (decf (designator-angle designator) angle)))
 
 ;;; In a journal: also one that has been dropped can be named, perhaps in a run before this one,
 ;;; whose serial numbers are given again. So it has none.

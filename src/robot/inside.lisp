@@ -91,8 +91,7 @@ holds moves along; its track is lost; warnings say so."
   (move-part part nil))
 
 (defun astray-p (part)
-  "True if PART is inside a thing that is no longer within its robot's reach, or that is now in a
-closed bin or in another robot's bin."
+  "True if PART is inside a thing out of its robot's reach, or in a closed or another robot's bin."
   (let ((location (part-location part)))
     (and (thing-p location)
          (or (multiple-value-bind (x y) (thing-position location)
@@ -106,8 +105,7 @@ closed bin or in another robot's bin."
   (when (astray-p part) (pull-out part)))
 
 (defun settle-parts (robot)
-  "Pull the parts of ROBOT out of things beyond its reach, and make its hands drop all but one
-thing."
+  "Pull the parts of ROBOT out of things beyond its reach; make its hands drop all but one thing."
   (declare #.*hot* (type robot robot))  ; in each tick
   (loop for hand across (robot-hands robot)
         do (when (hand-location hand) (settle-part hand))

@@ -98,17 +98,13 @@ NIL."
 
 (defun check-in-run (resource operator)
   "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
-  (let ((robot (if (robot-p resource) resource (part-robot resource))))
+  (let* ((robot (if (robot-p resource) resource (part-robot resource)))
+         (newest (and (robot-retired robot) (find-robot (robot-name robot) nil))))
     (when (robot-retired robot)
       (reject-outlived "~(~A~): the run of this ~(~A~) is over: ~A.~@[ Command the robot that the ~
                         variable ~(~A~) holds now.~]"
                        operator (robot-name robot) (robot-retired robot)
-                       (and (successor robot) (robot-name robot))))))
-
-(defun successor (robot)
-  "Return the robot that is called as ROBOT, which is retired, and takes commands, or NIL."
-  (let ((other (find-robot (robot-name robot) nil)))
-    (and other (null (robot-retired other)) other)))
+                       (and newest (null (robot-retired newest)) (robot-name robot))))))
 
 (defun take-out (robot reason)
   (let ((world (robot-world robot)))

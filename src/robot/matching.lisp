@@ -173,8 +173,7 @@ are NIL, if it is one of CHOICES."
   (world-map (thing-world thing)))
 
 (defun as-asked (demand reading thing)
-  "Return READING of THING, which fits DEMAND, with the symbol that was asked for; if a number was
-asked for, the one that the world's author writes."
+  "Return READING of THING, which fits DEMAND, with the symbols of DEMAND or the map's author."
   (flet ((asked (value)
            (or (find value (demand-choices demand) :test #'value-equal)
                (own-symbol value (and (thing-world thing) (map-package (thing-map thing)))))))
@@ -210,9 +209,8 @@ as an object descriptor (reading 127)."
     (- 1d0 (power (- 1d0 (attribute-noticed attribute)) (1+ given)))))
 
 (defun noticeable-p (attribute value map)
-  "True if a thing of MAP that has VALUE for ATTRIBUTE can be noticed for it. A boolean attribute
-that a thing lacks is false; for one that the manual does not define, this applies only if some
-thing of MAP starts with it."
+  "True if a thing of MAP that has VALUE for ATTRIBUTE can be noticed for it. A missing boolean is
+false, but for a user's attribute only if some thing of MAP starts with it."
   (or value
       (and (can-be-false-p attribute)
            (or (built-in-attribute-p attribute)

@@ -53,8 +53,7 @@ another column."
                         (abs (- (+ y (* dy at)) (if back-y 0 (map-height map))))))))))
 
 (defun pass-corner (robot x y column row)
-  "If ROBOT, in the cell at COLUMN and ROW, is blocked only by a corner, move it into the cell
-opposite. True if so."
+  "Move ROBOT, in the cell at COLUMN and ROW, past a corner if only that blocks it. True if moved."
   (let ((world (robot-world robot)))
     (multiple-value-bind (beyond-x beyond-y) (beyond-corner world +blocking+ x y column row)
       (unless (or (null beyond-x)
@@ -159,8 +158,10 @@ So a robot can drive along the border of two cells, and stay in one of them."
 (defun set-robot-angle (robot angle)
   "Turn ROBOT to the heading ANGLE, in radians, at once; its odometers do not notice."
   (let ((angle (double angle)))
-    (when (plusp (length (robot-designators robot)))
-      (turn-designators robot (- angle (robot-angle robot))))
+    ;; Designators keep their directions in the world, but for those at the robot's own position.
+    (loop for designator across (robot-designators robot)
+          when (and designator (designator-bearing-p designator))
+            do (decf (designator-angle designator) (- angle (robot-angle robot))))
     (setf (robot-angle robot) angle
           (robot-cos robot) (component (cosine angle))
           (robot-sin robot) (component (sine angle))))

@@ -25,10 +25,8 @@
   (if (< (abs component) +least-component+) +least-component+ component))
 
 (defun walk-to-corner (visit world x y dx dy)
-  "Call VISIT with index and flags of each cell of WORLD, after the first, on the ray from (X,Y) in
-direction (DX,DY). Stop when VISIT returns true or at the edge of the map; return NIL. If the ray
-meets an obstructed corner through which it passes, stop, too, and return the point beyond the
-corner, as two values."
+  "Do as WALK-RAY does, but stop at an obstructed corner through which the ray passes. Return the
+point beyond that corner, as two values, or NIL if the ray has ended."
   (declare (type function visit) (type double-float x y dx dy))
   (let* ((flags (world-flags world)) (map (world-map world))
          (beyond-x nil) (beyond-y nil))
@@ -102,9 +100,8 @@ before BODY runs for the direction before, so that the processor divides while B
 (declaim (inline begin-axis walk-fan))
 (defun begin-axis (back per stride behind ahead left-behind left-ahead)
   "Return how the index changes where a ray crosses borders of one axis, the distance of the first
-crossing, and the largest number of crossings, with a distance PER border; BACK is true towards
-smaller coordinates. The other arguments are the distances to the borders behind and ahead, and how
-many there are of each."
+crossing, and the largest number of crossings. PER is the distance from border to border, BACK is
+true towards smaller coordinates; BEHIND and AHEAD are the distances to the next borders."
   (declare (type double-float per behind ahead) (type grid-size stride left-behind left-ahead))
   (if back
       (values (- stride) (* per behind) left-behind)

@@ -25,9 +25,8 @@
     reached))
 
 (defun sight-by-rays (world x y to-x to-y heading width count)
-  "Return :CLEAR if one of COUNT rays from (X,Y), evenly spaced over WIDTH radians around HEADING,
-reaches the cell of (TO-X,TO-Y) in WORLD; :OBSTRUCTED if all that would cross it are stopped before;
-NIL if none would."
+  "Return :CLEAR if one of COUNT rays from (X,Y), over WIDTH radians around HEADING, reaches the
+cell of (TO-X,TO-Y) in WORLD; :OBSTRUCTED if all that would are stopped before; NIL if none would."
   (let* ((index (map-index (world-map world) to-x to-y))
          (dx (- (+ 0.5d0 (floor to-x)) x)) (dy (- (+ 0.5d0 (floor to-y)) y))
          (spacing (/ width count)) (first (- heading (* 0.5d0 (- width spacing))))
@@ -157,8 +156,7 @@ CAMERA, if one may."
        (visible-p designator camera)))
 
 (defun out-of-sight-p (designator camera)
-  "True if the local DESIGNATOR denotes something in the open that is hidden from CAMERA, for
-example by a wall between two adjacent cells."
+  "True if DESIGNATOR denotes something in the open that is hidden from CAMERA."
   (and (followable-p designator)
        (not (visible-p designator camera))))
 
@@ -182,16 +180,13 @@ approach is the approach's to tell (reading 112)."
       (setf (camera-angle camera) (designator-angle designator))))
 
 (defun tend-local-track (camera designator dice)
-  (cond ((designator-local-p* designator)
-         (if (out-of-sight-p designator camera)
-             (lose-track camera)
-             (keep-or-lose camera designator dice)))
-        ((followable-p designator)
-         (setf (designator-type designator) :non-local)
-         (if (visible-p designator camera)
-             (keep-or-lose camera designator dice)
-             (lose-track camera)))
-        (t (drop-designator designator))))
+  (let ((local (designator-local-p* designator)))
+    (cond ((not (or local (followable-p designator)))
+           (drop-designator designator))
+          (t (unless local (setf (designator-type designator) :non-local))
+             (if (out-of-sight-p designator camera)
+                 (lose-track camera)
+                 (keep-or-lose camera designator dice))))))
 
 (defun tend-track (camera designator tick dice)
   "Update the track of DESIGNATOR by CAMERA in TICK."

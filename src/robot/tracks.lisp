@@ -130,9 +130,8 @@ is lost and no other camera tracks the designator, that is dropped."
 (note-lasting 'watch-thing)
 
 (defun survives-move-p (designator by-hand)
-  "True if DESIGNATOR stays valid although its denotation has moved; BY-HAND is true if it was
-grasped or set down. So it does if a camera tracks it and can follow, or if it is local and stays
-local (reading 139)."
+  "True if DESIGNATOR stays valid although its denotation has moved: tracked, it can be followed; or
+BY-HAND is true, as it was grasped or set down, and it is and stays local (reading 139)."
   (if (tracked-p designator)
       (eq (denotation-space designator) (designator-location designator))
       (and by-hand
