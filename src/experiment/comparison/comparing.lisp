@@ -157,11 +157,6 @@ and BEFORE; :UNKNOWN if these do not say."
         (then (parts-described (sample-condition (second pair)) before)))
     (if (and now then) (changed-parts then now) :unknown)))
 
-(defun changed-pairs (pairs)
-  (remove-if (lambda (pair)
-               (string= (sample-fingerprint (first pair)) (sample-fingerprint (second pair))))
-             pairs))
-
 (defun part-of-kind-p (kind part) (starts-with-subseq (format nil "~A " kind) part))
 
 (defun lines-only-in (lines others title)
@@ -200,7 +195,9 @@ and BEFORE; :UNKNOWN if these do not say."
 (defun changes-between (pairs after before)
   "Return lines on what affects the trials of PAIRS in one table but not in the other, by the texts
 in the directories AFTER and BEFORE, which may be NIL."
-  (let* ((changed (changed-pairs pairs))
+  (let* ((changed (remove-if (lambda (pair)
+                               (apply #'string= (mapcar #'sample-fingerprint pair)))
+                             pairs))
          (changes (loop for pair in changed
                         collect (if (and after before)
                                     (changes-of-pair pair after before)

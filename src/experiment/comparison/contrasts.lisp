@@ -71,31 +71,24 @@ indexes."
       (cl:map 'vector #'success-p (sample-outcomes sample))
       (sample-measure results sample name)))
 
-(defun paired-values (column other pairs)
-  "Return lists of the values in COLUMN and OTHER in PAIRS in which both were measured."
-  (loop for (i . j) in pairs
-        for a = (aref column i)
-        for b = (aref other j)
-        unless (or (eq :none a) (eq :none b))
-          collect a into firsts and collect b into seconds
-        finally (return (values firsts seconds))))
+(defun filter-both (test firsts seconds)
+  "Return lists of the values of the lists FIRSTS and SECONDS, pair by pair, that both pass TEST."
+  (loop for a in firsts
+        for b in seconds
+        when (and (funcall test a) (funcall test b))
+          collect a into values and collect b into others
+        finally (return (values values others))))
 
 ;;; A measure is compared as a rate if it is always true or false, and as a mean if it has numbers.
 ;;; Words are not compared.
-
-(defun only-numbers (firsts seconds)
-  (loop for a in firsts
-        for b in seconds
-        when (and (finite-value-p a) (finite-value-p b))
-          collect a into numbers and collect b into others
-        finally (return (values numbers others))))
 
 (defun difference-of-values (name firsts seconds)
   "Return the difference in NAME between FIRSTS and SECONDS, lists of values; NIL of words."
   (flet ((all (test) (and (every test firsts) (every test seconds))))
     (cond ((all (lambda (value) (typep value 'boolean))) (rate-difference name firsts seconds))
           ((or (some #'realp firsts) (some #'realp seconds))
-           (multiple-value-call #'mean-difference name (only-numbers firsts seconds)))
+           (multiple-value-call #'mean-difference
+             name (filter-both #'finite-value-p firsts seconds)))
           (t nil))))
 
 (defun noting-left-out (difference pairs)
@@ -107,7 +100,10 @@ indexes."
 (defun difference-in (name results first other-results second pairs)
   (let ((pairs (pairs-for name first second pairs))
         (column (column-of results first name)) (other (column-of other-results second name)))
-    (multiple-value-bind (firsts seconds) (paired-values column other pairs)
+    (multiple-value-bind (firsts seconds)
+        (filter-both (lambda (value) (not (eq :none value)))
+                    (loop for (i . nil) in pairs collect (aref column i))
+                    (loop for (nil . j) in pairs collect (aref other j)))
       (cond ((string-equal name "ticks") (mean-difference "ticks" firsts seconds))
             ((or firsts (string-equal name "success"))
              (noting-left-out (difference-of-values (string-downcase name) firsts seconds)

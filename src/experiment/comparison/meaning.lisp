@@ -96,11 +96,6 @@ the first of LEVEL; of any other if that is NIL."
 (defun either (things exactly partly)
   (or (remove-if-not exactly things) (remove-if-not partly things)))
 
-(defun all-levels (results)
-  "Return lists (place level) of what conditions of RESULTS differ in."
-  (loop for place in (free-factors results)
-        append (loop for level in (levels results place) collect (list place level))))
-
 (defun level-title (results level)
   (full-level-name (nth (first level) (results-factors results)) (second level)))
 
@@ -118,7 +113,8 @@ the first of LEVEL; of any other if that is NIL."
   "Return lists (place level) of what DESIGNATOR, no condition's number, can mean in RESULTS."
   (unless (numbered-sample results designator)
     (let ((word (word-of designator)))
-      (either (all-levels results)
+      (either (loop for place in (free-factors results)
+                    append (loop for level in (levels results place) collect (list place level)))
               (lambda (level)
                 (level-word-p word (nth (first level) (results-factors results)) (second level)))
               (lambda (level) (search word (level-title results level) :test #'char-equal))))))

@@ -142,16 +142,13 @@
                      leaves out 0 is no proof" tests)
         "the interval leaves out 0, but it is an approximation, and p is above .05: p decides")))
 
-(defun bound-words (difference)
-  (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"
-          (amount-words difference (max (abs (paired-low difference))
-                                        (abs (paired-high difference))))))
-
 (defun doubt-words (difference)
   "Return how large DIFFERENCE can be if there is one; or why it is none in spite of its interval."
-  (if (<= (paired-low difference) 0 (paired-high difference))
-      (bound-words difference)
-      (format nil "~A~@[~A~]" (zero-words difference) (few-seeds-words difference))))
+  (let ((low (paired-low difference)) (high (paired-high difference)))
+    (if (<= low 0 high)
+        (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"
+                (amount-words difference (max (abs low) (abs high))))
+        (format nil "~A~@[~A~]" (zero-words difference) (few-seeds-words difference)))))
 
 (defun verdict (difference contrast)
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))

@@ -62,8 +62,6 @@ of, if that is one factor."
         collect (make-panel (format nil "~@[~A, ~]~D of ~D" where number (length chunks))
                             title chunk)))
 
-(defun joined (where more) (format nil "~@[~A ~]~A" where more))
-
 (defun panels (samples places factors &optional where)
   "Return panels for SAMPLES, whose series the factors at PLACES of FACTORS tell apart: as few as
 hold all series."
@@ -74,7 +72,8 @@ hold all series."
                (loop for group in (grouped samples
                                            (lambda (sample) (common-name sample last factors)))
                      append (panels group (butlast places) factors
-                                    (joined where (common-name (first group) last factors)))))))))
+                                    (format nil "~@[~A ~]~A" where
+                                            (common-name (first group) last factors)))))))))
 
 ;;;; Charts
 
@@ -118,14 +117,13 @@ trials that broke off with an error, if there are any."
   (and (cddr numbers) (every #'realp numbers) (every #'plusp numbers)
        (<= 50 (/ (reduce #'max numbers) (reduce #'min numbers)))))
 
-(defun point-of (sample place estimate)
-  (list (if place (x-value (text-at place sample)) "all")
-        (estimate-value estimate) (estimate-low estimate) (estimate-high estimate)))
-
 (defun chart-series (panel place estimate-of)
   (loop for (name . samples) in (panel-series panel)
         collect (cons name (loop for sample in samples
-                                 collect (point-of sample place (funcall estimate-of sample))))))
+                                 for estimate = (funcall estimate-of sample)
+                                 collect (list (if place (x-value (text-at place sample)) "all")
+                                               (estimate-value estimate) (estimate-low estimate)
+                                               (estimate-high estimate))))))
 
 (defun estimates-charts (results summaries name y-label words reader)
   (let* ((place (factor-across results)) (factors (results-factors results))

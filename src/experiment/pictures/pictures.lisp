@@ -86,12 +86,6 @@ directory cannot be made."
                      (loop for trial in trials
                            append (ways-of-trial experiment condition trial)))))
 
-(defun start-of-trial (experiment condition trial)
-  (call-in-silence (lambda ()
-                     (call-in-trial (lambda ()
-                                      (take-snapshot (simulation-world (current-simulation))))
-                                    experiment condition trial))))
-
 (defun trial-numbers (trials)
   "Return the numbers of the trials that TRIALS, an argument of SAVE-WAYS-PICTURE, means."
   (check-argument save-ways-picture trials
@@ -126,7 +120,11 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG ne
   (let* ((experiment (find-experiment experiment))
          (condition (find-condition experiment condition))
          (trials (trial-numbers trials))
-         (start (start-of-trial experiment condition (first trials))))
+         (start (call-in-silence
+                 (lambda ()
+                   (call-in-trial (lambda ()
+                                    (take-snapshot (simulation-world (current-simulation))))
+                                  experiment condition (first trials))))))
     (apply #'save-bundle 'save-ways-picture "trial" file start
            (lambda () (ways-of-trials experiment condition trials))
            (or (question-of (experiment-name experiment))

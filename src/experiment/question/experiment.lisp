@@ -40,13 +40,11 @@ hold weakly: the keys of a table" :writable))
             for choice in (second (first axes))
             append (loop for others in rest collect (append choice others)))))
 
-(defun setting-text (setting)
-  (format nil "~(~A~)=~A" (first setting) (value-text (second setting))))
-
 (defun name-for (case-name settings)
   "Return what the condition of CASE-NAME, or NIL, with the other SETTINGS is called."
   (let ((words (append (and case-name (list (string-downcase case-name)))
-                       (mapcar #'setting-text settings))))
+                       (loop for (name value) in settings
+                             collect (format nil "~(~A~)=~A" name (value-text value))))))
     (if words (format nil "~{~A~^ ~}" words) "all")))
 
 ;;; What a setting does.

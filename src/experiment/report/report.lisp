@@ -37,11 +37,6 @@ the index of a trial, and returns a text, or NIL if nothing did."
                 (and (= (occurrence-count a) (occurrence-count b))
                      (string< (occurrence-text a) (occurrence-text b))))))))
 
-(defun replay-text (occurrence)
-  (format nil "(replay-trial '~A ~A ~D)" (sample-experiment (occurrence-sample occurrence))
-          (unbroken (prin1-to-string (sample-condition (occurrence-sample occurrence))))
-          (occurrence-trial occurrence)))
-
 (defconstant +most-told+ 5 "How many reasons and errors are told.")
 
 (defun where-text (occurrence)
@@ -55,11 +50,15 @@ several, and how to see one of each."
       (format stream "~%~A~%" title)
       (loop with width = (length (integer-text (occurrence-count (first all))))
             for one in all
+            for sample = (occurrence-sample one)
             repeat +most-told+
             do (write-wrapped (format nil "~A~@[: ~A~]" (occurrence-text one)
                                       (and several-p (where-text one)))
                               stream :first (format nil "  ~V@A  " width (occurrence-count one)))
-               (write-wrapped (replay-text one) stream :first (format nil "  ~VA  " width "")))
+               (write-wrapped (format nil "(replay-trial '~A ~A ~D)" (sample-experiment sample)
+                                      (unbroken (prin1-to-string (sample-condition sample)))
+                                      (occurrence-trial one))
+                              stream :first (format nil "  ~VA  " width "")))
       (when (nthcdr +most-told+ all)
         (format stream "  and ~D of other kinds~%"
                 (reduce #'+ (nthcdr +most-told+ all) :key #'occurrence-count))))))

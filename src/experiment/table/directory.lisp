@@ -52,16 +52,13 @@
       (with-lock (*stores-lock*)
         (setf *stores-in-use* (remove path *stores-in-use* :test #'equal))))))
 
-(defun new-directory ()
-  (loop for number from 0
-        for path = (directory-called (format nil "~Atrials-~D-~D/"
-                                             (native-name (uiop:temporary-directory))
-                                             (process-number) number))
-        when (make-new-directory path) return path))
-
 (defun call-with-temporary-directory (function)
   "Call FUNCTION with the path of a new directory, which is gone afterwards."
-  (let ((path (new-directory)))
+  (let ((path (loop for number from 0
+                    for path = (directory-called (format nil "~Atrials-~D-~D/"
+                                                         (native-name (uiop:temporary-directory))
+                                                         (process-number) number))
+                    when (make-new-directory path) return path)))
     (unwind-protect (funcall function path)
       (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
 

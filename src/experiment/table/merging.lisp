@@ -116,9 +116,6 @@ whether its series is there. Tables with other columns have none."
                 (funcall function condition (parse-integer (nth (1+ seed) texts))
                          (second texts) name (series-complete-p series texts))))))))))
 
-(defun own-fingerprint-p (condition fingerprint)
-  (string= fingerprint (condition-fingerprint condition)))
-
 (defun missing-shards (experiment trials count directory)
   "Return the numbers, from 0, of those of COUNT shards of TRIALS trials of each condition of
 EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
@@ -126,7 +123,7 @@ EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
   (let ((presence (make-hash-table :test 'eq)) (missing (make-array count :element-type 'bit)))
     (map-rows-there (lambda (condition trial fingerprint directory complete-p)
                       (declare (ignore directory))
-                      (when (and complete-p (own-fingerprint-p condition fingerprint))
+                      (when (and complete-p (string= fingerprint (condition-fingerprint condition)))
                         (note-present condition trial presence)))
                     experiment directory)
     (loop for trial from 1 to trials
@@ -144,6 +141,6 @@ now, could not be gone on with, and DAMAGED-TABLE if they have other columns."
       (check-beginning (rows-file (directory-called name)) (columns experiment)))
     (map-rows-there (lambda (condition trial fingerprint name complete-p)
                       (declare (ignore trial complete-p))
-                      (unless (own-fingerprint-p condition fingerprint)
+                      (unless (string= fingerprint (condition-fingerprint condition))
                         (reject-foreign experiment condition parts (directory-called name))))
                     experiment directory)))

@@ -108,9 +108,6 @@ its own."
 
 ;;; Rows.
 
-(defparameter *outcomes* '("success" "failure" "limit" "error" "timeout")
-  "What a trial can have come to.")
-
 (defun timed-out-p (texts columns)
   "True if the row TEXTS, of a table with COLUMNS, is of a trial whose time was up: it cannot be had
 again."
@@ -141,7 +138,8 @@ again."
       (declare (ignore reason))
       (check (integer-in seed) "seed")
       (check (typep (integer-in trial) `(integer 1 ,+largest+)) "trial")
-      (check (member outcome *outcomes* :test #'string=) "outcome")
+      (check (member outcome '("success" "failure" "limit" "error" "timeout") :test #'string=)
+             "outcome")
       ;; Earlier versions wrote 0 for a trial whose time was up.
       (check (or (typep (integer-in ticks) `(integer 0 ,+largest+))
                  (and (string= "" ticks) (string= "timeout" outcome)))
