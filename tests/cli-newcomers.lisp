@@ -209,6 +209,7 @@
 
 (test pasted.messages-are-passed-over
   (is (null (type-batch "Robot> robot-turn: Robot turned 1.57" "Robot>" "Break> ")))
+  (is (null (type-batch "*WARNING* -> Removing Designator 0" "*ERROR* -> (x, line 1: turn): no.")))
   (is-true (has-words-p (complaint "robot-turn: Robot turned 1.57") "There is no command"))
   (is-true (has-words-p (complaint "Robot> frobnicate") "There is no command FROBNICATE")))
 

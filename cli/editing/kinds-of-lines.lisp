@@ -72,7 +72,8 @@ blanks, and extends to the end of TEXT if there is no second quote."
 
 ;;; A user may paste text from a page or window, prompts included. The prompts are removed. What
 ;;; follows one may also be a message of the robot's, such as "robot-turn: Robot turned 1.00": its
-;;; first word ends with a colon. Other answers are lines without a prompt among lines with prompts.
+;;; first word ends with a colon. A warning or an error is known by its beginning. Other answers are
+;;; lines without a prompt among lines with prompts.
 
 (defparameter *labels* '("Robot>" "Break>") "What prompts look like.")
 
@@ -80,6 +81,11 @@ blanks, and extends to the end of TEXT if there is no second quote."
   (let* ((start (position-if-not #'blank-p text))
          (end (and start (position-if #'blank-p text :start start))))
     (and end (< start (1- end)) (char= #\: (char text (1- end))))))
+
+(defun warning-p (text)
+  "True if TEXT, a line, is a warning or an error that the prompt has shown."
+  (some (lambda (beginning) (starts-with-subseq beginning text))
+        '("*WARNING* -> " "*ERROR* -> " "*BREAK* -> ")))
 
 (defun after-label (text)
   "Return the text after the prompt at the beginning of TEXT, a line, or NIL if it has none."
@@ -90,7 +96,8 @@ blanks, and extends to the end of TEXT if there is no second quote."
 (defun without-label (text)
   "Return TEXT, a line as typed, without the prompts that it begins with; nothing of a message."
   (let ((rest (after-label text)))
-    (cond ((null rest) text)
+    (cond ((warning-p text) "")
+          ((null rest) text)
           ((message-p rest) "")
           (t (without-label (string-left-trim " " rest))))))
 
