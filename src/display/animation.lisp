@@ -8,8 +8,7 @@
 ;;; visible in its turn. Programs that do not animate show the first frame. A page for browsers can
 ;;; besides be stopped and gone through: see film.lisp.
 
-(define-constant +frame-limit+ 600
-  :documentation "How many frames a run is shown in at most, unless the user asks for more.")
+(defconstant +frame-limit+ 600 "The most frames of a film, unless the user asks for more.")
 
 (defvar *frame-hook* (constantly nil)
   "A function that is called with the tick of each frame of a run that is drawn, for those who say

@@ -123,10 +123,8 @@ in black if the display has no colours (manual B.1). Signals WRONG-ARGUMENT."
   "True of a canvas."
   (typep object 'canvas))
 
-(define-constant +character-width+ 7
-  :documentation "How wide a character of a canvas's text is, in pixels, about.")
-(define-constant +line-height+ 16
-  :documentation "How far the lines of a canvas's text should be apart, in pixels.")
+(defconstant +character-width+ 7 "About how wide a character on a canvas is, in pixels.")
+(defconstant +line-height+ 16 "The distance between lines of text on a canvas, in pixels.")
 
 (defgeneric paint-rectangles (canvas gcontext rectangles fill-p)
   (:documentation

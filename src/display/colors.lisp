@@ -34,7 +34,7 @@
 (defvar grey* (shades 64 black* white*)
   "A vector of 64 shades of grey: 0 is black, 63 is white (manual B.1).")
 
-(define-constant +plain+ 9 :documentation "The index of the plain colour in a vector of 12 shades.")
+(defconstant +plain+ 9 "The index of the plain colour in a vector of 12 shades.")
 
 (defun shades-around (dark plain light)
   "Return a vector of 12 colours from DARK by way of PLAIN, at +PLAIN+, to LIGHT."
@@ -81,8 +81,7 @@ attribute. Black if NAME is none (manual B; reading 212)."
 ;;; Luminance and contrast are those of the Web Content Accessibility Guidelines 2.1: what is less
 ;;; than 3 to 1 is hard to make out.
 
-(define-constant +least-contrast+ 3
-  :documentation "How much contrast what is drawn has at least to what it lies on.")
+(defconstant +least-contrast+ 3 "The least contrast of what is drawn to its background.")
 
 (defun linear-light (byte)
   "Return how much light, from 0 to 1, the value BYTE of one of the three primaries means."

@@ -8,11 +8,10 @@
 ;;; draw; it returns how many pixels down it has drawn. (In these loops Y steps before the parts run
 ;;; out, so that it ends below the last.) Manual B.
 
-(define-constant +margin+ 6 :documentation "How far from the edge drawing begins, in pixels.")
-(define-constant +object-width+ 90 :documentation "How wide things are drawn at most, in pixels.")
-(define-constant +object-height+ 12 :documentation "How high things are drawn, in pixels.")
-(define-constant +largest-unit+ 8
-  :documentation "How many pixels wide a thing is drawn at most for each unit of its size.")
+(defconstant +margin+ 6 "The margin of a display, in pixels.")
+(defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")
+(defconstant +object-height+ 12 "The height of things in a display, in pixels.")
+(defconstant +largest-unit+ 8 "The most pixels of width for each unit of a thing's size.")
 
 (defun characters-in (width)
   "Return how many characters fit into WIDTH pixels; at least one does."
@@ -159,7 +158,7 @@ that their widths are in proportion.")
 
 ;;; Cameras.
 
-(define-constant +dial+ 30 :documentation "The radius of the picture of a camera, in pixels.")
+(defconstant +dial+ 30 "The radius of the picture of a camera, in pixels.")
 
 (defun draw-tick (canvas x y angle)
   (with-color (layer-ink :tracks)
@@ -254,8 +253,7 @@ parts (name title function parts), in which FUNCTION draws one of what PARTS ret
   :documentation "The displays: bird's eye view, robot state, robot designators, cameras, hands and
 storage bins.")
 
-(define-constant +detail-width+ 340
-  :documentation "How wide every display but that of the world is drawn, in pixels.")
+(defconstant +detail-width+ 340 "The width of every display but that of the world, in pixels.")
 
 (defun display-title (display)
   "Return what the window of DISPLAY, one of +DISPLAYS+, is called (manual B)."

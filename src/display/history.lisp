@@ -26,9 +26,8 @@ first. Where the placements differ from one point to the next, the robot was put
   ;; Cameras come in small numbers: an association list.
   (looks '() :type list))
 
-(define-constant +trail-length+ 4000 :documentation "How many points of a trail are kept.")
-(define-constant +trail-step+ 0.1d0
-  :documentation "How far apart the points of a trail are at least, in metres.")
+(defconstant +trail-length+ 4000 "The most points of a trail that are drawn.")
+(defconstant +trail-step+ 0.1d0 "The least distance between the points of a trail, in metres.")
 
 (defun trail-called (name simulation)
   "Return the trail of the robot called NAME that is kept of SIMULATION, or NIL."

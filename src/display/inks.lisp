@@ -87,8 +87,8 @@ wide, with DASHES."
   :test #'cl:equal
   :documentation "The colours of rays, from the least parameter of walls to the greatest.")
 
-(define-constant +grid-ink+ #x8A8A8A :documentation "The colour of the grid, which lies on white.")
-(define-constant +frame-ink+ #x606060 :documentation "The colour of frames and ticks, on white.")
+(defconstant +grid-ink+ #x8A8A8A "The colour of the grid, which lies on white.")
+(defconstant +frame-ink+ #x606060 "The colour of frames and ticks, on white.")
 
 ;;;; Walls
 
@@ -110,7 +110,7 @@ wide, with DASHES."
   :test #'cl:equal
   :documentation "The hues of these colours; grey has none.")
 
-(define-constant +tint-strength+ 0.55d0 :documentation "How much of its hue a wall has.")
+(defconstant +tint-strength+ 0.55d0 "How much of its hue a wall has, from 0 to 1.")
 
 (define-constant +wall-textures+ '(:lines :hatching :bricks :falling-hatching :plain :dots :posts
                                    :crosses :net :chequers :arrows)
@@ -127,12 +127,10 @@ wide, with DASHES."
 
 ;;; Lightness.
 
-(define-constant +least-shade+ 8 :documentation "The shade of grey* that no wall is darker than.")
-(define-constant +shade-of-zero+ 14 :documentation "The shade of grey* of the parameter 0.")
-(define-constant +greatest-shade+ 36
-  :documentation "The shade of grey* that no wall is lighter than; it is seen on white.")
-(define-constant +middle-parameter+ 60
-  :documentation "The parameter of which the shade is in the middle between the last two.")
+(defconstant +least-shade+ 8 "The shade of grey* of the darkest walls.")
+(defconstant +shade-of-zero+ 14 "The shade of grey* of walls with the parameter 0.")
+(defconstant +greatest-shade+ 36 "The shade of grey* of the lightest walls; it is seen on white.")
+(defconstant +middle-parameter+ 60 "The parameter whose shade is halfway between those two.")
 
 (defun wall-shade (parameter)
   "Return the shade of grey* of walls with PARAMETER: the same in each map."

@@ -42,9 +42,8 @@
   (loop for (layer . arguments) in shown
         do (apply (%layer-draw layer) canvas arguments)))
 
-(define-constant +beyond+ 8
-  :documentation "How far robots at the edges of the map are seen beyond these, in pixels: no more
-than all margins have.")
+(defconstant +beyond+ 8
+  "How far robots are drawn beyond the edges of the map, in pixels; no margin is narrower.")
 
 (defun draw-movers (canvas snapshot layers)
   "Draw what is not terrain of SNAPSHOT on CANVAS: things, robots, and what LAYERS lists of them."

@@ -7,7 +7,7 @@
 ;;; An entry is a text with a function of a canvas and a place, X and Y in pixels, that draws the
 ;;; sample around there, no more than 16 pixels high and as wide as the entry says.
 
-(define-constant +sample-width+ 18 :documentation "How wide most samples are, in pixels.")
+(defconstant +sample-width+ 18 "The width of most samples, in pixels.")
 
 (defstruct (entry (:constructor make-entry (text sample &key whole (width +sample-width+)))
                   (:copier nil))
@@ -44,8 +44,7 @@ the name, and how wide the sample is, in pixels."
             (push object (rest group))
             (push (list value object) groups))))))
 
-(define-constant +longest-names+ 32
-  :documentation "How many characters several names beside one sample have, about.")
+(defconstant +longest-names+ 32 "About how many characters several names beside one sample have.")
 
 (defun joined (texts)
   "Return TEXTS as one, or as many as there is room for, and how many there are more."
@@ -104,7 +103,7 @@ numbers."
 (defun range-text (least greatest)
   (format nil "~A~:[ to ~A~;~]" (number-text least) (= least greatest) (number-text greatest)))
 
-(define-constant +sample-tile+ 6 :documentation "How wide tiles of textures are in legends.")
+(defconstant +sample-tile+ 6 "The width of tiles of textures in legends, in pixels.")
 
 (defun draw-swatch (canvas x y left right)
   "Draw two cells side by side with the looks LEFT and RIGHT."
@@ -254,7 +253,7 @@ pieces, lists x y ... in pixels."
 
 ;;; The whole.
 
-(define-constant +entry-limit+ 80 :documentation "How many entries a legend has at most.")
+(defconstant +entry-limit+ 80 "The most entries of a legend.")
 
 (defun paled (entries opacity)
   "Return ENTRIES with samples that hide as much of what is below as OPACITY says."

@@ -4,7 +4,7 @@
 
 (export '(users-scale drawn-scale lines-within draw-framed with-map-svg framed-text))
 
-(define-constant +usual-scale+ 8 :documentation "What GRAPHICS-SCALE* is until a user sets it.")
+(defconstant +usual-scale+ 8 "The default of GRAPHICS-SCALE*.")
 
 (define-argument-type 'picture-scale (lambda (value) (and (finite-p value) (<= 1 value 256)))
   "a number of pixels to a cell, from 1 to 256")
@@ -23,12 +23,12 @@ MISUSE if that is no scale."
 ;;; that, beside the map or below it, where it makes the page less large: the map does not shrink
 ;;; for it.
 
-(define-constant +widest+ 900 :documentation "How wide a map should be, in pixels.")
-(define-constant +highest+ 700 :documentation "How high a map should be, in pixels.")
-(define-constant +least-scale+ 4 :documentation "How many pixels a cell has at least.")
-(define-constant +greatest-scale+ 40 :documentation "How many pixels a cell has at most.")
-(define-constant +readable-scale+ 20
-  :documentation "From how many pixels a cell on a picture may be magnified as a whole.")
+(defconstant +widest+ 900 "The greatest width of a map without a given scale, in pixels.")
+(defconstant +highest+ 700 "The greatest height of a map without a given scale, in pixels.")
+(defconstant +least-scale+ 4 "The least pixels to a cell without a given scale.")
+(defconstant +greatest-scale+ 40 "The most pixels to a cell without a given scale.")
+(defconstant +readable-scale+ 20
+  "From this many pixels to a cell on a picture is magnified as a whole.")
 
 (defstruct (arrangement (:copier nil))
   "Where the map begins, how much room there is to its right and below, and the legend: COLUMNS,
@@ -151,12 +151,11 @@ the least room."
 
 ;;; The title is as wide as the rest, and has as many lines as it needs for that.
 
-(define-constant +title-size+ 13 :documentation "How high the font of titles is, in pixels.")
-(define-constant +title-step+ 17 :documentation "How far lines of a title are apart, in pixels.")
-(define-constant +subtitle-size+ 11 :documentation "How high the font below titles is, in pixels.")
-(define-constant +subtitle-step+ 15 :documentation "How far lines below titles are apart.")
-(define-constant +least-title+ 360
-  :documentation "How wide a line of a title may be at least, in pixels.")
+(defconstant +title-size+ 13 "The height of the font of titles, in pixels.")
+(defconstant +title-step+ 17 "The distance between lines of a title, in pixels.")
+(defconstant +subtitle-size+ 11 "The height of the font of subtitles, in pixels.")
+(defconstant +subtitle-step+ 15 "The distance between lines of a subtitle, in pixels.")
+(defconstant +least-title+ 360 "The least room for a line of a title, in pixels.")
 
 (defun lines-within (text width per-character)
   "Return TEXT, or NIL, as lines of at most WIDTH pixels, of which a character has PER-CHARACTER."

@@ -10,10 +10,9 @@
 ;;; says what it does. It has an outline of black, and around that a halo of white: so one sees it
 ;;; whatever its colour is and whatever it lies on, be that another thing.
 
-(define-constant +largest-thing+ 3/2 :documentation "How wide a thing is drawn at most, in cells.")
-(define-constant +largest-size+ 64 :documentation "The :size of what is drawn so wide.")
-(define-constant +least-width+ 5
-  :documentation "How wide a thing of size 0 is drawn, in pixels: so one sees it.")
+(defconstant +largest-thing+ 3/2 "The greatest width of a thing on the map, in cells.")
+(defconstant +largest-size+ 64 "The :size of the things that are drawn so wide.")
+(defconstant +least-width+ 5 "The width of a thing of size 0 on the map, in pixels.")
 
 ;; As reading 241 says.
 (defun half-width (image)
@@ -121,8 +120,7 @@ or :DIAMOND."
 where cells are large, so that the ring fits into a map of one cell."
   (max 6 (min (* 7/8 graphics-scale*) (+ 10 (* 1/4 graphics-scale*)))))
 
-(define-constant +between-rings+ 4
-  :documentation "How far the rings of robots on one spot are apart, in pixels.")
+(defconstant +between-rings+ 4 "The distance between the rings of robots on one spot, in pixels.")
 
 (defun one-spot-p (image other)
   "True if the rings of two robots would be taken for one."
@@ -196,8 +194,8 @@ direction ANGLE."
 ;;; Fields of view end at walls and at things that obstruct view. They are found when they are
 ;;; drawn, from the snapshot alone.
 
-(define-constant +sight-spacing+ 0.015d0
-  :documentation "How far apart the lines are that find where a field of view ends, in radians.")
+(defconstant +sight-spacing+ 0.015d0
+  "The angle between rays that find the edge of a field of view, in radians.")
 
 (defun opaque-cells (snapshot)
   "Return a predicate of the index of a cell: whether a camera cannot look through it."

@@ -6,9 +6,8 @@
 
 ;;; The map is divided into squares. Each lists what has been entered with a box that meets it.
 
-(define-constant +square-side+ 32 :documentation "How wide a square of a box index is, in pixels.")
-(define-constant +most-squares+ 1000
-  :documentation "How many squares a box meets at most that is listed in each of them.")
+(defconstant +square-side+ 32 "The width of a square of a box index, in pixels.")
+(defconstant +most-squares+ 1000 "A box that meets more squares than this is not listed in each.")
 
 (defstruct (box-index (:constructor make-box-index ()) (:copier nil))
   "Entries (box . item) by the numbers of SQUARES, and those that meet very many of them, LARGE."
@@ -67,8 +66,8 @@ its image."
 (defun spot-box (spot)
   (box-around (spot-x spot) (spot-y spot) (spot-half spot)))
 
-(define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
-(define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
+(defconstant +name-size+ 10 "The height of the font of names, in pixels.")
+(defconstant +name-height+ 11 "The height of the box of a name, in pixels.")
 
 (defun name-boxes (x y half width)
   "Return boxes for a name WIDTH pixels wide beside what reaches HALF pixels from X, Y: the best
@@ -130,8 +129,7 @@ on it, meets."
           thereis (do-trail ((robot-image-trail robot) x y)
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
-(define-constant +thick-wall+ 4
-  :documentation "From how many pixels to a cell on a name may hide a part of a wall.")
+(defconstant +thick-wall+ 4 "From this many pixels to a cell on a name may hide a part of a wall.")
 
 (defun box-cost (snapshot layers box anywhere-p)
   "Return how much a name in BOX would hide on the map that SNAPSHOT shows with LAYERS, from 0 for

@@ -9,8 +9,7 @@
 ;;; Other lines end before a name. Robots come first, whose names may lie on any wall if need be, or
 ;;; farther off at the end of a line. Then come large things.
 
-(define-constant +longest-name+ 24
-  :documentation "How many characters of a name are written beside a sample, or on the map.")
+(defconstant +longest-name+ 24 "The most characters of a name on the map or beside a sample.")
 
 (defun short-name (name)
   "Return the string NAME, or its beginning if it is long."
@@ -98,10 +97,9 @@ are around each other, and what has a place in common has its names there, too."
   (- (apart x y (to-pixels (robot-image-x image)) (to-pixels (robot-image-y image)))
      (robot-radius)))
 
-(define-constant +own+ 6
-  :documentation "How much farther from other robots than from its own robot a name is, in pixels.")
-(define-constant +own-thing+ 3
-  :documentation "How much farther from others than from its own a name is, if one is a thing.")
+(defconstant +own+ 6 "How much nearer a name is to its own robot than to others, in pixels.")
+(defconstant +own-thing+ 3
+  "How much nearer a name is to its owner if that or the other is a thing, in pixels.")
 
 (defun gap (spot box)
   "Return how far BOX is from SPOT, a ring or a square, in pixels; 0 or less if they meet."
@@ -201,8 +199,7 @@ can be, one to which a clear line leads; that of a thing must be clear."
 
 ;;; Writing names.
 
-(define-constant +apart+ 6
-  :documentation "How far names on a line are apart at least, not to be read as one, in pixels.")
+(defconstant +apart+ 6 "The least distance between names on a line, in pixels.")
 
 (defun widened (box by)
   (destructuring-bind (left top right bottom) box
@@ -229,8 +226,7 @@ can be, one to which a clear line leads; that of a thing must be clear."
 
 ;;; SPOTS are those of what has a name, as an index.
 
-(define-constant +reach-of-names+ 100
-  :documentation "How far around a name what is near to it is looked for, in pixels.")
+(defconstant +reach-of-names+ 100 "How far around a name other owners are looked for, in pixels.")
 
 (defun reach-of-name (spot width)
   "Return how far from SPOT what its name, WIDTH pixels wide, could be taken for is looked for."

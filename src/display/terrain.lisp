@@ -7,10 +7,8 @@
 ;;; Code that fails, or goes on without an end, is reported once and not called again; whoever asked
 ;;; for it draws something else. Code that is defined anew is another function, and called.
 
-(define-constant +drawing-seconds+ 2
-  :documentation "For how many seconds users' code may draw one thing or cell.")
-(define-constant +drawing-calls+ 100000
-  :documentation "How many times users' code may draw something for one thing or cell.")
+(defconstant +drawing-seconds+ 2 "The seconds that users' code may take to draw one thing or cell.")
+(defconstant +drawing-calls+ 100000 "How often users' code may draw for one thing or cell.")
 
 (defvar *broken-graphics* (make-hash-table :test #'eq :weakness :key :synchronized t)
   "The functions that have signalled an error, and the names that mean no function.")
@@ -123,8 +121,8 @@ which the last two are outside; NIL means to the edge."
                           (setf (svref above (wall-run-left run)) run))))))
     runs))
 
-(define-constant +least-tile+ 4
-  :documentation "How wide a tile of a texture is at least, in pixels: less cannot be made out.")
+(defconstant +least-tile+ 4
+  "The least width of a tile of a texture that can be made out, in pixels.")
 
 (defun tile-width ()
   "Return how wide tiles of textures are, in pixels: as many as fit into a cell. NIL: too narrow."

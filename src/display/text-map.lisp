@@ -73,8 +73,7 @@ of lists."
 
 ;;; Beside the map.
 
-(define-constant +least-side+ 12
-  :documentation "How many characters wide a legend beside a map has to be able to be.")
+(defconstant +least-side+ 12 "The least characters for a legend beside a map.")
 
 (defun side-legend (glyphs room rows paint)
   "Return what stands beside each of ROWS lines of a map, a vector of lists of entries, each padded,
@@ -112,7 +111,7 @@ there is no room is counted in the last, if there is room for that. ROWS may be 
 ;;; Nothing is changed by looking, and no dice are rolled. Where lines count, as on a terminal, the
 ;;; map is made to fit; elsewhere only how wide it is counts, and blocks of cells are square.
 
-(define-constant +margin-columns+ 5 :documentation "How many characters stand left of a text map.")
+(defconstant +margin-columns+ 5 "How many characters stand left of a text map.")
 
 (defun unpainted (text ink)
   (declare (ignore ink))

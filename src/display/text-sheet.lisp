@@ -12,8 +12,8 @@
 
 ;;; Cones.
 
-(define-constant +ray-spacing+ 0.01d0
-  :documentation "How far apart the lines are that find what is in a field of view, in radians.")
+(defconstant +ray-spacing+ 0.01d0
+  "The angle between rays that find what is in a field of view, in radians.")
 
 (defun cells-seen (map opaque-p x y angle)
   "Return the indices of the cells of MAP that a camera at X, Y sees in direction ANGLE."

@@ -9,11 +9,9 @@
 ;;; was, and they are drawn together: all halos, then all lines, then arrowheads, then the marks of
 ;;; their ends, one around the other where they are on one spot. None hides what is of another.
 
-(define-constant +arrows-apart+ 90
-  :documentation "How far arrowheads on a way are apart, about, in pixels.")
-(define-constant +least-arrowed+ 24
-  :documentation "How long a way with an arrowhead is at least, in pixels.")
-(define-constant +arrow-length+ 9 :documentation "How long arrowheads on ways are, in pixels.")
+(defconstant +arrows-apart+ 90 "About how far arrowheads on a way are apart, in pixels.")
+(defconstant +least-arrowed+ 24 "The length of the shortest way with an arrowhead, in pixels.")
+(defconstant +arrow-length+ 9 "The length of arrowheads on ways, in pixels.")
 
 (defun lengths-along (points)
   "Return lists (length x y dx dy) of the pieces of the way through POINTS, x y ...; those of no
@@ -106,7 +104,7 @@ in which they would lie on each other.")
 (define-constant +jump-dashes+ '(1 6)
   :test #'cl:equal
   :documentation "The dots and gaps between where a robot was and where it was put, in pixels.")
-(define-constant +jump-width+ 3/2 :documentation "How wide these dots are, in pixels.")
+(defconstant +jump-width+ 3/2 "The width of these dots, in pixels.")
 
 (defun draw-jump-dots (canvas jumps color)
   "Draw that something was put elsewhere: dots of COLOR along JUMPS, lists x y to-x to-y in pixels."
@@ -155,7 +153,7 @@ in which they would lie on each other.")
 
 ;;; Whether jumps are to be seen.
 
-(define-constant +tile+ 4 :documentation "How large the boxes are that hide a line, in pixels.")
+(defconstant +tile+ 4 "The side of the boxes that cover a line, in pixels.")
 
 (defun points-along (x y to-x to-y step)
   "Return points (x y) from X, Y to TO-X, TO-Y, about STEP pixels apart."
@@ -198,8 +196,7 @@ go along a way."
 
 ;;; Where ways begin and end.
 
-(define-constant +mark-radius+ 4
-  :documentation "The radius of what marks where a way begins or ends, in pixels.")
+(defconstant +mark-radius+ 4 "The radius of the mark where a way begins or ends, in pixels.")
 
 (defun draw-start (canvas x y color &optional (radius +mark-radius+))
   "Draw what marks where a way begins: a small ring."

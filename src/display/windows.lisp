@@ -9,9 +9,8 @@
 ;;; otherwise. A number at the end of its strip is moved so that it is whole. All is in pixels of
 ;;; the whole map: LEFT and TOP are where the view begins.
 
-(define-constant +strip-height+ 17 :documentation "How high the strip of numbers is, in pixels.")
-(define-constant +bar-strip-height+ 24
-  :documentation "How high the strip of the scale bar is, in pixels.")
+(defconstant +strip-height+ 17 "The height of the strip of numbers, in pixels.")
+(defconstant +bar-strip-height+ 24 "The height of the strip of the scale bar, in pixels.")
 
 (defun view-edges (map layers)
   "Return how many pixels at the left, top and bottom of a view of MAP the strips take that LAYERS
