@@ -230,7 +230,7 @@
   (with-own-definitions
     (eval '(world:defmap shed (9 9)))
     (eval '(robot:defrobot mole (shed (2 2) 0)))
-    (is (search "called by its name"
+    (is (search "by its name"
                 (first (warnings-of (lambda () (eval '(world:defkicker mole (x) () x)))))))
     (is (robot:robot-p (robot:find-robot 'mole)))
     (is (eq (robot:find-robot 'mole) (symbol-value 'mole)))
@@ -277,7 +277,7 @@
 
 (test names.of-constants-are-no-variables-of-maps
   (with-own-definitions
-    (is (search "is a constant or the like, and stays so: the map is to be called by its name"
+    (is (search "is a constant or the like and keeps its value: refer to the map by its name"
                 (first (warnings-of (lambda ()
                                       (eval '(world:defmap +ars-test-limit+ (5 5))))))))
     (is (= 5 +ars-test-limit+))

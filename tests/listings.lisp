@@ -138,7 +138,7 @@
                    ;; ARS-WORLDS has a robot of that name, too: of its own.
                    ((string= name "5-2-robbie") '())
                    ((string= name "5-5-lock") '("lock" "methods from" "worlds/manipulations"))
-                   ((find (char name 0) "5") '("is defined anew" "5-")))))
+                   ((find (char name 0) "5") '("is redefined" "5-")))))
       (dolist (name *programs*)
         (let ((text (warning-of name))
               (words (unless (string= name "5-3-box") (words-for name))))

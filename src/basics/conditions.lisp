@@ -102,8 +102,8 @@ file that is compiled. Compiling must not fail for that."))
   (warn 'definition-warning :text (text-for-author control arguments)))
 
 (defun doubt-definition (control &rest arguments)
-  "Do as WARN-OF-DEFINITION, for a definition that may be what its author meant: in a file that is
-compiled the warning is a STYLE-WARNING. Scripts, which do not show those, are not compiled."
+  "Do as WARN-OF-DEFINITION, for a definition that may be intended: in a compiled file the warning
+is a STYLE-WARNING. Scripts, which do not show those, are not compiled."
   (warn (if *compile-file-truename* 'definition-doubt 'definition-warning)
         :text (text-for-author control arguments)))
 
@@ -156,8 +156,7 @@ one of the names MEANT."
 
 (define-condition outlived (misuse)
   ()
-  (:documentation "An operation was requested of a run that is over, as by a program that was told
-so."))
+  (:documentation "An operation was requested of a finished run, by a program that goes on."))
 
 (defun reject-outlived (control &rest arguments)
   "Signal OUTLIVED, a MISUSE, with a text formatted from CONTROL and ARGUMENTS."
@@ -167,7 +166,7 @@ so."))
   "Signal MISUSE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
   (error 'misuse :text (printing-words () (apply #'format nil control arguments))))
 
-;;;; Exits of Lisp that are refused, where others' code shares it
+;;;; Refusing to exit a Lisp that is shared with other code
 
 (defvar *refusal* nil
   "The text of the refusal, a string, while code may not end this Lisp; else NIL.")
@@ -200,7 +199,7 @@ end this Lisp again."
 ;;; double-float is exact to 1e-7 metres or radians, so sums in a run stay exact and tick counts can
 ;;; always be added. (At 20 ticks a second 1e9 ticks take a year and a half.) Attributes, such as
 ;;; weights, are limited to 1e15, where every whole number is a double-float, and sums and squares
-;;; cannot overflow. Infinities and NaNs are never accepted. ARGUMENT-TYPES.LISP tells users.
+;;; cannot overflow. Infinities and NaNs are never accepted. See also OPERATORS.LISP.
 
 (define-constant +largest+ (expt 10 9)
   :documentation "The limit of positions, distances, speeds, angles and times.")

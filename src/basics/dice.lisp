@@ -39,7 +39,7 @@
     (flet ((add (char)
              (setf word (ldb (byte 64 0) (* (logxor word (funcall code char)) #x100000001B3)))))
       (declare (inline add))
-      ;; The first two are how Lisp keeps names.
+      ;; Lisp stores names in the first two types.
       (typecase string
         (simple-base-string (loop for char across string do (add char)))
         ((simple-array character (*)) (loop for char across string do (add char)))
@@ -54,7 +54,7 @@
 (declaim (inline upper-code))
 (defun upper-code (char)
   (let ((code (char-code char)))
-    ;; CHAR-UPCASE, which need not be asked of most, takes its time.
+    ;; CHAR-UPCASE is slow, and most characters do not need it.
     (cond ((<= (char-code #\a) code (char-code #\z)) (- code 32))
           ((< code 128) code)
           (t (char-code (char-upcase char))))))

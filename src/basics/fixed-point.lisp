@@ -1,11 +1,11 @@
-;;;; fixed-point.lisp -- what elementary functions reckon with: long integers, floats in two parts.
+;;;; fixed-point.lisp -- arithmetic for elementary functions: long integers, floats in two parts.
 
 (in-package :ars-magna.basics)
 
 (export '(+number-text+))
 
 ;;; A fixed-point number is an integer that counts units of 2^-PLACES. Integer arithmetic gives the
-;;; same results on every machine. Nothing here runs after the simulator is loaded, but for angles
+;;; same results on every machine. After the simulator is loaded, this is used only for angles
 ;;; beyond a million radians.
 
 (defvar *places* 256 "How many binary places fixed-point numbers have.")
@@ -152,8 +152,8 @@
   :documentation "In words, what a double-float can stand for.")
 
 (defmacro check-number (operator place)
-  "Signal WRONG-ARGUMENT unless PLACE is a double-float or a real number that can be made one. Which
-double-floats are wrong is for the functions that PUT results to say: inline, it would box them."
+  "Signal WRONG-ARGUMENT unless PLACE is a double-float or a real number that can be made one. The
+functions that PUT results check double-floats: inline, that would box them."
   `(check-argument ,operator ,place (or (typep ,place 'double-float) (finite-p ,place))
                    +number-text+))
 

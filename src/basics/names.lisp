@@ -68,10 +68,10 @@ characters."
           (setf best candidate least distance))))))
 
 (defparameter *letters-alike* '("AEIOUY" "CKQ" "CSZ" "FVW" "GJ")
-  "Letters that are confused by spelling by ear.")
+  "Letters that may sound alike.")
 
 (defun alike-p (letter other)
-  "True if the characters LETTER and OTHER are equal or are confused by ear."
+  "True if the characters LETTER and OTHER are equal or may sound alike."
   (or (char-equal letter other)
       (some (lambda (letters)
               (and (find letter letters :test #'char-equal)
@@ -79,7 +79,7 @@ characters."
             *letters-alike*)))
 
 (defun another-word-p (a b)
-  "True if the short names A and B, of one length, differ in a letter that is not confused by ear:
+  "True if the short names A and B, of one length, differ in a letter that does not sound alike:
 SISE may be a misspelling of SIZE, SIDE is not."
   (and (= (length a) (length b))
        (< (length a) 6)
@@ -113,8 +113,7 @@ two sound alike."
         (t (numberp one))))
 
 (defun name-before-p (a b)
-  "True if the string A comes before B in a list: by characters, but digits by the number that they
-make."
+  "True if the string A sorts before B: by characters, and by the values of the numbers in them."
   (loop with at-a = 0 and at-b = 0
         do (cond ((= at-b (length b)) (return nil))
                  ((= at-a (length a)) (return t)))

@@ -102,7 +102,7 @@ a run is changed by functions that the journal records."
 ;;;; Structures that describe their slots
 
 ;;; One form describes a structure, its slots, and who may read them. It gives the documentation of
-;;; the functions and the marks of the readers. Objects of a run say more: see DEFINE-KIND.
+;;; the functions and the marks of the readers. For objects of a run, see DEFINE-KIND.
 
 (defun set-documentations (functions-and-texts)
   (loop for (function . text) in functions-and-texts
@@ -172,10 +172,10 @@ of the slot's name, returns the reader's name."
                                             (list (symbolicate "MAKE-" name))))))
 
 (defmacro define-record (name-and-options documentation &body slots)
-  "Define a structure and say what each of its slots is. NAME-AND-OPTIONS is as in DEFSTRUCT; behind
-a constructor or predicate may stand its documentation. There is a copier only if an option says so.
-A slot is (name default type [\"what is in it\"]), with what is in it a sentence without beginning:
-its reader returns that, or is true if that holds where the name ends in -P. Behind it stand
+  "Define a structure and document its slots. NAME-AND-OPTIONS is as in DEFSTRUCT; documentation may
+follow a constructor or predicate. There is a copier only if an option says so.
+A slot is (name default type [\"what is in it\"] mark...). The reader's documentation is \"Return
+what is in it\", or \"True if ...\" if the name ends in -P. The marks are
   :writable  if the slot can be set;
   :export    if other layers use the reader;
   :addition  if users do (see ADDITION).

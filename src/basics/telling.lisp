@@ -34,7 +34,7 @@
 (defparameter *compilers-words*
   '("Argument is neither a positive integer" "Invalid function name" "malformed property list"
     "is not a string designator")
-  "What stands in texts for type errors that only some versions of SBCL have.")
+  "Parts of type errors' texts that only some versions of SBCL use.")
 
 ;; A type without elements, such as that of the indices of an empty vector, is part of any other.
 (defun common-type-words (datum type)
@@ -67,7 +67,7 @@
 (defun compilers-text-p (condition)
   "True unless CONDITION, a type error, has a text that a program or CHECK-TYPE gave it."
   (or (not (typep condition 'simple-condition))
-      ;; Texts of the compiler's are no strings; these were, in older versions.
+      ;; The compiler's texts are no strings, except these in older versions.
       (let ((control (simple-condition-format-control condition)))
         (or (not (stringp control))
             (some (lambda (words) (search words control)) *compilers-words*)))))
@@ -86,7 +86,7 @@
             ((member (type-of condition) '(type-error simple-type-error))
              (format nil "The value ~A is not one that can be used here." value))))))
 
-;;; All of them.
+;;; All of Lisp's own errors.
 
 (defun without-reference (text)
   "Return TEXT without the pages of the standard that SBCL refers to at its end."
@@ -141,27 +141,27 @@
        (sb-ext:name-conflict (conflict-text condition))
        ((or undefined-function unbound-variable) (named-text condition))
        (stream-error (refusal-text condition))
-       ;; That no clause of ECASE or the like was for a value is told by Lisp.
+       ;; Lisp's own text for ECASE and the like is used.
        (type-error (unless (string= "CASE-FAILURE" (type-of condition))
                      (type-error-text condition)))))))
 
 ;;;; Texts of bounded length
 
-;;; A condition may have to report a list without an end, or an object that cannot be printed.
+;;; A condition may report a circular list, or an object that cannot be printed.
 
 (defmacro printing-briefly (() &body body)
-  "Run BODY, which makes text for people. Of what is deep, long or circular, only a part is shown."
+  "Run BODY, which makes text for people. Deep, long and circular data are shown in part."
   `(printing-words ()
      (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
        ,@body)))
 
 (defun format-briefly (destination control &rest arguments)
-  "Do as FORMAT does. Of ARGUMENTS that are deep, long or circular, only a part is shown."
+  "Do as FORMAT. Deep, long and circular ARGUMENTS are shown in part."
   (printing-briefly () (apply #'format destination control arguments)))
 
 (defun report-briefly (condition)
-  "Return what CONDITION, or another object, says of itself, as FORMAT-BRIEFLY would. It may be in
-the midst of being printed, and is no circle for that: so it is not printed as a part."
+  "Return the report of CONDITION, or another object, as FORMAT-BRIEFLY would. If it is already
+being printed, it does not count as circular."
   (with-output-to-string (out)
     (printing-briefly () (let ((*print-escape* nil)) (print-object condition out)))))
 
@@ -174,25 +174,25 @@ the midst of being printed, and is no circle for that: so it is not printed as a
       "There is not enough memory for that. Ask for less at a time."))
 
 (defun reader-p (condition)
-  "True if CONDITION is that a text, typed or of a program's, cannot be read as Lisp."
+  "True if CONDITION says that text, typed or of a program, cannot be read as Lisp."
   (or (typep condition 'reader-error)
       (and (typep condition 'end-of-file)
            (not (typep (stream-error-stream condition) 'file-stream)))))
 
 (defun cause-of-reading-trouble (condition)
-  "Return CONDITION, or if that only says where it came up, as LOAD's does, what it says that of."
+  "Return CONDITION, or the condition to which it only adds a position, as LOAD's do."
   (let ((cause (encapsulated-condition condition)))
     (if cause (cause-of-reading-trouble cause) condition)))
 
 (defun naming-remedy (text)
-  "Return what can be done about what TEXT says of a name that cannot be read; NIL of other texts."
+  "Return a remedy if TEXT says that a name cannot be read, else NIL."
   (cond ((or (search "not found in the" text) (search "Package" text))
          "Perhaps it is misspelt, or what defines it has not been loaded")
         ((search "is not external" text)
          "With two colons it can be read, if you mean what is that package's own")))
 
 (defun encoding-trouble (condition)
-  "Return that a file is in another encoding than it is read in, if CONDITION says so; else NIL."
+  "Return in words that a file has another encoding than expected, if CONDITION says so; else NIL."
   (let ((encoding (undecodable-format condition)))
     (and encoding
          (format nil "it has bytes that are not ~A. Save the file in ~:*~A" encoding))))
@@ -205,8 +205,7 @@ the midst of being printed, and is no circle for that: so it is not printed as a
                  trouble))))
 
 (defun reading-trouble (condition)
-  "Return why a text cannot be read, for which CONDITION came up. What Lisp says of that names
-streams that no user knows."
+  "Return why a text cannot be read, from CONDITION, without the names of Lisp's streams."
   (let* ((cause (cause-of-reading-trouble condition))
          (text (cond ((encoding-trouble cause))
                      ((typep cause 'simple-condition)
@@ -224,19 +223,18 @@ streams that no user knows."
     nil))
 
 (defun own-text (condition)
-  "Return what CONDITION says of itself, as much of it as can be printed; or what another object
-does, an empty text if it cannot."
+  "Return as much of the report of CONDITION as can be printed; of another object, how it prints, or
+an empty text."
   (handler-case (without-reference (report-briefly condition))
     ((or error storage-condition) ()
-      ;; Nothing at all may be left that can be printed.
+      ;; There may be nothing that can be printed.
       (or (and (typep condition 'condition) (ignore-errors (report-anyhow condition)))
           ""))))
 
-;;; A report may fail, or what it is to print may have a method for PRINT-OBJECT that does. What its
-;;; author wrote is shown all the same, as far as it came.
+;;; A report may fail, also in a method of PRINT-OBJECT. What it has written until then is shown.
 
 (defun without-addresses (text)
-  "Return TEXT without the addresses of objects, which are others in each Lisp."
+  "Return TEXT without the addresses of objects, which differ in each process."
   (loop for start = (search " {" text)
         for end = (and start (position #\} text :start start))
         while (and end (every (lambda (char) (digit-char-p char 16)) (subseq text (+ 2 start) end)))
@@ -244,10 +242,10 @@ does, an empty text if it cannot."
         finally (return text)))
 
 (defun failing-report-text (condition trouble beginning)
-  "Return in words that CONDITION said BEGINNING before its report failed, with TROUBLE."
+  "Return in words that the report of CONDITION wrote BEGINNING and then failed with TROUBLE."
   (let ((why (or (our-text trouble)
                  (ignore-errors (format-briefly nil "~A" trouble))
-                 ;; It tells of the condition, which cannot be printed.
+                 ;; Its text may contain CONDITION, which cannot be printed.
                  (ignore-errors (simple-condition-format-control trouble))
                  (type-of trouble))))
     (format nil "~@[~A... ~](~(~A~), whose report fails: ~A)"
@@ -262,8 +260,7 @@ does, an empty text if it cannot."
       (print-object condition stream))))
 
 (defun report-anyhow (condition)
-  "Return what CONDITION reports, as much of it as can be printed. If its report fails, that is said
-too."
+  "Return as much of the report of CONDITION as can be printed, with words on its failure."
   (let ((out (make-string-output-stream)))
     (handler-case (progn (write-report condition out)
                          (format nil "~A (~(~A~), whose report fails)"
@@ -273,8 +270,7 @@ too."
         (failing-report-text condition trouble (get-output-stream-string out))))))
 
 (defun our-text (condition)
-  "Return what CONDITION, which Lisp itself has signalled, means to a user, in words that are the
-same on every version of SBCL; NIL if we have none."
+  "Return our text for CONDITION, one of Lisp's own, the same on every version of SBCL; or NIL."
   (cond ((typep condition 'storage-condition) (storage-text condition))
         ((and (typep condition 'end-of-file) (of-lines-typed-p (stream-error-stream condition)))
          "The input has ended: there is nothing left to read.")
@@ -284,13 +280,12 @@ same on every version of SBCL; NIL if we have none."
         (t (lisp-error-text condition))))
 
 (defun text-of-condition (condition)
-  "Return what CONDITION says, or what it is if it cannot say that."
+  "Return the text of CONDITION, or its type if it has no text."
   (let ((text (or (printing-words () (our-text condition)) (own-text condition))))
     (if (string= text "") (string-downcase (type-of condition)) (visible text))))
 
 (defun hundredths (number)
-  "Return NUMBER, to be written with two decimals: 0 if it is nearer to that than these can tell, as
--0.00 says no more than 0.00."
+  "Return NUMBER for printing with two decimals: 0 if that would print 0.00 or -0.00."
   (if (< (abs number) 0.005d0) 0 number))
 
 (defun coordinate-text (number)
@@ -307,10 +302,10 @@ typed 23.2, not 23.200000762939453. Smaller numbers have an exponent."
   (format nil "(~A ~A)" (coordinate-text x) (coordinate-text y)))
 
 (defun one-line-text (condition)
-  "Return what CONDITION says as the part of a sentence."
+  "Return the text of CONDITION as a part of a sentence."
   (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))
 
-;;; Where users look.
+;;; The output of editors.
 
 (defun followed (stream)
   "Return the stream that STREAM, perhaps a synonym, stands for here."
@@ -320,8 +315,8 @@ typed 23.2, not 23.200000762939453. Smaller numbers have an exponent."
 
 (defun editors-output ()
   "Return the stream that this thread's standard output goes to if an editor, SLIME or SLY, has set
-it, or NIL. It stays open, and other threads may write to it; what they write to standard output
-otherwise does not come to where the user types."
+it, or NIL. It stays open, and other threads may write to it. Their own standard output does not
+reach the editor's prompt."
   (let* ((stream (followed *standard-output*))
          (package (symbol-package (type-of stream))))
     (and package

@@ -1,4 +1,4 @@
-;;;; text.lisp -- texts on one line, wrapped, without what a terminal obeys; how data are written.
+;;;; text.lisp -- text on one line, wrapped, without control characters; how data are printed.
 
 (in-package :ars-magna.basics)
 
@@ -29,16 +29,16 @@
   "Return TEXT with a full stop, unless it ends in a question."
   (if (ends-with #\? text) text (format nil "~A." text)))
 
-;;; Reports quote files and what was typed, where there may be anything.
+;;; Reports quote files and typed text, which may contain any character.
 
 (defun obeyed-p (char)
-  "True if a terminal does something else with CHAR than to show it."
+  "True if CHAR controls a terminal or the direction of text, instead of being shown."
   (let ((code (char-code char)))
     (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
 
 (defun visible (text)
-  "Return TEXT with ^ and a letter, or a question mark, for each character that a terminal would
-obey, but for newlines and tabs."
+  "Return TEXT with ^ and a letter, or a question mark, for each control character, except newlines
+and tabs."
   (if (some #'obeyed-p text)
       (with-output-to-string (stream)
         (loop for char across text
@@ -49,7 +49,7 @@ obey, but for newlines and tabs."
                        (t (write-char #\? stream)))))
       text))
 
-;;; A text in lines of a given length, broken between words.
+;;; Lines of limited length, broken between words.
 
 (defun break-place (text width)
   "Return where the first line of TEXT, WIDTH characters at most, ends."
@@ -61,8 +61,8 @@ obey, but for newlines and tabs."
           (t width))))
 
 (defun wrapped-text (text width)
-  "Return TEXT, of one line, as a list of lines of at most WIDTH characters, one at least. A line
-ends at a no-break space, which becomes a space, only if it cannot end at another."
+  "Return TEXT, one line, as a list of at least one line of at most WIDTH characters. Lines break at
+no-break spaces, which become spaces, only if there is no other space."
   (loop with blanks = '(#\Space #\No-break_space)
         with rest = (string-trim blanks text)
         for end = (break-place rest width)
@@ -72,8 +72,8 @@ ends at a no-break space, which becomes a space, only if it cannot end at anothe
 
 ;;;; Printing
 
-;;; *PRINT-BASE* and its kin are the user's, and for what he reads at his REPL. Whoever writes data,
-;;; a table, a picture, JSON, is not to follow them.
+;;; *PRINT-BASE* and the like are the user's settings for a REPL. Code that writes data, such as
+;;; tables, pictures and JSON, must not depend on them.
 
 (defun call-printing-plainly (function)
   "Call FUNCTION with the printer's variables as a fresh Lisp has them, but without pretty printing.
@@ -85,7 +85,7 @@ Return its values."
     (funcall function)))
 
 (defmacro printing-plainly (() &body body)
-  "Run BODY, which writes data, as CALL-PRINTING-PLAINLY would a function."
+  "Run BODY, which writes data, as CALL-PRINTING-PLAINLY runs a function."
   (form-calling 'call-printing-plainly body))
 
 (defun print-named (object stream name &optional (whole name))
@@ -94,7 +94,7 @@ Return its values."
       (print-unreadable-object (object stream) (princ whole stream))
       (princ name stream)))
 
-;;; So does what the simulator says to people: its numbers are decimal, its lists whole.
+;;; Texts for people need decimal numbers and complete lists, too.
 
 (defmacro printing-words (() &body body)
   "Run BODY, which makes text for people, with the printer's variables that change numbers, names
@@ -105,14 +105,14 @@ and lists as a fresh Lisp has them."
 
 ;;;; Data in messages
 
-;;; A message quotes what is wrong. That may be a circle, a list of lists a thousand deep or a text
-;;; of megabytes, and the message should be read all the same.
+;;; A message quotes what is wrong. That may be circular, a thousand lists deep or megabytes long,
+;;; and the message must still be readable.
 
-(defconstant +most-parts+ 150 "How many conses a message shows of a datum at most.")
-(defconstant +most-characters+ 200 "How many characters a message shows of a text at most.")
+(defconstant +most-parts+ 150 "The most conses of a datum that a message shows.")
+(defconstant +most-characters+ 200 "The most characters of a text that a message shows.")
 
 (defstruct (remark (:constructor make-remark (text)) (:copier nil))
-  "TEXT that stands, in a datum, for what is left out of it."
+  "TEXT in place of an omitted part of a datum."
   (text "" :type string :read-only t))
 
 (defmethod print-object ((remark remark) stream)
@@ -122,7 +122,7 @@ and lists as a fresh Lisp has them."
   (declare (ignore environment))
   `(make-remark ,(remark-text remark)))
 
-(define-global +more+ (make-remark "...") "What stands for more of the same.")
+(define-global +more+ (make-remark "...") "The mark for omitted elements.")
 
 (defun abridged-atom (atom)
   (typecase atom
@@ -147,7 +147,7 @@ and lists as a fresh Lisp has them."
           (t (double ratio)))))
 
 (defun abridged (datum)
-  "Return DATUM; of one that is long or has no end, its beginning, with dots for the rest."
+  "Return DATUM, or the beginning of a long or circular one, with dots for the rest."
   (let ((left +most-parts+))
     (labels ((visit (datum)
                (cond ((atom datum) (abridged-atom datum))
@@ -166,7 +166,7 @@ and lists as a fresh Lisp has them."
       (visit datum))))
 
 (defun without-packages (datum)
-  "Return DATUM, which is abridged, with symbols of the same names, but of no package, in it."
+  "Return DATUM, of ABRIDGED, with uninterned symbols of the same names."
   (typecase datum
     (cons (cons (without-packages (car datum))
                 (and (cdr datum) (without-packages (cdr datum)))))
@@ -175,19 +175,18 @@ and lists as a fresh Lisp has them."
     (t datum)))
 
 (defun unqualified-text (datum)
-  "Return how DATUM, abridged, is written, but for the packages of its symbols."
+  "Return DATUM, abridged, as it is printed, without package prefixes."
   (let ((*print-gensym* nil))
     (prin1-to-string (without-packages (abridged datum)))))
 
 (defun text-as-typed (datum)
-  "Return how DATUM, a symbol or the like, is typed, in lower case: between bars where it has to be,
-as with blanks in it."
+  "Return DATUM, such as a symbol, as typed in lower case, between bars if necessary."
   (let ((*print-case* :downcase)) (unqualified-text datum)))
 
 (defun safe-text (object &key (escape t) (length 500))
-  "Return what PRIN1, or PRINC unless ESCAPE is true, writes of OBJECT: of what is deep, long or
-circular a part, at most LENGTH characters, but for the packages of symbols; words that say so if it
-cannot be printed."
+  "Return OBJECT as printed by PRIN1, or by PRINC unless ESCAPE is true, without package prefixes,
+in at most LENGTH characters. Deep, long and circular data are shown in part. If OBJECT cannot be
+printed, the text says so."
   (handler-case
       (let ((*print-circle* t) (*print-pretty* nil) (*print-readably* nil) (*print-escape* escape)
             (*print-length* (or *print-length* 100))

@@ -290,7 +290,7 @@ takes another number of arguments."
          (world (robot-world robot))
          (timeline (world-timeline world))
          (arguments (if (some #'consp arguments)
-                        (given (command-name command) "arguments" arguments)
+                        (copy-argument (command-name command) "arguments" arguments)
                         arguments)))
     (note-asked (occupied command resource))
     (doubt-hurry command (occupied command resource) arguments timeline)

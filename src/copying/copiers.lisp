@@ -6,19 +6,19 @@
           define-shared-slots))
 
 (define-record (copier (:constructor make-copier ()))
-  "What copies a run."
-  (table (make-hash-table :test 'eq :size 500) hash-table "what was copied, and to what" :writable)
+  "An object that copies a run."
+  (table (make-hash-table :test 'eq :size 500) hash-table "the copies by their originals" :writable)
   (work (make-array 512) simple-vector
-        "the copies that are to be put right, each followed by how" :writable)
+        "copies with references to replace, each followed by their slots' numbers" :writable)
   (fill 0 fixnum :writable)
-  (tables '() list "the hash tables that are to be filled when all else is done" :writable)
-  (holder nil t "what is being put right" :writable)
+  (tables '() list "the hash tables to fill when everything else is copied" :writable)
+  (holder nil t "the copy whose references are being replaced" :writable)
   (environment '() list
                "a list (variable . value): what the run that is copied has bound" :writable :export)
-  (objects nil t "what a layer has put there to find copies by. Can be set" :writable :export)
-  (screen nil (or null function) "a function of what is about to be copied, or NIL: it returns what
-there is to be instead of a copy, and true; or NIL and false" :writable)
-  (options '() list "a plist for those who know what to do about it" :writable))
+  (objects nil t "data by which a layer finds copies. Can be set" :writable :export)
+  (screen nil (or null function) "a function of an object to copy, or NIL: it returns a replacement
+for the copy, and true; or NIL and false" :writable)
+  (options '() list "a plist, see COPIER-OPTION" :writable))
 
 (defun copier-option (copier key)
   "Return the value of the option KEY that COPIER was made with, or NIL."
@@ -40,14 +40,14 @@ there is to be instead of a copy, and true; or NIL and false" :writable)
   "Return COPY, an object made for the fork of COPIER that needs no further work."
   (note-copy copy copy copier))
 
-(defun put-right-later (copy how copier)
-  "Queue COPY in COPIER for PUT-RIGHT, whose second argument will be HOW. Return COPY."
+(defun queue-references (copy indices copier)
+  "Queue COPY in COPIER for REPLACE-REFERENCES with INDICES. Return COPY."
   (let ((fill (copier-fill copier)))
     (declare (type (unsigned-byte 40) fill))
     (when (= fill (length (copier-work copier)))
       (setf (copier-work copier) (replace (make-array (* 4 fill)) (copier-work copier))))
     (setf (svref (copier-work copier) fill) copy
-          (svref (copier-work copier) (1+ fill)) how
+          (svref (copier-work copier) (1+ fill)) indices
           (copier-fill copier) (+ fill 2))
     copy))
 
@@ -117,7 +117,7 @@ NIL instead; MAKE-NO-FORK."))
       (documentation 'cannot-fork-place 'function)
       "Return where the object was found: a text, such as the name of a plan's variable.")
 
-(defun found-in (value copier)
+(defun place-in-words (value copier)
   "Return in words where VALUE was found, by COPIER's option :PLACE-OF or the holding object."
   (let ((place-of (copier-option copier :place-of)))
     (or (and place-of (funcall place-of value))
@@ -127,12 +127,12 @@ NIL instead; MAKE-NO-FORK."))
   "Return a cons of VALUE and its replacement in the fork, if COPIER was given one; else NIL."
   (assoc value (copier-option copier :decisions) :test #'eq))
 
-(defun ask-about (value copier)
+(defun decided-copy (value copier)
   "Return the replacement of VALUE that COPIER was given. Signals CANNOT-FORK if there is none."
   (let ((decision (decision-about value copier)))
     (if decision
         (cdr decision)
-        (error 'cannot-fork :value value :place (found-in value copier)))))
+        (error 'cannot-fork :value value :place (place-in-words value copier)))))
 
 (defgeneric copy-plan-value (value fork)
   (:documentation
@@ -142,11 +142,11 @@ copied with their contents; what two of them share is shared by the copies. Func
 closures copied with what they close over. Define a method for a class of your own to change this:
 return VALUE itself to share it, or a replacement. (forked x fork) returns what FORK has for another
 object x.")
-  (:method (value fork) (ask-about value fork)))
+  (:method (value fork) (decided-copy value fork)))
 
 (addition copy-plan-value)
 
-;;; What is shared.
+;;; Shared objects.
 
 (defvar *shared-types* '()
   "The types of structures that are shared.")
@@ -175,9 +175,9 @@ object x.")
             (loop for (type . slots) in *shared-slots*
                     thereis (and (typep object type) (member name slots)))))))
 
-;;; Manners.
+;;; Copy policies.
 
-(defstruct (manner (:constructor make-manner (way indices fresh)) (:copier nil))
+(defstruct (copy-policy (:constructor make-copy-policy (way indices fresh)) (:copier nil))
   "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD; or :ASK, for those of the
 system. INDICES are the numbers of the slots whose contents are copied too. FRESH is a list of
 functions (writer . initial) for slots that are as in a new object."
@@ -190,19 +190,19 @@ functions (writer . initial) for slots that are as in a new object."
   (eq (first (compute-applicable-methods #'copy-plan-value (list object nil)))
       (find-method #'copy-plan-value '() (list (find-class class) (find-class t)))))
 
-(defun way-to-copy (object)
+(defun choose-way (object)
   (cond ((some (lambda (type) (typep object type)) *shared-types*) :share)
         ((not (default-method-p object 'structure-object)) :method)
         ((and (lisps-own-p (class-name (class-of object))) (not (environment-p object))) :ask)
         (t :copy)))
 
-(defun find-manner (object)
-  (let* ((kind (kind-of object)) (way (way-to-copy object))
+(defun find-copy-policy (object)
+  (let* ((kind (kind-of object)) (way (choose-way object))
          (links (remove :link (and kind (kind-slots kind))
                         :key #'kind-slot-role :test-not #'eq)))
     (if (member way '(:share :ask))
-        (make-manner way #() '())
-        (make-manner way
+        (make-copy-policy way #() '())
+        (make-copy-policy way
                      (coerce (loop for (index . name) in (reference-slots object)
                                    unless (or (find name links :key #'kind-slot-name)
                                               (shared-slot-p name object kind))
@@ -211,27 +211,27 @@ functions (writer . initial) for slots that are as in a new object."
                      (loop for slot in links
                            collect (cons (kind-slot-writer slot) (kind-slot-initial slot)))))))
 
-(defconstant +manners-known+ 4096 "The number of manners remembered, a power of 2.")
+(defconstant +policies-cached+ 4096 "The number of policies remembered, a power of 2.")
 
-(defun no-manners ()
-  (make-array +manners-known+ :initial-element nil))
+(defun empty-policy-cache ()
+  (make-array +policies-cached+ :initial-element nil))
 
-(defvar *manners* (cons '() (no-manners))
-  "The methods of COPY-PLAN-VALUE, and a cache valid for them: a vector of (layout . manner), by the
-number of the layout.")
+(defvar *copy-policies* (cons '() (empty-policy-cache))
+  "The methods of COPY-PLAN-VALUE, and a cache valid for them: a vector of (layout . copy-policy),
+by the number of the layout.")
 
-(defun refresh-manners ()
-  "Clear the cache of manners if methods of COPY-PLAN-VALUE were defined since."
+(defun refresh-copy-policies ()
+  "Clear the cache of policies if methods of COPY-PLAN-VALUE were defined since."
   (let ((methods (methods-of-generic #'copy-plan-value)))
-    (unless (eq methods (car *manners*))
-      (setf *manners* (cons methods (no-manners))))))
+    (unless (eq methods (car *copy-policies*))
+      (setf *copy-policies* (cons methods (empty-policy-cache))))))
 
-(defun manner (object)
+(defun copy-policy (object)
   (declare #.*hot*)
-  (let* ((manners (cdr *manners*))
+  (let* ((policies (cdr *copy-policies*))
          (layout (layout-of object))
-         (place (logand (layout-number layout) (1- +manners-known+)))
-         (known (svref manners place)))
+         (place (logand (layout-number layout) (1- +policies-cached+)))
+         (known (svref policies place)))
     (if (eq layout (car known))
         (cdr known)
-        (cdr (setf (svref manners place) (cons layout (find-manner object)))))))
+        (cdr (setf (svref policies place) (cons layout (find-copy-policy object)))))))

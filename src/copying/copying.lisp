@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.copying)
 
-(export '(copying copy-values copy-slots given))
+(export '(copying copy-values copy-slots copy-argument))
 
 ;;; A COPIER walks from an object to all that can be reached, and records the copy of each. So two
 ;;; objects that refer to the same one also do so in the copies. It copies an object first and
@@ -16,8 +16,8 @@
 (declaim (inline forked))
 (addition forked)
 (defun forked (value copier)
-  "Return what a fork has for VALUE. For methods of COPY-PLAN-VALUE, which receive COPIER. The
-result may be incomplete until they have returned."
+  "Return the copy of VALUE in a fork, for methods of COPY-PLAN-VALUE, which receive COPIER. It may
+be incomplete until they have returned."
   (typecase value
     ((or number symbol character) value)
     (t (forked-object value copier))))
@@ -30,7 +30,7 @@ result may be incomplete until they have returned."
           (t (begin-copy value copier)))))
 
 (defun copy-unless-screened (value copier)
-  "Return what COPIER has for VALUE: the replacement of its screen, or a copy."
+  "Return the replacement of VALUE by COPIER's screen, or else a copy."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
         (note-copy value instead copier)
@@ -39,14 +39,14 @@ result may be incomplete until they have returned."
 (defmethod copy-plan-value ((value structure-object) fork)
   (copy-slots value fork))
 
-(defun copy-slots (object copier &optional (manner (manner object)))
+(defun copy-slots (object copier &optional (copy-policy (copy-policy object)))
   "Return a copy of the structure OBJECT by COPIER, with copies in its slots."
-  (declare #.*hot* (type manner manner))
+  (declare #.*hot* (type copy-policy copy-policy))
   (let ((copy (note-copy object (copy-structure (the structure-object object)) copier)))
-    (loop for (writer . initial) in (manner-fresh manner)
+    (loop for (writer . initial) in (copy-policy-fresh copy-policy)
           do (funcall (the function writer) (funcall (the function initial)) copy))
-    (unless (zerop (length (manner-indices manner)))
-      (put-right-later copy (manner-indices manner) copier))
+    (unless (zerop (length (copy-policy-indices copy-policy)))
+      (queue-references copy (copy-policy-indices copy-policy) copier))
     copy))
 
 ;;; Other objects.
@@ -61,43 +61,38 @@ result may be incomplete until they have returned."
 
 (defmethod copy-plan-value ((value condition) fork)
   (multiple-value-bind (copy indices) (copy-condition value)
-    (put-right-later (note-copy value copy fork) (coerce indices 'simple-vector) fork)))
+    (queue-references (note-copy value copy fork) (coerce indices 'simple-vector) fork)))
 
 (defmethod copy-plan-value ((value standard-object) fork)
   (let ((copy (note-copy value (allocate-instance (class-of value)) fork)))
     (dolist (slot (instance-slot-names (class-of value)))
       (when (slot-boundp value slot)
         (setf (slot-value copy slot) (slot-value value slot))))
-    (put-right-later copy nil fork)))
+    (queue-references copy nil fork)))
 
-(defun make-like (array &rest options)
-  "Return a new array with the shape of ARRAY, made with OPTIONS."
-  (apply #'make-array (array-dimensions array)
-         :element-type (array-element-type array)
-         :adjustable (adjustable-array-p array)
-         :fill-pointer (and (array-has-fill-pointer-p array) (fill-pointer array))
-         options))
-
-(defun like-array (array)
+(defun duplicate-array (array)
   (if (typep array '(simple-array * (*)))
       (copy-seq array)
-      (let ((copy (make-like array)))
-        (dotimes (index (array-total-size array) copy)
-          (setf (row-major-aref copy index) (row-major-aref array index))))))
+      (copy-array array)))
 
 (defun copy-displaced (array copier)
   (multiple-value-bind (base offset) (array-displacement array)
     (note-copy array
-               (make-like array :displaced-to (forked base copier)
-                                :displaced-index-offset offset)
+               (make-array (array-dimensions array)
+                           :element-type (array-element-type array)
+                           :adjustable (adjustable-array-p array)
+                           :fill-pointer (and (array-has-fill-pointer-p array)
+                                              (fill-pointer array))
+                           :displaced-to (forked base copier)
+                           :displaced-index-offset offset)
                copier)))
 
-(defun copy-as-told (value copier)
+(defun copy-by-method (value copier)
   "Return the caller's decision about VALUE, or COPY-PLAN-VALUE's. Its errors are CANNOT-FORK."
   (let ((decision (decision-about value copier)))
     (flet ((blame (condition)
              (unless (typep condition 'ars-magna-error)
-               (error 'cannot-fork :value value :place (found-in value copier)
+               (error 'cannot-fork :value value :place (place-in-words value copier)
                                    :trouble (brief-text condition)))))
       (declare (dynamic-extent #'blame))
       (if decision
@@ -107,25 +102,25 @@ result may be incomplete until they have returned."
 
 (defun begin-copy (value copier)
   (declare #.*hot*)
-  (flet ((note (copy) (put-right-later (note-copy value copy copier) nil copier)))
+  (flet ((note (copy) (queue-references (note-copy value copy copier) nil copier)))
     (declare (inline note))
     (typecase value
       (cons (note (cons (car value) (cdr value))))
-      (hash-table (let ((copy (note-copy value (like-table value) copier)))
+      (hash-table (let ((copy (note-copy value (make-similar-table value) copier)))
                     (push (cons value copy) (copier-tables copier))
                     copy))
-      (structure-object (let ((manner (manner value)))
-                          (ecase (manner-way manner)
-                            (:copy (copy-slots value copier manner))
+      (structure-object (let ((copy-policy (copy-policy value)))
+                          (ecase (copy-policy-way copy-policy)
+                            (:copy (copy-slots value copier copy-policy))
                             (:share value)
-                            (:method (note-copy value (copy-as-told value copier) copier))
-                            (:ask (ask-about value copier)))))
+                            (:method (note-copy value (copy-by-method value copier) copier))
+                            (:ask (decided-copy value copier)))))
       (function (if (closure-p value) (note (copy-closure value)) (copy-function value copier)))
       (simple-vector (if (zerop (length value)) value (note (copy-seq value))))
       (array (cond ((array-displacement value) (copy-displaced value copier))
-                   ((eq t (array-element-type value)) (note (like-array value)))
-                   (t (note-copy value (like-array value) copier))))
-      (t (cond ((not (value-cell-p value)) (note-copy value (copy-as-told value copier) copier))
+                   ((eq t (array-element-type value)) (note (duplicate-array value)))
+                   (t (note-copy value (duplicate-array value) copier))))
+      (t (cond ((not (value-cell-p value)) (note-copy value (copy-by-method value copier) copier))
                ;; So an exit to it fails properly in a fork too.
                ((exit-cell-p value) value)
                (t (note (make-value-cell (cell-value value)))))))))
@@ -133,12 +128,12 @@ result may be incomplete until they have returned."
 (defun copy-function (function copier)
   "Return FUNCTION, which closes over nothing; one of a user's class may hold anything."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
-        ((typep function 'standard-object) (ask-about function copier))
+        ((typep function 'standard-object) (decided-copy function copier))
         (t function)))
 
 ;;; Replacing references in copies.
 
-(defun put-list-right (list copier)
+(defun replace-list-references (list copier)
   "Replace the references in LIST, a copy, up to a tail that was copied before."
   (declare #.*hot* (type copier copier))
   (loop
@@ -150,7 +145,7 @@ result may be incomplete until they have returned."
             (t (setf list (setf (cdr list)
                                 (note-copy tail (cons (car tail) (cdr tail)) copier))))))))
 
-(defun put-right (copy indices copier)
+(defun replace-references (copy indices copier)
   "Replace the references in COPY by copies. INDICES are slot numbers, or NIL for objects without."
   (declare #.*hot* (type copier copier))
   (cond (indices
@@ -158,7 +153,7 @@ result may be incomplete until they have returned."
                do (let ((value (instance-slot copy index)))
                     (unless (typep value '(or null fixnum))
                       (setf (instance-slot copy index) (forked value copier))))))
-        ((consp copy) (put-list-right copy copier))
+        ((consp copy) (replace-list-references copy copier))
         ((simple-vector-p copy)
          (dotimes (index (length copy))
            (let ((value (svref copy index)))
@@ -174,11 +169,11 @@ result may be incomplete until they have returned."
              (when (slot-boundp copy slot)
                (setf (slot-value copy slot) (forked (slot-value copy slot) copier)))))))
 
-(defun put-all-right (copier)
+(defun replace-all-references (copier)
   (declare #.*hot* (type copier copier))
   (loop until (zerop (copier-fill copier))
         do (let ((fill (decf (copier-fill copier) 2)))
-             (put-right (setf (copier-holder copier) (svref (copier-work copier) fill))
+             (replace-references (setf (copier-holder copier) (svref (copier-work copier) fill))
                         (svref (copier-work copier) (1+ fill))
                         copier))))
 
@@ -188,7 +183,7 @@ result may be incomplete until they have returned."
                         do (setf (copier-holder copier) table)
                         collect (loop for key being the hash-keys of table using (hash-value value)
                                       collect (cons (forked key copier) (forked value copier))))))
-    (put-all-right copier)
+    (replace-all-references copier)
     (loop for (nil . copy) in tables
           for pairs in contents
           do (loop for (key . value) in pairs
@@ -196,7 +191,7 @@ result may be incomplete until they have returned."
 
 (defun finish-copies (copier)
   (loop
-    (put-all-right copier)
+    (replace-all-references copier)
     (let ((tables (shiftf (copier-tables copier) '())))
       (unless tables (return))
       (fill-tables tables copier))))
@@ -205,7 +200,7 @@ result may be incomplete until they have returned."
   "Run BODY, which copies objects by COPIER, then complete the copies. Return the value of BODY."
   (once-only (copier)
     `(progn
-       (refresh-manners)
+       (refresh-copy-policies)
        (prog1 (progn ,@body)
          (finish-copies ,copier)))))
 
@@ -218,7 +213,7 @@ has no method for copying."
     ((or cons array hash-table) t)
     (condition nil)
     (function (and (closure-p value) (not (typep value 'standard-object))))
-    (structure-object (and (null (kind-of value)) (eq :copy (manner-way (manner value)))))
+    (structure-object (and (null (kind-of value)) (eq :copy (copy-policy-way (copy-policy value)))))
     (standard-object (default-method-p value 'standard-object))
     (t (and (value-cell-p value) (not (exit-cell-p value))))))
 
@@ -235,16 +230,16 @@ copies. Other objects are replaced by the value of INSTEAD-OF, a function of the
 
 ;;;; Users' arguments
 
-(defconstant +longest-given+ 100000 "The limit of conses and elements in an argument.")
-(defconstant +deepest-given+ 200 "The limit of nesting in an argument.")
+(defconstant +longest-argument+ 100000 "The limit of conses and elements in an argument.")
+(defconstant +deepest-argument+ 200 "The limit of nesting in an argument.")
 
-(defun copy-given (datum)
+(defun copy-lists (datum)
   "Return DATUM with its lists and vectors copied, so that the caller cannot modify it later. Return
 NIL and true if it is circular, too long or too deep."
-  (let ((left +longest-given+))
+  (let ((left +longest-argument+))
     (labels ((deeper (depth)
-               (when (or (minusp (decf left)) (> depth +deepest-given+))
-                 (return-from copy-given (values nil t))))
+               (when (or (minusp (decf left)) (> depth +deepest-argument+))
+                 (return-from copy-lists (values nil t))))
              (copy (datum depth)
                (typecase datum
                  (string (copy-seq datum))
@@ -263,13 +258,13 @@ NIL and true if it is circular, too long or too deep."
                  (t datum))))
       (copy datum 1))))
 
-(defun given (operator name datum)
+(defun copy-argument (operator name datum)
   "Return a copy of DATUM, the argument NAME of OPERATOR. Signals WRONG-ARGUMENT if it is circular,
 too long or too deep."
-  (multiple-value-bind (copy endless-p) (copy-given datum)
+  (multiple-value-bind (copy endless-p) (copy-lists datum)
     (when endless-p
       (reject-argument operator name "what was given"
                        (format nil "lists that end, with at most ~D elements in all, and at most ~
                                     ~D in one another"
-                               +longest-given+ +deepest-given+)))
+                               +longest-argument+ +deepest-argument+)))
     copy))

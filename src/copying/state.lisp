@@ -85,7 +85,7 @@ DIGEST. A kind may add an :AFTER method.")
                      collect (row-major-aref object index))
                '()))
     (function (if (closure-p object) (closure-values object) '()))
-    (structure-object (if (eq :copy (manner-way (manner object)))
+    (structure-object (if (eq :copy (copy-policy-way (copy-policy object)))
                           (loop for (index) in (reference-slots object)
                                 collect (instance-slot object index))
                           '()))
@@ -152,7 +152,7 @@ its initial value, or, if that is not of its type, garbage: do not print the obj
 ;;; Functions that objects hold and that a file may name. Others are refused.
 
 (defvar *lasting-functions* '()
-  "The names of functions that objects of a run may hold when it is saved.")
+  "The names of functions that objects of a saved run may hold.")
 
 (defun note-lasting (name)
   "Let a file name the function NAME as held by an object. Return NAME."

@@ -84,7 +84,7 @@ LABELS-AND-FORMS alternate, as in KNOWN-FACTS."
 
 ;; Lisp itself describes our definitions, such as commands, unless they have another name there.
 (defun worth-telling-p (entry registry symbol)
-  "True if DESCRIBE of SYMBOL should show ENTRY, the definition of SYMBOL in REGISTRY."
+  "True if DESCRIBE of SYMBOL should show its ENTRY in REGISTRY."
   (or (not (registry-fixed-p registry))
       (and (not (eq symbol (entry-name entry)))
            (facts (entry-object entry)))))

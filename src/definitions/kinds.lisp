@@ -19,10 +19,10 @@
         "what the slot is: :FIXED, :STATE, :MEMORY, :SCRATCH or :LINK" :export)
   (type t t "the Lisp type of the slot's values" :export)
   (text "" string "what is in the slot, in words" :export)
-  (part-p nil boolean "what is in the slot belongs to the object" :export)
-  (shared-p nil boolean "what is in the slot is never altered, so that copies can share it" :export)
-  (initial nil function "the function that returns what the slot holds at first" :export)
-  (reader nil function "the function of an object that returns what is in the slot" :export)
+  (part-p nil boolean "the slot's contents belong to the object" :export)
+  (shared-p nil boolean "the slot's contents are never modified, so copies share them" :export)
+  (initial nil function "the function that returns the slot's initial contents" :export)
+  (reader nil function "the function of an object that returns the slot's contents" :export)
   (writer nil function
           "the function of a value and an object that puts the value into the slot" :export))
 
@@ -38,8 +38,8 @@
                             (:predicate kind-p))
   "A kind of object."
   (name nil symbol "the name of the kind, the type of its objects" :export)
-  (slots '() list "a list of what is known of the slots of the kind, inherited ones first" :export)
-  (decisive-slots '() list "those slots of the kind whose contents decide what happens" :export)
+  (slots '() list "a list of the descriptions of the kind's slots, inherited ones first" :export)
+  (decisive-slots '() list "those slots of the kind whose contents determine the run" :export)
   (parent nil (or null object-kind) "the kind that it includes, or NIL"))
 
 (defmethod print-object ((kind object-kind) stream)
@@ -227,9 +227,9 @@ default type \"what it is\"), then :PART if its contents belong to the object, :
 never modified, :NEAR if it is to be near others in memory; :EXPORT and :ADDITION are as in
 DEFINE-RECORD. The roles are
   :fixed    the model: how the object was made;
-  :state    what decides the future, or what programs see of it;
-  :memory   what is shown to people and decides nothing;
-  :scratch  means nothing between ticks;
+  :state    what determines the future, or what programs see of it;
+  :memory   what is shown to people and determines nothing;
+  :scratch  what has no meaning between ticks;
   :link     ties to users of the object, such as continuations.
 A running Lisp cannot change the slots of a kind: restart it for that. Return the name. Signals
 MALFORMED-DEFINITION."

@@ -4,7 +4,7 @@
 
 (export '(error-policy warn-at-once warn-notably *message-queue* make-message-queue message-queue
           copy-message-queue message *robot-told-of* *run-that-reports* *told-of* take-messages
-          queue-message message-text phrase write-message *message-limit* make-message))
+          queue-message queue-items message-text phrase write-message *message-limit* make-message))
 
 ;;; Messages are queued as lists of items and become text when they are read. The queue is bounded:
 ;;; beyond *MESSAGE-LIMIT* the oldest are dropped and counted.
@@ -36,18 +36,18 @@
   (kind :message (member :error :warning :message) ":ERROR, :WARNING or :MESSAGE" :export)
   (items '() list "the items that the message is made of" :export)
   (asker *told-of* t
-         "a note of who asked for what the message tells of, such as a command, or NIL" :export)
+         "a note of who requested what the message reports, such as a command, or NIL" :export)
   (robot *robot-told-of* t
-         "the name of the robot whose command the message tells of, or NIL" :export)
+         "the name of the robot whose command the message reports, or NIL" :export)
   ;; Several runs may share a queue.
   (run (funcall *run-that-reports*) t "the run that the message belongs to, or NIL" :export)
-  (cause nil t "the condition or failure in users' code that the message tells of, or NIL, see
+  (cause nil t "the condition or failure in users' code that the message reports, or NIL, see
 troubles.lisp" :export)
-  (summary "" string "what says the cause in a line")
-  (about nil (or null symbol) "the name of the command whose failure the message tells, or NIL")
-  (told-p nil boolean "users' code has been told otherwise of what the message tells of" :export)
-  ;; Or a function that returns it later; or :AT-ONCE for a message that is shown at once if nobody
-  ;; listens, because the run may never end.
+  (summary "" string "the cause in a line")
+  (about nil (or null symbol) "the name of the command whose failure the message reports, or NIL")
+  (told-p nil boolean "users' code has also been told what the message reports" :export)
+  ;; Or a function that returns it later; or :AT-ONCE for a message that is shown at once if there
+  ;; is no listener, because the run may never end.
   (notable-p nil (or boolean (eql :at-once) function)
              "the message is a warning that is shown like an error if nobody reads it"))
 
@@ -65,15 +65,15 @@ thread that reports and without arguments, or NIL. Can be set" :writable :export
   (error-policy :report error-policy
                 ":REPORT, :SIGNAL or :COLLECT: what becomes of errors in users' code. Can be set"
                 :writable :export)
-  (seen '() list "the end of NEWEST-FIRST that nobody needs to be shown" :writable)
+  (seen '() list "the tail of NEWEST-FIRST that need not be shown" :writable)
   (read-p nil boolean
-          "somebody has read messages of the queue, or looked whether there are any"
+          "messages of the queue have been read or counted"
           :writable :export)
   (troubles '() list "the latest errors in users' code, the newest first" :writable)
   (unsignalled nil (or null message) "the first message about an error in users' code that is to be
 signalled, or NIL, see troubles.lisp" :writable :export)
-  (echoed nil (or null hash-table) "the table that counts errors, which are shown as they come where
-nobody listens, or NIL"))
+  (echoed nil (or null hash-table) "the table that counts errors, which are shown at once if there
+is no listener, or NIL"))
 
 ;; An interrupt, such as Ctrl-C, may report something too.
 (defmacro with-queue ((queue) &body body)
@@ -108,7 +108,7 @@ nobody listens, or NIL"))
        (or (message-cause message) (eq :error (message-kind message)))))
 
 (defun echoed-p (message queue)
-  "True if MESSAGE is shown at once when nobody listens to QUEUE."
+  "True if MESSAGE is shown at once when QUEUE has no listener."
   (or (eq :at-once (message-notable-p message))
       (and (message-queue-echoed queue)
            (or (to-be-seen-p message) (eq t (message-notable-p message))))))
@@ -130,6 +130,7 @@ nobody listens, or NIL"))
           ((echoed-p message queue) (echo-message message queue)))))
 
 (defun queue-items (kind items &rest options)
+  "Queue a message of KIND with ITEMS and OPTIONS, as for MAKE-MESSAGE. Return nothing."
   (queue-message (apply #'make-message kind items options) *message-queue*)
   (values))
 
@@ -150,7 +151,7 @@ nothing."
   (queue-items :warning stuff :notable-p t))
 
 (defun warn-at-once (&rest stuff)
-  "Queue a warning made of the items STUFF that is shown at once if nobody listens. Return nothing."
+  "Queue a warning of the items STUFF, shown at once if there is no listener. Return nothing."
   (queue-items :warning stuff :notable-p :at-once))
 
 (public message-set)

@@ -19,22 +19,22 @@
                                                   (documentation (current-docstring)))))
   "The definition of NAME as OBJECT, in SOURCE."
   (name nil symbol "the symbol that is defined" :export)
-  (object nil t "what the name of the entry means" :export)
+  (object nil t "the object that the entry defines" :export)
   (source nil list "the source of the entry's definition; see sources.lisp" :export)
-  (variable nil symbol "the variable that holds what the name stands for, or NIL")
+  (variable nil symbol "the variable that holds the object or a value for it, or NIL")
   (digest nil (or null integer) "a number for the form of the entry's definition, or NIL" :export)
   (head '() list "the operator and name of that form, a list")
-  (documentation nil (or null string) "what its author says there of what is defined, or NIL"))
+  (documentation nil (or null string) "the docstring of the definition, or NIL"))
 
 (define-record (registry (:constructor %make-registry (kind text)))
   "All definitions of one KIND, called TEXT in messages."
   (kind nil symbol)
   (text "" string)
-  (entries '() list "what is known of the definitions in the registry, in order" :writable :export)
-  (objects '() list "what REGISTRY has, in order of definition; do not alter it" :writable :export)
+  (entries '() list "the entries of the registry's definitions, in order" :writable :export)
+  (objects '() list "the objects in REGISTRY, in order; do not modify the list" :writable :export)
   (by-symbol-p nil boolean "names that are different symbols mean different things" :writable)
-  (fixed-p nil boolean "users cannot take back any definitions, or those that they find" :writable)
-  (sealed-p nil boolean :writable)
+  (fixed-p nil boolean "users cannot undefine any of the definitions" :writable)
+  (sealed-p nil boolean "users cannot undefine the simulator's definitions" :writable)
   (synonyms '() list "what else UNDEFINE may call the kind" :writable)
   (aliases (constantly '()) function "the function that returns what else an object may be called,
 strings and symbols" :writable))
@@ -142,7 +142,7 @@ others."
   (setf (registry-entries registry) entries
         (registry-objects registry) (mapcar #'entry-object entries)))
 
-(defparameter *own-source* '("the simulator itself") "The source of what a user finds defined.")
+(defparameter *own-source* '("the simulator itself") "The source of our own definitions.")
 
 (defun users-p (entry)
   "True if ENTRY is a user's definition, not the simulator's."
@@ -167,11 +167,11 @@ entry of the same name would then be last, or last."
   "Return NAME if a definition of KIND can have it as its variable. Else return NIL, with a warning
 unless NAME is a symbol of Common Lisp or ours."
   (flet ((refuse (control)
-           (warn-of-definition "~@?: the ~A is to be called by its name, '~(~A~)."
+           (warn-of-definition "~@?: refer to the ~A by its name, '~(~A~)."
                                control name kind name)))
     (cond ((not (variable-name-p name))
            (when (users-symbol-p name)
-             (refuse "~(~A~) is a constant or the like, and stays so")))
+             (refuse "~(~A~) is a constant or the like and keeps its value")))
           ((variable-in-use-p name) (refuse "The variable ~(~A~) already has a value"))
           (t name))))
 
@@ -179,7 +179,7 @@ unless NAME is a symbol of Common Lisp or ours."
   (let ((file (source-file (entry-source old)))
         (other (source-file (entry-source new))))
     (when (and file (not (equal file other)))
-      (warn-of-definition "The ~A ~(~A~) is defined anew~@[ in ~A~]; so far it was as ~A says."
+      (warn-of-definition "The ~A ~(~A~) is redefined~@[ in ~A~]; its earlier definition is in ~A."
                           (registry-text registry) (entry-name new) other file))))
 
 (defun variable-for (name old registry)
@@ -258,7 +258,7 @@ KICKER, MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. Its 
 unbound; existing worlds keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE for
 definitions that are not users', and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
-  (check-argument undefine name (typep name '(or symbol string)) "a symbol, the name of what goes")
+  (check-argument undefine name (typep name '(or symbol string)) "the name of a definition")
   (let ((registry (find-registry kind)))
     (find-definition name registry t)
     (let ((entry (lookup-entry name registry)))

@@ -1,4 +1,4 @@
-;;;; slips.lisp -- what was meant where Lisp finds no function or value; tests never true.
+;;;; slips.lisp -- suggestions for undefined functions and variables; tests that are never true.
 
 (in-package :ars-magna.definitions)
 
@@ -7,9 +7,9 @@
           values-used-in code-doubt))
 
 (defun ours-called (name)
-  "Return the function of ours that is called like NAME, a string or another symbol, and the name of
-the package that exports it; or NIL."
-  ;; A user's package may have nicknames of its own for others.
+  "Return the public function of ours that is called NAME, a string or symbol, and the name of its
+package; or NIL."
+  ;; A user's package may have local nicknames.
   (let ((*package* (find-package "KEYWORD")))
     (dolist (package '("ARS" "NISP"))
       (multiple-value-bind (symbol status)
@@ -77,7 +77,7 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 ;;; Variables.
 
 (defun defined-slip-text (name)
-  "Return in a sentence what the definitions are that NAME, which has no value, stands for, or NIL."
+  "Return in a sentence the kind of the definition called NAME, which has no value, or NIL."
   (loop for registry in (open-registries)
         for entry = (lookup-entry name registry)
         when (and entry (not (entry-variable entry)))
@@ -86,7 +86,7 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
                           (usual-name registry) (unqualified-text name))))
 
 (defun variable-slip (name)
-  "Return in words the variable that NAME, which has no value, may be a slip for; or NIL."
+  "Return in words the variable that NAME, which has no value, may be a misspelling of; or NIL."
   (let ((meant (and (symbol-package name)
                     (first (symbols-seen (symbol-package name)
                                          (lambda (symbol)
@@ -98,7 +98,7 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 (define-global *error-codes* '() "The error codes of commands, keywords.")
 
 (defun note-error-code (code)
-  "Remember that CODE, a keyword, is an error code of commands."
+  "Register CODE, a keyword, as an error code of commands."
   (pushnew code *error-codes*))
 
 (defun variable-slip-text (name)
@@ -113,14 +113,14 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 
 ;;; Syntax.
 
-(defvar *dispatch-remedies* '() "Lists (character remedy) for what may stand behind # elsewhere.")
+(defvar *dispatch-remedies* '() "Lists (character remedy) for what # reads in other readtables.")
 
 (defun note-dispatch-character (character remedy)
-  "Note that REMEDY, a sentence, says what to do to have CHARACTER read behind #."
+  "Register REMEDY, a sentence, for code with # and CHARACTER that Lisp cannot read."
   (pushnew (list character remedy) *dispatch-remedies* :test #'equal))
 
 (defun syntax-slip-text (condition)
-  "Return in a sentence what to do to have read what CONDITION says cannot be read, or NIL."
+  "Return in a sentence how to make Lisp read what CONDITION says cannot be read, or NIL."
   (let ((character (and (typep condition 'simple-condition)
                         (starts-with-subseq "no dispatch function"
                                             (simple-condition-format-control condition))
@@ -130,8 +130,7 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 ;;; Types.
 
 (defgeneric value-behind (datum)
-  (:documentation "Return in a sentence how to get what somebody may have meant who gave DATUM where
-it is of no use; or NIL.")
+  (:documentation "Return in a sentence what to pass instead of DATUM, of the wrong type, or NIL.")
   (:method (datum)
     (declare (ignore datum))
     nil))
@@ -162,8 +161,8 @@ it is of no use; or NIL.")
 ;;;; Tests that are never true, or always
 
 (defgeneric test-doubt (form)
-  (:documentation "Return in a sentence why FORM, a test in Lisp code, is not what is meant; or NIL.
-The layer that knows fluents has methods.")
+  (:documentation "Return in a sentence why FORM, a test in Lisp code, is probably a mistake; or
+NIL. The layer that knows fluents has methods.")
   (:method (form) (declare (ignore form)) nil))
 
 ;;; Words that something is compared with: keywords, and what may be meant for one.
@@ -217,7 +216,7 @@ that compares them."
 ;;; Where values are used.
 
 (defun lisp-call-p (form &rest names)
-  "True if FORM is a proper list that calls an operator, of no user's, that has one of NAMES."
+  "True if FORM is a proper list that calls an operator with one of NAMES that is not a user's."
   (and (typep form '(cons symbol))
        (proper-list-p form)
        (not (users-symbol-p (first form)))
@@ -248,7 +247,7 @@ that compares them."
   :documentation "Words that are no error codes, and that are meant for success.")
 
 (defun code-like (word)
-  "Return the error code that WORD, which is none, is written for; or NIL."
+  "Return the error code that WORD, which is none, was perhaps meant for; or NIL."
   (or (nearest-name word *error-codes*)
       (find-if (lambda (code)
                  (let ((code (symbol-name code)) (word (symbol-name word)))

@@ -23,8 +23,8 @@
 
 ;;; A map has thousands of clauses, each of which may be looked up, so the last result is cached.
 
-(defun call-recalling (function cell &rest keys)
-  "Do what RECALLING does. CELL holds (value key...) of the last call, replaced, never modified."
+(defun call-caching (function cell &rest keys)
+  "Do what CACHING does. CELL holds (value key...) of the last call, replaced, never modified."
   (destructuring-bind (&optional value &rest last-keys) (first cell)
     (if (and last-keys
              (every (lambda (key last)
@@ -34,9 +34,9 @@
         value
         (first (setf (first cell) (cons (funcall function) keys))))))
 
-(defmacro recalling ((&rest keys) &body body)
+(defmacro caching ((&rest keys) &body body)
   "Return the value of BODY, cached while the strings and objects KEYS are those of the last call."
-  (apply #'form-calling 'call-recalling body '(load-time-value (list '())) keys))
+  (apply #'form-calling 'call-caching body '(load-time-value (list '())) keys))
 
 ;;; Finding a form in a text.
 
@@ -129,7 +129,7 @@
 
 (defun definition-positions (text form)
   "Return (start end equal-p) for each form in TEXT with the operator and name of FORM."
-  (recalling (text form) (look-for-definitions text form)))
+  (caching (text form) (look-for-definitions text form)))
 
 (defun position-of-definition (positions ordinal)
   "Return the one of POSITIONS that is unchanged, or number ORDINAL, or the first; and its number."
@@ -152,7 +152,7 @@ never modified.")
 (defun form-position (text form start end)
   "Return the position of FORM, a list, in TEXT between START and END, the next from the last search
 if possible; or NIL."
-  (let ((forms (recalling (text start end) (forms-in text start end))))
+  (let ((forms (caching (text start end) (forms-in text start end))))
     (flet ((look (from)
              (let ((tail (member form from :key #'cdr :test #'same-words-p)))
                (when tail (setf *last-place* (cons forms tail)))
@@ -176,7 +176,7 @@ if possible; or NIL."
 (defun text-of-file (file)
   "Return the text of FILE, a native name, as FILE-TEXT does, cached for repeated calls."
   (let ((path (native-path file)))
-    (recalling (file (file-write-date path)) (file-text path))))
+    (caching (file (file-write-date path)) (file-text path))))
 
 (defun line-of-clause (text form clause)
   "Return the line in TEXT of CLAUSE of the definition FORM, or of the definition if CLAUSE is not
@@ -261,7 +261,7 @@ found in it, or NIL; and which of the definitions of that name it is."
 the operator WITHOUT, a string, if given."
   ;; Any file can be read this way. The meaning of its bytes does not matter here.
   (let ((text (read-file-into-string file :external-format :latin-1)))
-    (recalling (text without)
+    (caching (text without)
       (let ((code (code-alone text)) (digest (make-digest)))
         (add-characters (if without (code-without without code) code) digest)
         (digest-value digest)))))

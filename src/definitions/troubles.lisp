@@ -164,7 +164,7 @@ is true."
          (format stream "~&~A~:[~; (~:*~D times by now)~]~%" text (and (< 1 count) count))
          (finish-output stream))))))
 
-;;;; Debuggers: who is asked for a restart
+;;;; Which debugger asks for a restart
 
 ;;; Code that we call may enter a foreign debugger: Lisp's own or an editor's. Errors in what is
 ;;; typed there belong to that debugger, and must not reach our handlers around the code. If the
@@ -184,15 +184,15 @@ is true."
 the thread of the error before the debugger asks there.")
 
 (defvar *debugger-refused-p* nil
-  "True where the debugger's hook asks nobody, but signals an error.")
+  "True where the debugger's hook signals an error instead of asking.")
 
-(defun words-for-asker (hook)
+(defun debugger-words (hook)
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
 (defun debugger-asking (thread)
   "Return in words whose debugger asks for a restart of THREAD; NIL if no foreign one does."
   (let ((inquiry (find thread *inquiries* :key #'inquiry-thread)))
-    (and inquiry (words-for-asker (inquiry-hook inquiry)))))
+    (and inquiry (debugger-words (inquiry-hook inquiry)))))
 
 (defun end-inquiries (gone-p)
   "Notify the threads in which GONE-P, called there, is true that their debugger has gone."
@@ -222,11 +222,10 @@ the thread of the error before the debugger asks there.")
                                (funcall other condition other)))
                             ((null hook) (invoke-debugger condition))))))
 
-(defun go-on-unasked (condition)
-  "Choose the most likely restart of CONDITION, because nobody is left to ask, and warn."
+(defun restart-unasked (condition)
+  "Choose the most likely restart of CONDITION, because no debugger is left, and warn."
   (let ((name (if (typep condition 'serious-condition) 'abort 'continue)))
-    (warning-set "The debugger that asked how something that had broken goes on has gone; "
-                 (string-downcase name)
+    (warning-set "The debugger that asked for a restart has disconnected; " (string-downcase name)
                  " was chosen: " (one-line-text condition))
     (when (eq name 'continue) (continue condition))
     (abort condition)))
@@ -236,12 +235,12 @@ the thread of the error before the debugger asks there.")
   (let ((inquiry (make-inquiry (current-thread) hook)))
     (catch inquiry
       (with-lock (*inquiries-lock*) (push inquiry *inquiries*))
-      (unwind-protect (progn (tell-listeners *inquiry-hooks* condition (words-for-asker hook))
+      (unwind-protect (progn (tell-listeners *inquiry-hooks* condition (debugger-words hook))
                              (enter-outer condition hook))
         (with-lock (*inquiries-lock*) (setf *inquiries* (remove inquiry *inquiries*))))
       (return-from inquire))
     (ask-how-to-go-on *front-end* condition)
-    (go-on-unasked condition)))
+    (restart-unasked condition)))
 
 (defun call-answering-debugger (function answer)
   "Call FUNCTION. If it enters a debugger, call ANSWER with the condition, and true if an

@@ -31,7 +31,7 @@ ends of its commands there.")
   (:method (asker) (declare (ignore asker)) nil))
 
 (defvar *goes-on-in-forks-p* nil
-  "True while something acts that continues in forks of the run, whoever the asker is.")
+  "True while code runs that continues in forks of the run, whatever *ASKER* is.")
 
 (defun goes-on-in-forks-p ()
   "True if forks of the run repeat by themselves what is requested here."
@@ -68,8 +68,8 @@ an error message that names its origin, and the run goes on.")
   (origin nil t "whose code the thread is in, an item or a list of items, or NIL" :writable :export)
   (count 0 fixnum "how many calls of users' code the thread has begun" :writable :export)
   (waiting-p nil t "the last of them waits for an answer in a debugger" :writable :export)
-  (place nil (or null function) "a function that says where the form is that the thread loads of a
-file, or NIL if it loads none. Can be set" :writable :export)
+  (place nil (or null function) "a function that returns the place of the form that the thread is
+loading from a file, or NIL. Can be set" :writable :export)
   (stop nil (or null function) "a function that ends what the thread does, or NIL"))
 
 (defvar *user-calls* nil

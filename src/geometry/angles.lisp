@@ -26,14 +26,14 @@ WRONG-ARGUMENT."
   (check-finite atan2 x)
   (arctangent (double y) (double x)))
 
-;; Beyond that too little is left of the part of a turn.
+;; Beyond that, the part of a turn is too imprecise.
 (defmacro check-angle (operator place)
   `(check-argument ,operator ,place (within-reason-p ,place)
                    "an angle in radians, from -1e9 to 1e9"))
 
 (declaim (inline reduced-angle))
 (defun reduced-angle (angle)
-  "Return what of ANGLE is left in (-pi, pi] after whole turns."
+  "Return ANGLE without whole turns, in (-pi, pi]."
   (declare (type double-float angle))
   (if (and (< #.(- pi) angle) (<= angle pi))
       angle

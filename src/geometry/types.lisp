@@ -8,8 +8,8 @@
 ;;; has its min above its max. A point interval owns its two intervals: no other object shares
 ;;; them, so that a destructive operation changes its first operand only (manual 3.2.1).
 
-;;; What a double-float cannot stand for, infinite or no number is in none of these; nor does
-;;; DISPATCH (see points.lisp) let anything be computed that would be.
+;;; None of these contains infinities, NaNs or other numbers beyond double-floats, and DISPATCH (see
+;;; points.lisp) signals an error if a result would.
 
 (defmacro check-finite (operator place)
   `(check-argument ,operator ,place (finite-p ,place) +number-text+))
@@ -17,9 +17,9 @@
 (define-condition beyond-floats (wrong-argument)
   ()
   (:default-initargs :expected "operands whose result is not beyond 1.7e308 either way")
-  (:documentation "The operands of an operation have a result that no double-float stands for."))
+  (:documentation "The operands of an operation have a result beyond double-floats."))
 
-;; An operation that uses another one tells of its own operands.
+;; An operation that uses another one reports its own operands.
 (defmacro within-floats ((operator operand) &body body)
   "Evaluate BODY. Signal WRONG-ARGUMENT about OPERAND, a variable, if a number overflows."
   `(handler-case (progn ,@body)

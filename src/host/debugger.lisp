@@ -32,13 +32,13 @@ now and then.")
   (:method (front-end) (declare (ignore front-end))))
 
 (defgeneric hook-of-front-end (front-end)
-  (:documentation "Return the debugger hook of FRONT-END, or NIL, for use where an editor has nobody
-to ask.")
+  (:documentation "Return the debugger hook of FRONT-END, or NIL, for use after an editor has
+disconnected.")
   (:method (front-end) (declare (ignore front-end))))
 
 (defgeneric ask-how-to-go-on (front-end condition)
-  (:documentation "Let a person choose a restart for CONDITION, after the asked front end has gone.
-Return if FRONT-END can ask nobody.")
+  (:documentation "Let the user choose a restart for CONDITION, after another debugger has gone.
+Return if FRONT-END cannot ask.")
   (:method (front-end condition) (declare (ignore front-end condition))))
 
 (defgeneric input-of-programs (front-end stream)

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.host)
 
-(export '(*hot* compiler-note declaim-final surely form-calling global-value define-global
-          weak-table-p like-table make-weak weak-value define-event attend tell-listeners))
+(export '(*hot* compiler-note declaim-final assume-type form-calling global-value define-global
+          weak-table-p make-similar-table make-weak weak-value define-event attend tell-listeners))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))
@@ -17,8 +17,8 @@
   "Promise the compiler that the structure TYPES get no more subtypes."
   `(declaim (sb-ext:freeze-type ,@types)))
 
-;; For what was checked before in a way that the compiler cannot see.
-(defmacro surely (type form)
+;; For values that were checked in a way that the compiler cannot see.
+(defmacro assume-type (type form)
   "Return the value of FORM, which the compiler may assume to be of TYPE."
   `(sb-ext:truly-the ,type ,form))
 
@@ -47,8 +47,8 @@ read."
 
 ;;;; Hash tables
 
-(defun like-table (table)
-  "Return an empty hash table like TABLE."
+(defun make-similar-table (table)
+  "Return an empty hash table with the test, size and options of TABLE."
   (make-hash-table :test (hash-table-test table)
                    :size (max 7 (hash-table-count table))
                    :weakness (sb-ext:hash-table-weakness table)

@@ -7,17 +7,17 @@ part per file: threads, files, the compiler. No other folder names what SBCL doe
   (:import-from :alexandria
                 #:clamp #:ensure-list #:once-only #:parse-body #:removef
                 #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
-                #:ensure-gethash #:read-file-into-string #:starts-with-subseq #:ends-with
-                #:ends-with-subseq #:define-constant #:proper-list-p
+                #:ensure-gethash #:copy-array #:read-file-into-string #:starts-with-subseq
+                #:ends-with #:ends-with-subseq #:define-constant #:proper-list-p
                 #:parse-ordinary-lambda-list #:simple-style-warning)
   (:import-from :sb-ext
                 #:compare-and-swap #:atomic-push #:atomic-incf #:atomic-decf
                 #:package-locked-p #:lock-package #:unlock-package #:weak-pointer-p)
   (:import-from :sb-thread #:signal-semaphore #:thread-alive-p #:thread-name)
   (:export #:clamp #:ensure-list #:once-only #:parse-body #:removef #:with-gensyms #:symbolicate
-           #:make-keyword #:hash-table-values #:ensure-gethash #:read-file-into-string
-           #:starts-with-subseq #:ends-with #:ends-with-subseq #:define-constant #:proper-list-p
-           #:parse-ordinary-lambda-list #:simple-style-warning
+           #:make-keyword #:hash-table-values #:ensure-gethash #:copy-array
+           #:read-file-into-string #:starts-with-subseq #:ends-with #:ends-with-subseq
+           #:define-constant #:proper-list-p #:parse-ordinary-lambda-list #:simple-style-warning
            #:compare-and-swap #:atomic-push #:atomic-incf #:atomic-decf
            #:package-locked-p #:lock-package #:unlock-package #:weak-pointer-p
            #:signal-semaphore #:thread-alive-p #:thread-name))

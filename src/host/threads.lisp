@@ -105,7 +105,7 @@ this thread serves others and allows interrupts."
 
 (call-when-leaving 'note-leaving)
 
-;; What Lisp compiles in our threads, as for generic functions, is no loss at exit.
+;; At exit, what Lisp compiles in our threads, as for generic functions, can be lost.
 (defun tell-of-unit (function left-p)
   "Let FUNCTION report that a unit ended, aborted if LEFT-P, unless it was because this Lisp exits."
   (unless (and left-p *leaving-p* (own-thread-p))
@@ -142,7 +142,7 @@ global values; this passes dynamic ones on."
     (lambda (&rest arguments)
       (progv symbols values (apply function arguments)))))
 
-;;;; Names that code of other threads has bound to robots of its own
+;;;; Names that other threads have bound to their own robots
 
 ;;; WITH-SIMULATION binds robots' names for the thread of its body only. In another thread the same
 ;;; name is the top level's robot, which may surprise its user. Code that gets a request for that

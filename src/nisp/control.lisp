@@ -89,7 +89,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
   (ensure-gethash (string name) *nisp-types* (make-nisp-type (string name))))
 
 (defun names-of-classes (package)
-  "Return the names of the classes that PACKAGE, the name of a package or nothing's, offers."
+  "Return the names of the classes that PACKAGE exports; NIL if there is no such package."
   (and (find-package package)
        (loop for symbol being the external-symbols of package
              when (find-class symbol nil) collect (symbol-name symbol))))
@@ -115,7 +115,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
   (member form lambda-list-keywords))
 
 (defun type-like (type)
-  "Return the name of a known type for which TYPE, which is unknown, may be a slip; or NIL."
+  "Return the name of a known type that TYPE, an unknown one, may be a misspelling of; or NIL."
   (and type
        (symbolp type)
        (not (find-nisp-type type))

@@ -146,11 +146,9 @@ neither (manual A; reading 41)."
     (setf (logical-pathname-translations "ARS")
           `(("**;*.*.*" ,(merge-pathnames "**/*.*" (asdf:system-source-directory system)))))))
 
-;;; What ASDF compiles while Nisp's syntax is current is read as anywhere else.
-
-;;; ASDF keeps what it compiles, for all Lisps of the user. Files are read in the syntax and package
-;;; that are current until they say otherwise; so whoever asks for a library after
-;;; (in-readtable :nisp) would have it compiled in Nisp's syntax, and have it so ever after.
+;;; ASDF keeps compiled files for all Lisps of the user. Files are read in the current syntax and
+;;; package unless they say otherwise. So a library loaded after (in-readtable :nisp) would be
+;;; compiled in Nisp's syntax, and kept like that.
 
 (defvar *library-readtable* (copy-readtable nil)
   "The syntax of files of systems if Nisp's is current. Libraries may add to it from file to file.")

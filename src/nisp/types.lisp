@@ -140,7 +140,7 @@ unknown TYPE and a wrong number of ARGUMENTS are errors."
 ;;; Registering them.
 
 (defun register-slot (class slot reader)
-  "Remember that READER (a function's name, or NIL) reads the slot called SLOT of CLASS."
+  "Register READER, a function's name or NIL, for the slot called SLOT of CLASS."
   (let ((type (ensure-nisp-type class))
         (slot (string slot)))
     (setf (nisp-type-class type) class

@@ -141,7 +141,7 @@ direction and length."
                             (when (logtest stops (aref flags next))
                               (when (funcall visit next (aref flags next)) (return)))
                             ;; AREF has made sure.
-                            (setf index (surely cell-index next)))))
+                            (setf index (assume-type cell-index next)))))
               (loop (if (< at-x at-y)
                         (enter-next at-x per-x step-x left-x)
                         (enter-next at-y per-y step-y left-y))))

@@ -81,7 +81,7 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
   (check-of-type 'schedule 'timer timer 'tick-span)
   (when timeout (check-of-type 'schedule 'timeout timeout 'tick-span))
-  (post (make-scheduled function (given 'schedule "resource" resource) priority
+  (post (make-scheduled function (copy-argument 'schedule "resource" resource) priority
                         interrupt when timeout timer)
         simulation))
 
@@ -163,7 +163,7 @@ tick, by the owner. A layer with background activities adds a method.")
   "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
 start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
   (note-asked resource)
-  (post (make-grab (list (given 'grab-resource "resource" resource))) simulation))
+  (post (make-grab (list (copy-argument 'grab-resource "resource" resource))) simulation))
 
 (define-operator 'grab '(datum) #'grab-resource)
 

@@ -38,7 +38,7 @@
         when (eq key (attribute-name attribute)) return attribute))
 
 (defun declared-name-like (name)
-  "Return the name of a defined attribute for which NAME, of no attribute, may be a slip; or NIL."
+  "Return the declared name that NAME, an undeclared one, may be a misspelling of; or NIL."
   (let ((key (attribute-key name)))
     (unless (or (attribute-of key) (eq key :draw-function))
       (find-if (lambda (other) (resembles-p key other))
@@ -66,14 +66,14 @@
     (reject-clause definition (list :supported-by supported-by) "a list of attribute names")))
 
 (defvar *built-in-attributes* '()
-  "The names of the attributes of table 3.3, which anything has without its author's saying so.")
+  "The names of the attributes of table 3.3, which every thing has.")
 
 (defun built-in-attribute-p (attribute)
-  "True if ATTRIBUTE is one of the manual's, which each thing has, if only by default."
+  "True if ATTRIBUTE is one of the manual's, which every thing has, at least by default."
   (member (attribute-name attribute) *built-in-attributes* :test #'eq))
 
 (defun check-kind-of-built-in (definition name domain)
-  "Signal MALFORMED-DEFINITION if the simulator could not compute with NAME any more."
+  "Signal MALFORMED-DEFINITION if NAME is a built-in attribute of the other kind than DOMAIN."
   (let ((old (attribute-of name)))
     (when (and old (built-in-attribute-p old)
                (not (eq (attribute-kind old) (if (consp domain) :discrete :numeric))))
@@ -85,7 +85,7 @@
 ;;; cached. Names of undeclared attributes that a thing has are compared, too.
 
 (define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
-  "For names that are not declared, the name that each may be a slip for, or NIL.")
+  "For each undeclared name, the name that it may be a misspelling of, or NIL.")
 
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
@@ -173,7 +173,7 @@ are from -1e15 to 1e15."
        (or (null (third form)) (amount-p (third form)))))
 
 (defun askable-p (value)
-  "True if VALUE, an atom or a list that ends, has no number in it that is beyond reason."
+  "True if VALUE, an atom or a list that ends, has no number beyond +-1e15 in it."
   (if (consp value)
       (and (proper-list-p value) (every #'askable-p value))
       (or (not (realp value)) (quantity-p value))))

@@ -1,4 +1,4 @@
-;;;; clauses.lisp -- what the checks of all our defining forms have in common.
+;;;; clauses.lisp -- checks that all our defining forms share.
 
 (in-package :ars-magna.world)
 
@@ -30,14 +30,14 @@
   (and (proper-list-p form) (= 2 (length form)) (every #'quantity-p form)))
 
 (defun check-name (definition name what)
-  "Signal MALFORMED-DEFINITION unless the WHAT that is defined can be called NAME."
+  "Signal MALFORMED-DEFINITION unless NAME can name what is defined, a WHAT."
   (unless (and name (symbolp name) (not (eq name t)) (not (keywordp name)))
     (reject-clause definition name
                    (format nil "a symbol, but no keyword, as the name of the ~A" what))))
 
 (defun call-for-value (function definition clause expected)
-  "Return the value of FUNCTION, a form of CLAUSE that its author wrote. Errors are DEFINITION's,
-which expected EXPECTED there."
+  "Return the value of FUNCTION, which runs code of CLAUSE. Its errors become MALFORMED-DEFINITIONs
+of DEFINITION, which expected EXPECTED there."
   (handler-case (funcall function)
     (malformed-definition (condition) (error condition))
     (error (condition)

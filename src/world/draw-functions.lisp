@@ -4,10 +4,9 @@
 
 (export '(drawing-code))
 
-;;; A value is a function, or a symbol that names one, which then may be defined anew. Code says
-;;; it: a definition, or a program that sets the attribute. Only names that code has said are
-;;; called: so no file that holds data, such as a journal, can have any function called by its name.
-;;; Manual B, reading 211.
+;;; A value is a function, or a symbol that names one, which can be redefined. It must come from
+;;; code: a definition, or a program that sets the attribute. Only names from code are called, so a
+;;; data file, such as a journal, cannot have any function called. Manual B, reading 211.
 
 (define-constant +draw-arguments+ "(window thing x y width height)" :test #'string=
   :documentation "How the arguments of a :draw-function are written.")

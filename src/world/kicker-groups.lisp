@@ -27,11 +27,11 @@
   (:scratch
    (outlook nil (or null outlook) "what is known of the next trials, if there are many"))
   (:link
-   (origin (make-origin) origin "who is to blame for trouble")))
+   (origin (make-origin) origin "the attachment that is running, for errors")))
 
 (defstruct (origin (:constructor make-origin ()) (:copier nil))
   "Printed as the origin of an error: the attachment that was running."
-  ;; Of no type that would have to be looked for in it, far away, each time one runs.
+  ;; Checking a type would read the attachment, which is distant memory, each time one runs.
   (attachment nil :type t))
 
 (defmethod reference ((group group))
@@ -43,7 +43,7 @@
 ;;; Chance.
 
 (defun refresh-rate (group dice)
-  "Draw anew if a tick now stands for another span of time."
+  "Draw the next gap of GROUP again if TICK-QUANTUM* has changed."
   (unless (eql (group-quantum group) tick-quantum*)
     (let ((p (per-tick-probability (group-probability group))))
       (setf (group-quantum group) tick-quantum*
@@ -85,7 +85,7 @@
       (seat-member group (attachment-index attachment) attachment)
       (push attachment (group-dead group)))))
 
-(defun bury-dead (group)
+(defun remove-dead-members (group)
   "Close the gaps in the row of GROUP, with members from its end."
   (dolist (attachment (shiftf (group-dead group) '()))
     (let* ((last (decf (group-count group))) (row (group-row group)))
@@ -93,7 +93,7 @@
       (fill row nil :start (* 3 last) :end (* 3 (1+ last))))))
 
 (defun regroup-kickers (world)
-  "Form the groups of WORLD anew, after kickers have been redefined."
+  "Rebuild the groups of WORLD, after kickers have been redefined."
   (setf (world-kicker-groups world) '()
         (world-kicker-generation world) *kicker-generation*)
   (do-things (thing world)
@@ -105,22 +105,22 @@
 
 (declaim (inline test-holds-p))
 (defun test-holds-p (kicker test thing)
-  "Return what TEST, that of KICKER, says of THING, and note it."
+  "Return the value of TEST, of KICKER, for THING, and record it."
   (cond ((funcall (the function test) thing)
          (or (eq t (kicker-test-outcome kicker)) (setf (kicker-test-outcome kicker) t)))
-        ;; Another thread may find it true in this moment.
+        ;; Another thread may record true at this moment.
         ((null (kicker-test-outcome kicker))
          (compare-and-swap (kicker-test-outcome kicker) nil :no)
          nil)))
 
 (defun run-member (kicker thing)
-  "Run the body of KICKER for THING, unless its test says no."
+  "Run the body of KICKER for THING, unless its test is false."
   (let ((test (kicker-test kicker)))
     (when (or (null test) (test-holds-p kicker test thing))
       (funcall (the function (kicker-body kicker)) thing))))
 
 (defun kick-again (origin)
-  "Run the member that is said to be to blame in ORIGIN once more."
+  "Run the member in ORIGIN once more, after an error."
   (let ((attachment (origin-attachment origin)))
     (setf self attachment)
     (run-member (attachment-kicker attachment) (attachment-thing attachment))))
@@ -128,7 +128,7 @@
 ;; Distant memory is read ahead. In a large world a move then takes 420 ns instead of 750. Kickers
 ;; that move nothing would not benefit, and would pay for it.
 (defconstant +large-group+ 5000
-  "How many members of a group are more than a processor keeps near itself.")
+  "How many members of a group need more memory than a processor caches.")
 
 (defun read-group-ahead (group end dice)
   "Read ahead for the things whose trials succeed next, before END in GROUP. Return the index there
@@ -149,7 +149,7 @@ of the first one not read."
     ahead))
 
 (defun run-and-see (kicker thing)
-  "Do as RUN-MEMBER does. True if THING is elsewhere then."
+  "Do as RUN-MEMBER. True if THING has moved."
   (let ((x (thing-x thing)) (y (thing-y thing)))
     (run-member kicker thing)
     (not (and (= x (thing-x thing)) (= y (thing-y thing))))))
@@ -186,13 +186,13 @@ large group, memory is read ahead if the first member to run moves its thing."
   t)
 
 (defun run-row (group end dice tick)
-  "Run the members of GROUP before END whose trials succeed, those behind one that fails too."
+  "Run the members of GROUP before END whose trials succeed, also those after one with an error."
   (unwind-protect
        (loop while (< (group-skip group) end)
              do (unless (call-user-code #'run-members (group-origin group) group end dice tick)
                   (setf (group-origin group) (make-origin))))
     (when (< (group-skip group) end)
-      ;; One was left, as by THROW.
+      ;; A member has exited, as by THROW.
       (setf (group-origin group) (make-origin))
       (run-row group end dice tick))))
 
@@ -201,11 +201,11 @@ large group, memory is read ahead if the first member to run moves its thing."
   (let ((end (group-count group)))
     (unwind-protect (run-row group end dice tick)
       (decf (group-skip group) end)
-      (when (group-dead group) (bury-dead group)))))
+      (when (group-dead group) (remove-dead-members group)))))
 
 (declaim (inline skip-group))
 (defun skip-group (group)
-  "Note that a tick has passed for GROUP, if no trial in it succeeds, as in most ticks. True if so."
+  "Let a tick pass for GROUP if no trial in it succeeds, as in most ticks. True if so."
   (declare (type group group))
   (let ((left (- (group-skip group) (group-count group))))
     (when (and (>= left 0)
@@ -237,9 +237,8 @@ large group, memory is read ahead if the first member to run moves its thing."
 
 (declaim (inline run-kickers))
 (defun run-kickers (world)
-  "Run for one tick the kickers of all things in WORLD: first those that RUN-KICKER has asked
-for, then those whose chance has come. Trouble in a kicker is queued as an error message.
-Return nothing."
+  "Run for one tick the kickers of all things in WORLD: first those that RUN-KICKER has requested,
+then those whose trials succeed. Errors in a kicker are queued as error messages. Return nothing."
   (when (or (world-kicker-groups world) (world-due-kickers world)) (run-all-kickers world))
   (values))
 

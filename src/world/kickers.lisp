@@ -29,8 +29,8 @@ after a true one" :writable)
    (thing nil thing "the thing that the kicker is on" :addition))
   (:state
    (alive-p t boolean "the kicker has not been taken off")
-   (due 0 tick-count "the tick of kickers in which it is to run because somebody asked for it")
-   (ran 0 tick-count "the tick of kickers in which it last ran for that reason")
+   (due 0 tick-count "the tick of kickers in which it runs by request")
+   (ran 0 tick-count "the tick of kickers in which it last ran by request")
    (index 0 fixnum "its number in its group")
    (group nil t "the group of equal kickers that it is in, or NIL")))
 
@@ -53,7 +53,7 @@ after a true one" :writable)
 
 (define-registry kicker "kicker" :object-p kicker-p :by-symbol t)
 
-;; Those defined by name are everybody's; others may have closed over things of a run.
+;; Kickers defined by name are shared; others may have closed over things of a run.
 (defmethod copy-plan-value ((kicker kicker) fork)
   (if (or (eq kicker (find-kicker (kicker-name kicker) nil))
           (notany #'closure-p (list (kicker-test kicker) (kicker-body kicker))))
@@ -144,7 +144,7 @@ Signals MALFORMED-DEFINITION. Return the name."
   (find name (thing-kickers thing) :key #'attachment-name :test #'same-name-p))
 
 (defun detached-kicker (thing name)
-  "Return what stands for a kicker called NAME that was on THING, as attached, and is no more."
+  "Return a placeholder for a kicker called NAME that was attached to THING and was removed."
   (let ((attachment (make-attachment (make-kicker name) thing)))
     (setf (attachment-alive-p attachment) nil)
     attachment))
@@ -238,7 +238,7 @@ or is from another file."
         (code-names-p name (symbol-package name)))))
 
 (defun doubt-unused-kicker (entry world)
-  "Say if the kicker of ENTRY is new, and no program, thing or map seems to use it."
+  "Warn if the kicker of ENTRY is new, and no program, thing or map seems to use it."
   (let ((kicker (entry-object entry)))
     (unless (or (shiftf (kicker-checked-p kicker) t)
                 (perhaps-used-p entry world)
@@ -250,7 +250,7 @@ or is from another file."
                          (kicker-name kicker))))))
 
 (defun doubt-untrue-kicker (kicker world)
-  "Say if KICKER is on a thing of WORLD, and its test was never true and asks for what nothing has."
+  "Warn if KICKER is on a thing of WORLD, and its test, never true, reads an unknown attribute."
   (let ((key (and (eq :no (kicker-test-outcome kicker))
                   (some-kicker (lambda (each) (eq each kicker)) world)
                   (find-if-not (lambda (key) (or (attribute-of key) (carried-p key world)))
@@ -262,12 +262,12 @@ or is from another file."
                          (kicker-name kicker) key)))))
 
 (defun doubt-idle-kickers (world)
-  "At the end of a run in WORLD, warn of kickers that most likely could not do what they were for."
+  "At the end of a run in WORLD, warn of kickers that most likely could never run."
   (dolist (entry (registry-entries *kickers*))
     (doubt-unused-kicker entry world)
     (doubt-untrue-kicker (entry-object entry) world)))
 
-;;; What can be done about a kicker that fails again and again.
+;;; Remedies for a kicker that fails again and again.
 
 (defun where-to-mend (attachment)
   (let* ((kicker (attachment-kicker attachment))

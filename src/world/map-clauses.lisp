@@ -9,10 +9,10 @@
 ;;; other clauses. So a map stores only clauses of our kinds, and its cache depends on nothing else.
 
 (define-record (clause-kind (:constructor make-clause-kind (name usage derived-p function)))
-  "What clauses of a name are."
+  "A kind of clause."
   (name nil symbol "the symbol that clauses of the kind begin with" :export)
   (usage "" string "how clauses of the kind are written, a string" :export)
-  (derived-p nil boolean "the clauses are of other clauses")
+  (derived-p nil boolean "the clauses expand to other clauses")
   (function nil function "the function of an option, a map and a clause that returns the value of
 the form for the option"))
 
@@ -41,7 +41,7 @@ the form for the option"))
             (error () nil))
     (reject-clause (map-title map) clause (clause-kind-usage kind))))
 
-;;; What clauses stand for. The parts of a map are walls, rects and circles, and recipes of things.
+;;; Expansion. The parts of a map are walls, rects and circles, and recipes of things.
 
 (defun wrong-derivation-text (kind condition)
   "Return in words what is expected instead of a clause of KIND whose expansion CONDITION rejects."
@@ -51,7 +51,7 @@ the form for the option"))
             (malformed-definition-expected condition))))
 
 (defun derived-parts (map clause kind depth)
-  "Return the parts that CLAUSE of MAP, of KIND, comes to. A mistake in them is one in CLAUSE."
+  "Return the parts that CLAUSE of MAP, of KIND, expands to. Mistakes in them are CLAUSE's."
   (when (< 50 depth)
     (reject-clause (map-title map) clause "a clause that does not stand for itself, without end"))
   (pushnew (clause-kind-name kind) (map-clause-kinds map))
@@ -66,7 +66,7 @@ the form for the option"))
           (reject-clause (map-title map) clause (wrong-derivation-text kind condition))))))
 
 (defun parts-of-clause (map clause &optional (depth 0))
-  "Return the parts that CLAUSE of MAP stands for. Signals MALFORMED-DEFINITION."
+  "Return the parts that CLAUSE of MAP expands to. Signals MALFORMED-DEFINITION."
   (let ((kind (kind-of-clause map clause)))
     (check-clause map clause kind)
     (cond ((clause-kind-derived-p kind) (derived-parts map clause kind depth))

@@ -59,13 +59,13 @@ with" :writable :export)
   (clauses '() list "the clauses that its author wrote" :writable)
   (clause-kinds '() list "the names of the users' kinds of clauses that the map is written
 with" :writable :export)
-  (cache nil (or null string pathname) "where it is kept as a file, or NIL" :writable)
+  (cache nil (or null string pathname) "the file that caches its grid, or NIL" :writable)
   (frame '(1 0 0 0) list "a list (size x y yaw): how many metres of elsewhere a side of the map's
 cells is, where its lower left corner lies there, in metres, and how far its x axis is turned there,
 radians against the clock. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP said something
 else" :addition)
-  (resident nil t "the world of the map that top-level code works in, NIL if nobody has
-asked" :writable :export))
+  (resident nil t "the world of the map that top-level code works in, NIL before
+the first use" :writable :export))
 
 (defun make-octets (size) (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
 (defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
@@ -93,7 +93,7 @@ NEW if OLD was undefined. The layer above ends what goes on in OLD.")
   (:method (old new) (declare (ignore old new)) nil))
 
 (defun register-map (map)
-  "Make MAP the meaning of its name (reading 61)."
+  "Register MAP under its name (reading 61)."
   (deferring-interrupts
     (let ((old (nth-value 1 (register *maps* (map-name map) map :variable t))))
       (map-replaced old map)))
@@ -108,7 +108,7 @@ map as its value, such as ROOM, the map of that name."
         (t `',form)))
 
 (defun map-meant (name)
-  "Return what the variable NAME holds, if that can be a map, or NAME, the map's."
+  "Return the value of the variable NAME, if that can be a map, or NAME, that of a map."
   (let ((value (and (boundp name) (symbol-value name))))
     (if (or (map-p value)
             (stringp value)
@@ -148,7 +148,7 @@ map as its value, such as ROOM, the map of that name."
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
 
 (defun check-point (operator x y)
-  "Signal WRONG-ARGUMENT, by OPERATOR, unless X and Y are coordinates of a point, be it far away."
+  "Signal WRONG-ARGUMENT for OPERATOR unless X and Y are coordinates, however far away."
   (flet ((check (name value)
            (unless (finite-p value)
              (reject-argument operator name value "a real number, from -1.7e308 to 1.7e308"))))

@@ -76,7 +76,7 @@
                          (rule-direction rule)))))))
 
 (defun definition-of (type)
-  "Return the definition of TYPE, for *DEFINITION*: the one at hand, or else what is known of it."
+  "Return a value for *DEFINITION*: the current definition of TYPE, or else one from its entry."
   (let ((operator "def-place-type")
         (entry (lookup-entry (place-type-name type) *place-types*)))
     (if (and *definition* (same-name-p operator (first (defining-form *definition*))))
@@ -129,7 +129,7 @@
       (call-blaming-type #'classify cell type :checker))))
 
 (defun classify-by-type (map type number codes)
-  "Make places of TYPE, which has NUMBER in MAP, of the cells of MAP that are none yet."
+  "Make the cells of MAP that are no places yet places of TYPE, with NUMBER, where it fits."
   (cond ((place-type-checker type) (classify-by-checker map type number))
         ((place-type-table type) (classify-by-table map type number codes))
         (t (classify-by-forms map type number))))
@@ -150,7 +150,7 @@
                                 cell directions))))))))
 
 (defun clear-places (map)
-  "Forget the places of MAP; number the place types known now."
+  "Clear the places of MAP; number the current place types."
   (let ((size (* (map-width map) (map-height map))))
     (setf (map-places map) (make-octets size)
           (map-directions map) (make-doubles size)
@@ -224,7 +224,7 @@ MAP, and true if no type was left out (reading 70)."
                 (mapcar #'rule-map (place-type-rules type))))
     ((or undefined-function unbound-variable) () nil)))
 
-;;; Match forms that can never make a place, as their author should be told.
+;;; Warnings of match forms that can never make a place.
 
 ;;; A place is an empty cell, and has the type that was defined first. So a match form with a wall
 ;;; in its centre never applies, nor does a type all of whose forms fit only cells of earlier types.
@@ -271,7 +271,7 @@ MAP, and true if no type was left out (reading 70)."
            types))
 
 (defun takers (rules types)
-  "Return those of TYPES that take all that RULES fit; NIL if something is left."
+  "Return those of TYPES that take all cells that RULES fit; NIL if any is left."
   (let ((takers '()))
     (dolist (rule rules takers)
       (unless (= 0 (rule-dx rule) (rule-dy rule)) (return '()))
@@ -292,7 +292,7 @@ MAP, and true if no type was left out (reading 70)."
                                                   types))))))
 
 (defun warn-of-vain-rules (definition type)
-  "Warn of what in TYPE, which has been registered, can never make a place."
+  "Warn of rules of TYPE, which has been registered, that can never make a place."
   (mapc (lambda (rule) (warn-of-walled definition rule))
         (remove-if-not #'walled-p (place-type-rules type)))
   (warn-of-taken definition type))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(place-thing tell-if-in-wall))
+(export '(place-thing warn-if-in-wall))
 
 ;;; Invariants: a thing on the floor is in the list of exactly the cell that holds its position;
 ;;; a thing in something is in exactly its contents; a cell's flags say what lies there.
@@ -96,14 +96,12 @@ The primitive: it checks and tells nothing. Return THING."
 
 ;; You may put a thing or robot anywhere on the map by hand. A warning, in the same words
 ;; everywhere, says so if the position is most likely a mistake.
-(defun tell-if-in-wall (what world x y)
+(defun warn-if-in-wall (what world x y)
   "Queue a warning that WHAT, a string, has been put into a wall of WORLD at (X,Y). The first one
 about WHAT in a run is also printed if nobody reads it."
   (when (wall-at-p (world-map world) x y)
-    (queue-message (make-message :warning
-                                 (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
-                                 :notable-p (first-time-p (list :in-wall what) world))
-                   *message-queue*)))
+    (queue-items :warning (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
+                 :notable-p (first-time-p (list :in-wall what) world))))
 
 (defun check-inside (operator map x y)
   (unless (and (within-reason-p x) (within-reason-p y) (map-index map x y))
@@ -170,7 +168,7 @@ the map, MISUSE for prototypes, things destroyed, and a container put into itsel
 
 (defun put-by-hand (thing x y)
   (relocate thing :floor x y)
-  (tell-if-in-wall (princ-to-string thing) (thing-world thing) x y)
+  (warn-if-in-wall (princ-to-string thing) (thing-world thing) x y)
   thing)
 
 (defun %destroy-thing (thing)
@@ -218,7 +216,7 @@ MISUSE for prototypes. Return nothing. See reading 168."
   (let ((index (point-index (world-map world) x y)))
     (and index (not (logtest +wall+ (aref (world-flags world) index))))))
 
-;; It lives on the stack, and functions get it instead of floats, which would have to be boxed.
+;; It is on the stack, and is passed to functions instead of floats, which would be boxed.
 (declaim (inline make-kick))
 (defstruct (kick (:constructor make-kick (dx dy)) (:copier nil) (:predicate nil))
   "A kick by DX and DY, from where the thing is to where it comes, all in metres."
@@ -282,7 +280,7 @@ return NIL."
       (%kick-thing thing kick kick-if-wall))))
 
 (defun kick-by (thing kick kick-if-wall)
-  "Do what KICK-THING says, by KICK; but return :OTHERWISE if it cannot be done so."
+  "Do as KICK-THING, by KICK, or return :OTHERWISE if that is impossible."
   (declare #.*hot* (type kick kick))
   (if (and (thing-p thing)
            (within-reason-p (kick-dx kick))
@@ -292,7 +290,7 @@ return NIL."
       :otherwise))
 
 (deftype common-number ()
-  "A number that the caller of KICK-THING makes a double-float of. Ratios may be too large."
+  "A number that a caller of KICK-THING converts inline. Ratios may be too large."
   '(or double-float single-float fixnum))
 
 ;; Inline, so that what a kicker reckons in floats is not boxed.

@@ -1,14 +1,14 @@
-;;;; reading-ahead.lisp -- what the next trials and moves will need, found at once before them.
+;;;; reading-ahead.lisp -- memory for the next trials and moves, read at once before them.
 
 (in-package :ars-magna.world)
 
-;;; In a large world a move mostly waits for memory: for the thing, then for its cell, since one
-;;; says where the other is. A processor waits for many words as briefly as for one if it knows
-;;; their addresses. So before many moves, short loops read ahead, one loop for each step of that
-;;; chain. What they read does not affect results.
+;;; In a large world a move mostly waits for memory: for the thing, then for its cell, whose address
+;;; depends on the thing. A processor reads many words in the time of one if it knows their
+;;; addresses. So before many moves, short loops read ahead, one loop for each step of that chain.
+;;; What they read does not affect results.
 
-;; The more the better, as each loop ends with waiting, as long as a processor has room for it all.
-(defconstant +batch+ 512 "For how many moves memory is read at once.")
+;; The larger the better, until a processor's cache is full, as each loop ends with waiting.
+(defconstant +batch+ 512 "The number of moves for which memory is read at once.")
 
 (deftype batch () '(simple-vector #.+batch+))
 (deftype batch-count () '(integer 0 #.+batch+))
@@ -38,7 +38,7 @@ a meaningless number, so that the compiler does not remove the reads."
         (setf sum (logxor sum (aref flags index) (aref firsts index)))))
     sum))
 
-;;; Which trials succeed: how many fail before the next that does, drawn and foreseen.
+;;; Which trials succeed: the gaps between successes, drawn or foreseen.
 
 (defun gap-scale (probability)
   "Return the factor that turns the logarithm of a roll into a gap, see DRAW-GAP."
@@ -90,7 +90,7 @@ INDEX. Return the index of the first success after them."
 
 (declaim (inline draw-foreseen-gap))
 (defun draw-foreseen-gap (outlook scale dice)
-  "Return what DRAW-GAP does for SCALE, of which OUTLOOK, if there is one, may know, and DICE."
+  "Return the value of DRAW-GAP for SCALE and DICE, from OUTLOOK, if not NIL, when it has it."
   (let ((next (if outlook (outlook-next outlook) 0)))
     (cond ((and outlook
                 (< next (outlook-count outlook))

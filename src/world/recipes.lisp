@@ -46,7 +46,7 @@ added (reading 58). Signals WRONG-ARGUMENT."
                  :x (and x (double x)) :y (and y (double y)))))
 
 (defun attach-by-recipe (thing kicker)
-  "Put on THING the KICKER, which a recipe may know by name; say so if there no longer is one."
+  "Attach KICKER, or the kicker of that name, to THING; warn if there no longer is one."
   (let ((found (find-kicker kicker nil)))
     (if found
         (attach-kicker thing found)
@@ -82,7 +82,7 @@ added (reading 58). Signals WRONG-ARGUMENT."
                (map-things map)))
 
 (defun attribute-names (recipes)
-  "Return the names, keywords, of all attributes that things made by RECIPES say something of."
+  "Return the names, keywords, of all attributes of things made by RECIPES."
   (remove-duplicates
    (loop for recipe in recipes
          append (mapcar #'first (recipe-attributes recipe))
@@ -91,7 +91,7 @@ added (reading 58). Signals WRONG-ARGUMENT."
 ;;; Worlds.
 
 (defun empty-world (world)
-  "Leave WORLD as its map is: all in it is destroyed, and its robots are as they were made."
+  "Reset WORLD to its map: destroy all things, and reset its robots."
   (let ((map (world-map world)))
     (do-things (thing world)
       (setf (thing-alive-p thing) nil (thing-location thing) nil (thing-contents thing) '())
@@ -113,7 +113,7 @@ tick 0, robots where they start. Timeline and watchers stay. Return WORLD."
   "Return a fresh world of MAP (a map or its name) that depends on it and the integer SEED only."
   (reset-world (%make-world (find-map map)) :seed seed))
 
-;;; What a map or a definition says is everybody's.
+;;; Objects of maps and definitions are shared.
 (define-shared map cell substance attribute place-type place rule recipe)
 
 ;;; Making things on the fly (manual 5.3).
@@ -171,7 +171,7 @@ hand that holds something."
           thing)))))
 
 (defun make-thing-again (name location descriptor &rest more)
-  "Do as MAKE-NEW-THING does, in the world at hand and in no other."
+  "Do as MAKE-NEW-THING, in the current world only."
   (unless (eq *world* (resolve-location location))
     (reject-argument 'make-new-thing "location" location "a location in the world of this run"))
   (apply #'call-with-data #'make-new-thing name location descriptor more))
@@ -179,7 +179,7 @@ hand that holds something."
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 
 (defun destroyed-thing (serial world)
-  "Return what stands for the destroyed thing of WORLD with the number SERIAL; NIL without one."
+  "Return a placeholder for the destroyed thing of WORLD with the number SERIAL; NIL without one."
   (when (< 0 serial (world-next-serial world))
     (let ((thing (%make-thing 'destroyed serial world)))
       (setf (thing-alive-p thing) nil)

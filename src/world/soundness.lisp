@@ -1,4 +1,4 @@
-;;;; soundness.lisp -- a world that was put together from a file is one, or it is said why not.
+;;;; soundness.lisp -- checking the consistency of a world that was read from a file.
 
 (in-package :ars-magna.world)
 

@@ -13,7 +13,7 @@
 
 (defun make-tags (size) (make-array size :element-type 'tag :initial-element 0))
 
-(defconstant +least-stock+ 16 "For how many things there is room at first.")
+(defconstant +least-stock+ 16 "The number of things that a new stock has room for.")
 
 (define-kind (stock :constructor (make-stock (&optional (cells 0)
                                               &aux (firsts (make-tags cells)))))

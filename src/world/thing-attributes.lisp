@@ -10,14 +10,14 @@
       (return-from carried-p t))))
 
 (defun carried-name-like (key world)
-  "Return an undeclared attribute of a thing of WORLD that KEY may be a slip for, or NIL."
+  "Return an undeclared attribute of a thing of WORLD that KEY may be a misspelling of, or NIL."
   (do-things (thing world)
     (loop for (other) in (thing-attributes thing)
           when (and (not (attribute-of other)) (resembles-p key other))
             do (return-from carried-name-like other))))
 
 (defun known-likeness (key world)
-  "Return the name, declared or had by a thing of WORLD, for which KEY, undeclared, may be a slip."
+  "Return the name, declared or of a thing of WORLD, that the undeclared KEY may be meant for."
   (ensure-gethash key *likenesses* (or (declared-name-like key) (carried-name-like key world))))
 
 (defun note-slip (operator thing key &key read)
@@ -49,13 +49,13 @@ run."
     (second entry)))
 
 (defun merge-descriptors (new old)
-  "Return the object descriptor OLD with what NEW says instead; order as in OLD, then as in NEW."
+  "Return the object descriptor OLD overridden by NEW; order as in OLD, then as in NEW."
   (append (loop for entry in old
                 collect (or (assoc (first entry) new :test #'eq) entry))
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
 
 (defun refresh-physics (thing)
-  "Make the cached slots of THING agree with its attributes."
+  "Update the cached slots of THING from its attributes."
   (flet ((number-of (key)
            (let ((value (get-attribute thing key))) (if (realp value) (double value) 0d0)))
          (truth-of (key) (and (get-attribute thing key) t)))
@@ -72,7 +72,7 @@ run."
 ;;; Setting.
 
 (defun change-attributes (thing descriptor)
-  "Give THING the attributes in DESCRIPTOR and make caches and flags agree."
+  "Give THING the attributes in DESCRIPTOR and update caches and flags."
   (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
   ;; What REFRESH-PHYSICS reads.
   (when (intersection '(:obsmove :obsview :closed :size :weight :capacity :substance)
@@ -92,7 +92,7 @@ run."
   (unless (descriptor-p descriptor)
     (reject-argument operator "descriptor" descriptor
                      "a list of lists (attribute value), each attribute once"))
-  (loop for (name value) in (given operator "descriptor" descriptor)
+  (loop for (name value) in (copy-argument operator "descriptor" descriptor)
         collect (checked-entry operator name value)))
 
 (defun descriptor-p (object)
@@ -170,7 +170,7 @@ time.")
   (and (option-called name) (not (attribute-of (attribute-key name)))))
 
 (defun text-of-slip (thing-name slip &optional map-p)
-  "Return in words what the thing has that is no attribute, and how to write it."
+  "Return in words which attribute of the thing is probably a mistake, and how to write it."
   (destructuring-bind (name like &aux (option (option-called name))) slip
     (if like
         (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"

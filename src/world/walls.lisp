@@ -56,7 +56,7 @@
                       (substance-number map type) (double parameter)))))
 
 (defun encloses-map-p (map cx cy radius)
-  "True if all of MAP is well inside the circle: then all that is left of it is the map's edges."
+  "True if all of MAP is well inside the circle, so that only walls along the map's edges remain."
   (let ((dx (max (abs cx) (abs (- (map-width map) cx))))
         (dy (max (abs cy) (abs (- (map-height map) cy)))))
     (< (+ dx dy 2) radius)))
@@ -76,7 +76,7 @@
 ;;; The clauses.
 
 (defun made-of-p (type parameters counts)
-  "True if something can be made of the substance TYPE with PARAMETERS, as many as one of COUNTS."
+  "True if TYPE can be a substance, and PARAMETERS are numbers, as many as one of COUNTS."
   (and type (symbolp type) (member (length parameters) counts) (every #'quantity-p parameters)))
 
 (define-map-clause wall (map start end type &rest parameters)

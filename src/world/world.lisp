@@ -30,11 +30,11 @@ moved, been made or been destroyed" :export))
    (dice-set #() simple-vector "a vector of the world's dice, one for each purpose" :part :export)
    (kicker-groups '() list "the groups of equal kickers" :part)
    (kicker-tick 0 tick-count "how many ticks kickers were run in")
-   (due-kickers '() list "the kickers to run in the next tick because somebody asked for it" :part))
+   (due-kickers '() list "the kickers to run in the next tick by request" :part))
   (:scratch
-   (noted-names '() list "the names of attributes that somebody has been warned of")
+   (noted-names '() list "the keys of warnings given, see FIRST-TIME-P")
    (writer nil t "the thread that is changing the world, or NIL" :export))
-  ;; As long as it is NIL, each tick looks.
+  ;; While it is NIL, each tick checks.
   (:link
    (settled-p nil boolean "a tick has nothing to settle in the world: no robot has a designator, an
 ended track, a part inside of something, a hand with two things in it or with a watched
@@ -104,7 +104,7 @@ there is none; then each map's resident world counts.")
   (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
 
 (defun remove-thing (thing world)
-  "Forget THING; now and then, close the gaps that the destroyed have left."
+  "Remove THING; now and then, close the gaps of destroyed things."
   (let ((stock (world-stock world)))
     (setf (svref (stock-things stock) (thing-rank thing)) nil)
     (decf (world-live-count world))
@@ -173,7 +173,7 @@ OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside tick
     `(flet ((change-it () ,@body))
        (if (writing-p ,world)
            (change-it)
-           ;; A closure of its own, so that none is made above.
+           ;; A separate closure, so that none is made above.
            (change-world (world-timeline ,world) ,world (lambda () (change-it))
                          ',operator (list ,@arguments))))))
 
@@ -183,16 +183,16 @@ OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside tick
 
 ;;; Plans of live runs warn in a thread of their own: NOTED-NAMES is read and changed under a lock.
 
-(defvar *saying-lock* (make-lock "what has been said"))
+(defvar *noted-names-lock* (make-lock "noted names"))
 
 (defun said-p (key world)
   "True if a warning about KEY has been queued in the run of WORLD."
-  (with-lock (*saying-lock*)
+  (with-lock (*noted-names-lock*)
     (and (member key (world-noted-names world) :test #'equal) t)))
 
 (defun first-time-p (key world)
-  "True if nothing has been said yet about KEY in the run of WORLD; from now on it has."
-  (with-lock (*saying-lock*)
+  "True if there was no warning about KEY yet in the run of WORLD; record that there is one."
+  (with-lock (*noted-names-lock*)
     (unless (member key (world-noted-names world) :test #'equal)
       (push key (world-noted-names world))
       t)))
@@ -210,11 +210,11 @@ OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside tick
 such as a list of a topic and a name. If nobody reads it, it is shown like an error, provided that
 NOTABLE is true, or is a function that returns true by then. Return true if it was queued."
   (when (first-time-p key world)
-    (queue-message (make-message :warning (ensure-list items) :notable-p notable) *message-queue*)
+    (queue-items :warning (ensure-list items) :notable-p notable)
     t))
 
 (defun doubt-angle (operator world angle)
-  "Say once for OPERATOR, a symbol or string, in WORLD if ANGLE, in radians, may be in degrees."
+  "Warn once for OPERATOR, a symbol or string, in WORLD if ANGLE, in radians, may be in degrees."
   (when (perhaps-degrees-p angle)
     (warn-once (list :angle operator) world
                (format nil "~(~A~): ~A" operator (degrees-advice angle)))))

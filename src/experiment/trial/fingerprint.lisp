@@ -83,7 +83,7 @@ variables; such lists for what variables hold weakly."
         (note-file file written reach)
         (note-part :typed (safe-text name)
                    (or (gethash function *typed-functions*)
-                       (setf (gethash function *typed-functions*) (unheard-of-number)))
+                       (setf (gethash function *typed-functions*) (unique-number)))
                    reach))))
 
 (defun note-function (function name reach)
