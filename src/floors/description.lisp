@@ -1,17 +1,17 @@
-;;;; description.lisp -- what the YAML file of a floor says: its image, and how to read that.
+;;;; description.lisp -- the YAML file of a floor: it names the image and says how to read it.
 
 (in-package :ars-magna.floors)
 
 ;;; The keys and what they mean are those of ROS's map_server (wiki.ros.org/map_server) and of
-;;; nav2_map_server after it. All but mode are required. Other keys are ignored, unless they look
-;;; like one of these.
+;;; nav2_map_server after it. All but mode are required. Other keys are ignored, with a warning if
+;;; they resemble one of these.
 
 (defconstant +most-octets+ 65536 "How many bytes the description of a floor has at most.")
 
 (defstruct (description (:copier nil))
-  "Of a floor: its IMAGE, a pathname; metres to a pixel; where the lower left corner of the image
-lies, in metres, and how the image is turned, radians against the clock; whether white is occupied;
-above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
+  "The description of a floor: its IMAGE, a pathname; the metres of a pixel; ORIGIN, the lower left
+corner in metres and the rotation in radians counterclockwise; NEGATED-P, true if white is occupied;
+the probabilities above and below which a pixel is OCCUPIED or FREE; and the MODE."
   (file nil :type pathname :read-only t)
   (image nil :type pathname :read-only t)
   (resolution 1 :type rational :read-only t)
@@ -24,7 +24,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
 (defparameter *example-lines*
   '(("image" . "floor.pgm") ("resolution" . "0.05") ("origin" . "[0.0, 0.0, 0.0]")
     ("negate" . "0") ("occupied_thresh" . "0.65") ("free_thresh" . "0.196"))
-  "The keys that must be there, each with a value as map savers write it.")
+  "The required keys, each with a value as map savers write it.")
 
 (defun required-entry (file key entries)
   "Return the entry for KEY. Signals UNUSABLE-FLOOR if there is none."
@@ -48,7 +48,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
     number))
 
 (defun resolution-in (file entry)
-  "Return how many metres a pixel is wide, as ENTRY has it: what the frame of a map may have."
+  "Return the metres of a pixel in ENTRY, within the limits of a map's frame."
   (let* ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9")
          (number (number-in-entry file entry 0 1000000000 expected)))
     (unless (< 1d-9 (double number)) (reject-entry file entry expected))
@@ -72,7 +72,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
           (t (reject-entry file entry "0, if black is occupied, or 1, if white is")))))
 
 (defun mode-in (file entry)
-  "Return the mode that ENTRY has; :TRINARY if ENTRY is NIL."
+  "Return the mode in ENTRY, or :TRINARY if ENTRY is NIL."
   (cond ((null entry) :trinary)
         ((find (entry-value entry) '(:trinary :scale :raw)
                :test (lambda (value mode) (and (stringp value) (string-equal value mode)))))
@@ -95,7 +95,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
     image))
 
 (defun warn-of-key (file entry)
-  "Warn if the key of ENTRY, of FILE, is none that is read, but may be a slip for one."
+  "Warn if the key of ENTRY, of FILE, is unknown and resembles a known one."
   (let* ((known (cons "mode" (mapcar #'car *example-lines*))) (key (entry-key entry))
          (like (unless (member key known :test #'string=)
                  (find-if (lambda (other) (or (string-equal key other) (resembles-p key other)))
@@ -131,7 +131,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
                      "it is an image; (import-map FILE) reads the .yaml that names it"))
 
 (defun check-description-file (file)
-  "Signal UNUSABLE-FLOOR if FILE can be no description of a floor, by its size and beginning."
+  "Signal UNUSABLE-FLOOR unless FILE looks like a description, by its size and first bytes."
   (check-readable file)
   (let ((advice (file-advice file :floor)))
     (when advice (reject-floor file nil "~A" advice)))

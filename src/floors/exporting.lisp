@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.floors)
 
-;;; What is written is what ROS's map_saver writes: black walls, white floor, 205 for
-;;; unknown, and the thresholds that tell these three apart.
+;;; EXPORT-MAP writes what ROS's map_saver writes: black walls, white floor, 205 for unknown, and
+;;; the thresholds between these three.
 
 (define-constant +shades+ #(254 0 205) :test 'equalp
-  :documentation "How bright, from 0 to 255, pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+ are.")
+  :documentation "The brightness, from 0 to 255, of pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+.")
 
 (defun number-of-substance (map substance)
   "Return the number of SUBSTANCE in MAP, or NIL if no wall is of it. Signals UNKNOWN-NAME."
@@ -50,14 +50,14 @@ stands for such walls of MAP. Signals UNKNOWN-NAME."
       (write-string row out))))
 
 (defun name-as-value (name)
-  "Return NAME, that of a file, as a value of YAML: without quotes if it needs none."
+  "Return NAME, of a file, as a value of YAML, in quotes only if it needs them."
   (if (and (alpha-char-p (char name 0))
            (every (lambda (char) (or (alphanumericp char) (find char "._-"))) name))
       name
       (format nil "'~{~A~^''~}'" (uiop:split-string name :separator "'"))))
 
 (defun image-name (path)
-  "Return how a description beside it calls the image PATH."
+  "Return the name of the image PATH for a description in the same directory."
   (let ((name (name-in-directory path)))
     ;; Readers might take ~ for a home directory.
     (if (char= #\~ (char name 0))
@@ -80,7 +80,7 @@ stands for such walls of MAP. Signals UNKNOWN-NAME."
                     (unwritten-reason condition)))))
 
 (defun check-description-name (file path)
-  "Signal WRONG-ARGUMENT unless FILE, of EXPORT-MAP, whose PATH this is, is called as it must be."
+  "Signal WRONG-ARGUMENT if PATH, that of FILE, is no possible name for EXPORT-MAP."
   (unless (member (pathname-type path) '("yaml" "yml") :test #'equalp)
     (reject-argument 'export-map 'file file
                      "a name that ends in .yaml; the image goes beside it"))
@@ -100,14 +100,14 @@ stands for such walls of MAP. Signals UNKNOWN-NAME."
      (linked-file (image-path file (required-entry file "image" entries))))))
 
 (defun unused-name-p (path)
-  "True if there is nothing at PATH but perhaps an empty file."
+  "True if there is no file PATH, or an empty one."
   (let ((there (probe-file path)))
     (or (null there)
         (ignore-errors (and (plain-file-p there) (zerop (file-size there)))))))
 
 (defun check-pair (path image)
-  "Signal UNUSABLE-FLOOR if what is at PATH and IMAGE may not be replaced: if there is a file PATH
-that does not describe IMAGE, a file IMAGE that PATH does not describe, or one that is no image."
+  "Signal UNUSABLE-FLOOR if the files PATH and IMAGE may not be replaced: PATH does not describe
+IMAGE, or IMAGE is no image or not described by PATH."
   (let ((named (image-named-in path)))
     (flet ((reject (file what)
              (reject-floor file nil "it is not ~A, and is left as it is. Give another name, or ~
@@ -136,7 +136,7 @@ is a link, both are written where it leads to, under that name. Signals UNUSABLE
 if another file has one of these names, WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they
 were."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
-  (check-argument export-map unknown (substance-said-p unknown)
+  (check-argument export-map unknown (substance-option-p unknown)
                   "the name of a substance, or a list of that and a parameter, as in (glass 5)")
   (let ((map (map-from 'export-map map)) (path (linked-file (file-called file))))
     (check-description-name file path)
@@ -148,7 +148,7 @@ were."
                (declare (ignore description))
                (setf written (write-floor-file image :latin-1
                                                (lambda (out) (write-image grid out))))))
-        ;; The image takes its place when the description is ready to take its own.
+        ;; The image is replaced when the new description is ready to be.
         (values (write-floor-file path :utf-8
                                   (lambda (out) (write-description map (image-name image) out))
                                   :check #'write-beside)

@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.floors)
 
-;;; The blacker a pixel, the likelier it is that something is there; :negate turns that round. Above
+;;; The darker a pixel, the higher the probability that it is occupied; :negate reverses that. Above
 ;;; one threshold it is occupied, below the other free, between them unknown. In the mode raw the
-;;; value itself is the chance in percent, and above 100 unknown. In the mode scale ROS has shades
-;;; between the thresholds; a cell of ours is a wall or not, so there, too, they are unknown.
+;;; value is the probability in percent, and unknown above 100. In the mode scale ROS has shades
+;;; between the thresholds. Our cells are walls or not, so shades are unknown, too.
 
-(defconstant +free+ 0 "Stands for a cell where nothing is.")
-(defconstant +occupied+ 1 "Stands for a cell where something is.")
-(defconstant +unknown+ 2 "Stands for a cell of which nobody knows.")
+(defconstant +free+ 0 "The state of a free cell.")
+(defconstant +occupied+ 1 "The state of an occupied cell.")
+(defconstant +unknown+ 2 "The state of an unknown cell.")
 
 (defstruct (grid (:constructor make-grid
                      (width height &optional (cells (make-octets (* width height)))))
@@ -45,12 +45,12 @@
     (dotimes (sample (1+ white) table)
       (setf (aref table sample) (state-of description sample white)))))
 
-;;; Cells of several pixels. They are laid from the lower left corner, where the origin is, so the
-;;; last row and column may have fewer pixels.
+;;; Cells of several pixels. They start at the lower left corner, where the origin is. So the top
+;;; row and the last column may have fewer pixels.
 
 (defun state-of-block (free occupied unknown share)
-  "Return the state of a cell with so many pixels: occupied if any is, and SHARE of them are;
-unknown if more are that than free."
+  "Return the state of a cell with so many pixels: occupied if at least one and SHARE of them are,
+else unknown if more pixels are unknown than free."
   (cond ((and (plusp occupied) (<= (* share (+ free occupied unknown)) occupied)) +occupied+)
         ((< free unknown) +unknown+)
         (t +free+)))
@@ -95,8 +95,8 @@ unknown if more are that than free."
 
 ;;;; The longest lines of cells, along rows and along columns
 
-;;; A run is a line of cells that may be walls, with an end on either side. Each such cell is in
-;;; one run along its row and in one along its column. Runs have numbers, from 0 for either kind.
+;;; A run is a line of cells that may be walls, as long as possible. Each such cell is in one run
+;;; along its row and in one along its column. The runs of either kind are numbered from 0.
 
 (deftype numbers () '(simple-array (signed-byte 32) (*)))
 
@@ -104,8 +104,8 @@ unknown if more are that than free."
   (make-array size :element-type '(signed-byte 32) :initial-element initial))
 
 (defstruct (runs (:constructor make-runs (step cells of)) (:copier nil))
-  "The runs of a grid in which STEP leads from a cell to the next: OF has the run of each cell, by
-index, -1 for none; COUNT of them begin at the STARTS and have so many cells as LENGTHS say."
+  "The COUNT runs of a grid along its rows or columns. STEP leads from a cell to the next. OF has
+the number of each cell's run, or -1; STARTS and LENGTHS the first cell and length of each run."
   (step 1 :type fixnum :read-only t)
   (cells (make-octets 0) :type octets :read-only t)
   (of (make-numbers 0) :type numbers :read-only t)
@@ -114,8 +114,8 @@ index, -1 for none; COUNT of them begin at the STARTS and have so many cells as 
   (lengths (make-numbers 0) :type numbers))
 
 (defun number-runs (runs lines per-line line-step allowed)
-  "Give numbers to the cells of RUNS that are in a state ALLOWED, a bit for each state, in all LINES
-of PER-LINE cells; LINE-STEP leads from a line to the next."
+  "Number the runs of cells in a state ALLOWED, a bit for each state, in RUNS: in LINES of PER-LINE
+cells, with LINE-STEP from a line to the next."
   (declare #.*hot* (type fixnum lines per-line line-step allowed))
   (let ((cells (runs-cells runs)) (of (runs-of runs)) (step (runs-step runs)) (count 0))
     (declare (type octets cells) (type numbers of) (type fixnum step count))
@@ -162,20 +162,20 @@ of PER-LINE cells; LINE-STEP leads from a line to the next."
 
 ;;;; As few lines as possible
 
-;;; Each cell that has to be a wall must be in a wall along its row or one along its column, and it
-;;; is never worse to let these be whole runs. So a cell is a tie between two runs, and what we look
-;;; for are fewest runs that have an end of every tie: a least vertex cover. Between two sorts of
-;;; runs that is found by way of a greatest matching, pairs of runs that share a cell, none of them
-;;; twice (Koenig's theorem). The matching is that of Hopcroft and Karp: in rounds, from the rows
-;;; that have no mate yet, layer by layer, along ways on which ties and pairs take turns.
+;;; Each cell that has to be a wall must be in a wall along its row or along its column. Whole runs
+;;; are never worse than parts of them. So the cells are the edges (here: ties) of a bipartite graph
+;;; of runs, and we want a minimum vertex cover. By Koenig's theorem it follows from a maximum
+;;; matching: pairs of runs that share a cell, each run in one pair at most. Hopcroft and Karp find
+;;; it in rounds: from rows without a mate, layer by layer, along alternating paths (here: ways) of
+;;; ties and pairs.
 
 (defstruct (cover (:constructor %make-cover
                       (rows columns needed row-mate column-mate layer reached))
                   (:copier nil))
   "The matching so far of the runs ROWS and COLUMNS: the ROW-MATE of each row is a column, the
 COLUMN-MATE of each column a row, or -1. Cells in states NEEDED, a bit for each, are ties. In a
-round, LAYER says how many pairs lie between a row and one without a mate, -1 if there is no way;
-REACHED how many of its cells each row has tried."
+round, LAYER has for each row the number of pairs to a row without a mate, or -1 if there is no way;
+REACHED how many of its cells it has tried."
   (rows nil :type runs :read-only t)
   (columns nil :type runs :read-only t)
   (needed 0 :type (unsigned-byte 8) :read-only t)
@@ -208,7 +208,7 @@ REACHED how many of its cells each row has tried."
          (unless (minusp ,column) ,@body)))))
 
 (defun find-layers (cover)
-  "Note the layers of all rows. True if a way leads to a column that has no mate."
+  "Set the layers of all rows. True if a way leads to a column without a mate."
   (declare #.*hot*)
   (let* ((count (runs-count (cover-rows cover))) (layer (cover-layer cover))
          (queue (make-numbers count)) (end 0) (found nil))
@@ -232,8 +232,8 @@ REACHED how many of its cells each row has tried."
     found))
 
 (defun next-tie (cover row)
-  "Return the next column, of those that ROW has not tried in this round, that leads on: one without
-a mate, or whose mate is in the next layer. NIL if there is none."
+  "Return the next column that ROW has not tried in this round and that has no mate, or one in the
+next layer. NIL if there is none."
   (declare #.*hot* (type fixnum row))
   (let ((reached (cover-reached cover)) (layer (cover-layer cover))
         (length (aref (runs-lengths (cover-rows cover)) row)))
@@ -262,7 +262,7 @@ row of the way with its column there; some get other mates."
                    (aref column-mate column) row))))
 
 (defun match-runs (cover)
-  "Find a greatest matching for COVER. Its layers are then those of a round that finds no way."
+  "Find a maximum matching for COVER. Its layers are then those of a last round without a way."
   (loop while (find-layers cover)
         do (dotimes (row (runs-count (cover-rows cover)))
              (when (minusp (aref (cover-row-mate cover) row))
@@ -279,9 +279,9 @@ row of the way with its column there; some get other mates."
           (setf (sbit taken column) 1))))))
 
 (defun fewest-lines (grid needed allowed)
-  "Return as few straight lines as there can be, along rows and columns, that go through all cells
-of GRID in a state of the list NEEDED and only through such in a state of the list ALLOWED: lists of
-two ends (x y), those along rows first, from the top."
+  "Return as few straight lines as possible, along rows and columns, that cover all cells of GRID in
+a state of the list NEEDED and only cells in a state of the list ALLOWED: lists of two ends (x y),
+those along rows first, from the top."
   (let* ((rows (find-runs grid allowed :rows)) (columns (find-runs grid allowed :columns))
          (cover (match-runs (make-cover rows columns (states-mask needed))))
          (taken (columns-to-take cover)) (width (grid-width grid)))

@@ -1,4 +1,4 @@
-;;;; importing.lisp -- IMPORT-MAP: a map from an occupancy grid, and where that lies.
+;;;; importing.lisp -- IMPORT-MAP: a map from an occupancy grid, with its frame.
 
 (in-package :ars-magna.floors)
 
@@ -46,8 +46,8 @@ UNKNOWN-NAME."
 ;;;; Importing
 
 ;;; The files become a DEFMAP form, with the frame and a wall for each line of cells. So an imported
-;;; map is a map like any other. Journals record its name and the number of its form. The number
-;;; differs if the files have changed at replay.
+;;; map is a map like any other. Journals record its name and the number of its form, which differs
+;;; at replay if the files have changed.
 
 (define-constant +most-pixels+ 25000000
   :documentation "How many pixels an image has at most, unless :limit says otherwise.")
@@ -61,25 +61,25 @@ UNKNOWN-NAME."
   "Return VALUE, as an integer if it is whole."
   (if (= value (round value)) (round value) value))
 
-(defun substance-said-p (value)
+(defun substance-option-p (value)
   "True if VALUE is a symbol, or a list of one and a number."
   (or (symbolp value)
       (and (proper-list-p value) (first value) (symbolp (first value))
            (or (null (rest value))
                (and (= 2 (length value)) (quantity-p (second value)))))))
 
-(defun sort-of-wall (option value)
+(defun wall-substance (option value)
   "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME."
-  (check-option option (and value (substance-said-p value)) value
+  (check-option option (and value (substance-option-p value)) value
                 "the name of a substance, or a list of that and a parameter, as in (bricks 20)")
   (destructuring-bind (name &optional (parameter nil given)) (ensure-list value)
     (let ((substance (find-substance name)))
       (list (substance-name substance)
             (if given parameter (plain-number (substance-parameter substance)))))))
 
-(defun name-for (name file)
-  "Return the symbol that the map from FILE is called: NAME, or if that is NIL, one of the current
-package that FILE is called like: letters and digits, with dashes between."
+(defun map-name-for (name file)
+  "Return the name of the map from FILE: the symbol NAME or, if that is NIL, one made of the letters
+and digits of the name of FILE, with dashes between, in the current package."
   (let* ((words (substitute-if #\Space (complement #'alphanumericp)
                                (string-upcase (or (pathname-name file) ""))))
          (own (substitute #\- #\Space (one-line (string-trim " " words)))))
@@ -92,7 +92,7 @@ package that FILE is called like: letters and digits, with dashes between."
     (or name (intern own))))
 
 (defun side-in-pixels (description pixels cell)
-  "Return how many pixels wide a cell is, as PIXELS or CELL, in metres, say; one if both are NIL."
+  "Return the width of a cell in pixels, by PIXELS or by CELL, in metres; 1 if both are NIL."
   (check-option :pixels (or (null pixels) (whole-p pixels 1 32767)) pixels
                 "how many pixels wide a cell is, an integer from 1 to 32767")
   (check-option :cell (or (null cell) (and (within-reason-p cell) (plusp cell) (null pixels))) cell
@@ -153,13 +153,13 @@ report. Nothing is defined. Signals the same."
   (check-argument imported-map-form file (typep file '(or string pathname)) "the name of a file")
   (check-argument imported-map-form limit (whole-p limit 1 1000000000) "an integer from 1 to 1e9")
   (check-option :share (probability-p share) share "a number from 0 to 1")
-  (let* ((walls (sort-of-wall :substance substance))
+  (let* ((walls (wall-substance :substance substance))
          (unknown (case unknown
                     (:walls walls)
                     ((nil) nil)
-                    (t (sort-of-wall :unknown unknown))))
+                    (t (wall-substance :unknown unknown))))
          (description (read-description file))
-         (name (name-for name (description-file description)))
+         (name (map-name-for name (description-file description)))
          (side (side-in-pixels description pixels cell))
          (image (read-image (description-image description) limit (description-mode description))))
     (check-grid-size description image side)

@@ -1,8 +1,8 @@
-;;;; package.lisp -- the floors layer: maps from elsewhere, and ours for others.
+;;;; package.lisp -- the floors layer: imports and exports occupancy grids.
 
 (ars-magna.host:define-package :ars-magna.floors
-  (:documentation "Occupancy grids as ROS's map_server keeps them, a flat YAML file and an image,
-PGM or PNG: read as maps, written from maps, and the way between their metres and our cells. Names
+  (:documentation "Occupancy grids in the format of ROS's map_server, a flat YAML file and a PGM or
+PNG image: read as maps, written from maps; conversion between their metres and our cells. Names
 chipz.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadowing-import-from :ars-magna.world #:map)

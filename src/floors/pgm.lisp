@@ -10,7 +10,7 @@
 
 (defstruct (image (:constructor make-image (width height white samples)) (:copier nil))
   "An image in grey of WIDTH by HEIGHT pixels, whose SAMPLES, row by row from the top, go from 0,
-black, to WHITE. One more than WHITE is a pixel of which nobody knows."
+black, to WHITE. WHITE + 1 stands for an unknown pixel."
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
   (white 255 :type (integer 1 65535) :read-only t)
@@ -26,7 +26,7 @@ black, to WHITE. One more than WHITE is a pixel of which nobody knows."
   (reject-floor (tape-file tape) nil "~?" control arguments))
 
 (defparameter *conversion* "convert floor.png -colorspace gray -depth 8 floor.pgm"
-  "The line for a shell that makes an image of one that cannot be read.")
+  "A shell command that converts an image into one that can be read.")
 
 (defun check-pixels (tape width height limit)
   (unless (and (plusp width) (plusp height))
@@ -37,7 +37,7 @@ black, to WHITE. One more than WHITE is a pixel of which nobody knows."
                   width height limit)))
 
 (defun read-octets (file limit)
-  "Return what FILE holds. Signals UNUSABLE-FLOOR if that is too much for LIMIT pixels."
+  "Return the bytes of FILE. Signals UNUSABLE-FLOOR if there are too many for LIMIT pixels."
   (with-open-file (in file :element-type '(unsigned-byte 8))
     (when (< (+ +most-octets+ (* 8 limit)) (file-length in))
       (reject-floor file nil "the image has ~D bytes, too many for the limit of ~D pixels; cut out ~
@@ -74,7 +74,7 @@ black, to WHITE. One more than WHITE is a pixel of which nobody knows."
     (setf (tape-position tape) position)))
 
 (defun next-number (tape what)
-  "Return the number that comes next in TAPE, at most 9 digits; WHAT it should be, for errors."
+  "Return the next number in TAPE, at most 9 digits. WHAT names it in errors."
   (skip-blanks tape)
   (let ((octets (tape-octets tape)) (start (tape-position tape)) (number 0))
     (declare (type octets octets) (type fixnum start) (type (unsigned-byte 32) number))
@@ -121,7 +121,7 @@ black, to WHITE. One more than WHITE is a pixel of which nobody knows."
     samples))
 
 (defun check-octets-left (tape needed)
-  "Signal UNUSABLE-FLOOR unless NEEDED octets are left in TAPE; one line end more does no harm."
+  "Signal UNUSABLE-FLOOR unless NEEDED octets are left in TAPE, perhaps with a line end."
   (let* ((end (length (tape-octets tape))) (left (- end (tape-position tape))))
     (unless (or (= left needed)
                 (and (= left (1+ needed)) (= 10 (aref (tape-octets tape) (1- end)))))
@@ -146,7 +146,7 @@ black, to WHITE. One more than WHITE is a pixel of which nobody knows."
       samples)))
 
 (defun pgm-kind (tape)
-  "Return 2 or 5, of P2 and P5, if TAPE begins as such an image does; else NIL."
+  "Return 2 or 5 if TAPE begins with P2 or P5, else NIL."
   (let ((octets (tape-octets tape)))
     (and (< 2 (length octets)) (= 80 (aref octets 0)) (find (aref octets 1) #(50 53))
          (- (aref octets 1) 48))))

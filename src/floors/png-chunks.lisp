@@ -12,9 +12,9 @@
   :documentation "The octets that each PNG file begins with.")
 
 (defstruct (png (:copier nil))
-  "A PNG file, as its chunks have it: WIDTH by HEIGHT pixels with DEPTH bits to each of their
-CHANNELS. PALETTE-P says that the only channel is a place in PALETTE, which has three octets for
-each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed."
+  "The chunks of a PNG file: WIDTH by HEIGHT pixels with CHANNELS of DEPTH bits. If PALETTE-P is
+true, the only channel is an index in PALETTE, which has three octets for each colour. TRANSPARENCY
+is the content of tRNS, or NIL. PIXELS are compressed."
   (tape nil :type tape :read-only t)
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
@@ -35,13 +35,13 @@ each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed.
                 control arguments *conversion*))
 
 (defun reject-damaged (tape control &rest arguments)
-  "Signal UNUSABLE-FLOOR about the PNG file TAPE, which is not as it was."
+  "Signal UNUSABLE-FLOOR about the PNG file TAPE, which is damaged."
   (reject-image tape "the image is damaged: ~?; copy or save it anew" control arguments))
 
 ;;; Numbers and check sums.
 
 (defun number-at (octets start &optional (count 4))
-  "Return the number that the COUNT OCTETS from START are, the high one first."
+  "Return the number in COUNT OCTETS from START, the high one first."
   (declare (type octets octets))
   (loop with number = 0
         for index from start below (+ start count)
@@ -71,13 +71,13 @@ each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed.
 ;;; Chunks.
 
 (defun chunk-name (octets start)
-  "Return the name of a chunk that is at START of OCTETS; NIL if these are no letters."
+  "Return the name of a chunk at START of OCTETS, or NIL if there are no letters."
   (let ((name (map 'string #'code-char (subseq octets start (+ start 4)))))
     (and (every (lambda (char) (or (char<= #\A char #\Z) (char<= #\a char #\z))) name)
          name)))
 
 (defun next-chunk (tape)
-  "Return name, start and end of the content of the chunk that comes next in TAPE."
+  "Return the name of the next chunk in TAPE, and the start and end of its content."
   (let* ((octets (tape-octets tape)) (start (+ 8 (tape-position tape)))
          (end (and (<= start (length octets)) (+ start (number-at octets (- start 8))))))
     (unless (and end (<= (+ end 4) (length octets)))
@@ -96,8 +96,8 @@ each colour. TRANSPARENCY is the content of tRNS, or NIL. PIXELS are compressed.
   :documentation "For each type of colour, how many channels it has, and what depths. 0 and 4 are
 grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is alpha.")
 
-(defun check-manner (tape compression filter interlace)
-  "Signal UNUSABLE-FLOOR if pixels are kept in a manner that is not read here."
+(defun check-encoding (tape compression filter interlace)
+  "Signal UNUSABLE-FLOOR if this encoding of pixels is not supported."
   (when (= 1 interlace)
     (reject-png tape "the image is interlaced (Adam7), which is not read here"))
   (unless (= 0 compression filter interlace)
@@ -105,11 +105,11 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
                     compression filter interlace)))
 
 (defun png-of-head (tape octets limit)
-  "Return a PNG as OCTETS, the content of IHDR, say, of at most LIMIT pixels."
+  "Return a PNG by OCTETS, the content of IHDR, of at most LIMIT pixels."
   (let ((width (number-at octets 0)) (height (number-at octets 4)))
     (check-pixels tape width height limit)
-    (destructuring-bind (depth colour . manner) (coerce (subseq octets 8) 'list)
-      (apply #'check-manner tape manner)
+    (destructuring-bind (depth colour . encoding) (coerce (subseq octets 8) 'list)
+      (apply #'check-encoding tape encoding)
       (destructuring-bind (&optional channels &rest depths) (rest (assoc colour +png-colours+))
         (unless (member depth depths)
           (reject-damaged tape "there are no PNG images of colour type ~D with ~D bits"
@@ -118,7 +118,7 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
                   :palette-p (= 3 colour))))))
 
 (defun read-head (tape limit)
-  "Return a PNG as the first chunk of TAPE says, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  "Return a PNG by the first chunk of TAPE, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
   (multiple-value-bind (name start end) (next-chunk tape)
     (unless (and (string= "IHDR" name) (= 13 (- end start)))
       (reject-damaged tape "its first chunk is ~A with ~D bytes, not IHDR with 13"
@@ -153,7 +153,7 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
                                      place" name))))
 
 (defun join-pieces (octets pieces)
-  "Return the octets of OCTETS that PIECES, conses of start and end, the last one first, have."
+  "Return the octets of OCTETS in PIECES, conses of start and end, the last one first."
   (let* ((size (loop for (start . end) in pieces sum (- end start)))
          (joined (make-octets size)) (place size))
     (loop for (start . end) in pieces

@@ -2,18 +2,18 @@
 
 (in-package :ars-magna.floors)
 
-;;; Of data that are damaged chipz says so with errors of its own, or runs into others, such as an
-;;; index that is too large. All of them mean the same.
+;;; For damaged data chipz signals its own errors, or others, such as for an index that is too
+;;; large. All of them mean the same.
 
 (defstruct (inflater (:constructor make-inflater (octets)) (:copier nil))
-  "Decompresses OCTETS, which are in zlib's format; those before POSITION are done."
+  "Decompresses OCTETS in zlib's format; those before POSITION have been read."
   (octets (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t)
   (position 0 :type fixnum)
   (state (chipz:make-dstate 'chipz:zlib) :read-only t))
 
 (defun inflate-into (buffer end inflater)
-  "Put what comes next of INFLATER into BUFFER, up to END. Return how many octets these are, fewer
-if there are no more; NIL if the data are damaged."
+  "Decompress INFLATER into BUFFER, up to END. Return the number of octets, fewer if there are no
+more; NIL if the data are damaged."
   (ignore-errors
    (multiple-value-bind (used made)
        (chipz:decompress buffer (inflater-state inflater) (inflater-octets inflater)
@@ -23,10 +23,10 @@ if there are no more; NIL if the data are damaged."
 
 ;;;; Rows
 
-;;; Each row begins with an octet that says by which filter each octet has been made smaller:
-;;; what is to be expected there was subtracted, by what is to the left, above, or both. The octet
-;;; to the left is that of the same channel, STEP before. Here a row has STEP zeros in front, so
-;;; that there always is one. (www.w3.org/TR/png-3, 9)
+;;; Each row begins with the number of its filter. A filter has subtracted from each octet a
+;;; prediction by the octets to the left, above, or both. The octet to the left is that of the same
+;;; channel, STEP before. Here a row has STEP zeros in front, so that there always is one.
+;;; (www.w3.org/TR/png-3, 9)
 
 (defun png-step (png)
   "Return how many octets there are to a pixel of PNG, at least 1."
@@ -40,7 +40,7 @@ if there are no more; NIL if the data are damaged."
 
 (declaim (inline likeliest-of))
 (defun likeliest-of (left above corner)
-  "Return LEFT, ABOVE or CORNER, which is above LEFT: that nearest to LEFT + ABOVE - CORNER."
+  "Return the nearest of LEFT, ABOVE and CORNER (above LEFT) to LEFT + ABOVE - CORNER."
   (declare (type (unsigned-byte 8) left above corner))
   (let ((from-left (abs (- above corner))) (from-above (abs (- left corner)))
         (from-corner (abs (- (+ left above) (* 2 corner)))))
@@ -70,11 +70,11 @@ the octets to the left of it, in ABOVE, and to the left of that."
     (t (return-from undo-filter nil)))
   t)
 
-;;; Rows. They are decompressed some at a time, so that an image takes no more memory than its
-;;; samples, whatever is in the file.
+;;; Rows are decompressed a few at a time, so that an image takes no more memory than its samples,
+;;; whatever is in the file.
 
 (defun check-pixels-there (png needed)
-  "Signal UNUSABLE-FLOOR if NEEDED octets cannot come of what PNG has."
+  "Signal UNUSABLE-FLOOR if the compressed data of PNG cannot give NEEDED octets."
   ;; From one octet zlib makes 1032 at most.
   (when (< (* 1032 (length (png-pixels png))) needed)
     (reject-damaged (png-tape png) "its pixels take ~D bytes, and ~D bytes of compressed data are ~
@@ -108,7 +108,7 @@ the octets to the left of it, in ABOVE, and to the left of that."
 
 (defun call-with-rows (function png)
   "Call FUNCTION with the number of each row of PNG, from the top, and the octets of its pixels,
-behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
+behind PNG-STEP other ones. Signals UNUSABLE-FLOOR."
   (let* ((size (1+ (png-row-size png))) (height (png-height png))
          (most (min height (max 1 (floor 65536 size))))
          (buffer (make-octets (* most size))) (inflater (make-inflater (png-pixels png)))
@@ -124,17 +124,17 @@ behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
 ;;;; Grey
 
 ;;; Colours and alpha become grey as in ROS's nav2_map_server (map_io.cpp), and in map_server
-;;; (image_loader.cpp) before it: how bright a pixel is is the average of red, green and blue. In
-;;; the mode trinary alpha is averaged in, if the image has it, as a fourth channel. In the mode
-;;; scale a pixel that is not wholly opaque is unknown. In the mode raw alpha does not count.
+;;; (image_loader.cpp) before it: the average of red, green and blue. In the mode trinary alpha, if
+;;; any, is averaged in as a fourth channel. In the mode scale a pixel that is not fully opaque is
+;;; unknown. In the mode raw alpha is ignored.
 ;;;
-;;; So that nothing is rounded, samples are sums here, with three or four times 255 for white. Grey
-;;; alone stays as it is. Where there are sums, of 16 bits the high eight count.
+;;; To avoid rounding, samples are sums, with three or four times 255 for white. Plain grey stays as
+;;; it is. In sums, only the high eight of 16 bits count.
 
-(defconstant +no-colour+ 65535 "Stands in a table of shades for a place that a palette lacks.")
+(defconstant +no-colour+ 65535 "The sample for an index that the palette lacks.")
 
 (defun alpha-rule (png mode)
-  "Return how alpha counts in PNG, read in MODE: :IGNORED, :AVERAGED or :UNKNOWN."
+  "Return the rule for alpha in PNG, read in MODE: :IGNORED, :AVERAGED or :UNKNOWN."
   (cond ((not (or (evenp (png-channels png)) (png-transparency png))) :ignored)
         ((eq :trinary mode) :averaged)
         ((eq :scale mode) :unknown)
@@ -142,7 +142,7 @@ behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
 
 (declaim (inline shade-of-colour))
 (defun shade-of-colour (red green blue alpha rule)
-  "Return the sample for a pixel of these channels, 0 to 255 each, if alpha counts as RULE says."
+  "Return the sample for a pixel of these channels, 0 to 255 each, with RULE for alpha."
   (declare (type (unsigned-byte 8) red green blue alpha))
   (case rule
     (:averaged (+ red green blue alpha))
@@ -154,7 +154,7 @@ behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
   (not (or (< 1 (png-channels png)) (png-palette-p png) (png-transparency png))))
 
 (defun white-of (png rule)
-  "Return the greatest sample that may come of PNG, if alpha counts as RULE says."
+  "Return the greatest possible sample of PNG, with RULE for alpha."
   (cond ((plain-grey-p png) (1- (ash 1 (png-depth png))))
         ((eq :averaged rule) 1020)
         (t 765)))
@@ -162,7 +162,7 @@ behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
 ;;; One channel: a table has the sample for each of its values.
 
 (defun shade-of-place (png place rule)
-  "Return the sample for what is at PLACE of the palette of PNG."
+  "Return the sample for the colour at PLACE of the palette of PNG."
   (let ((palette (png-palette png)) (alphas (png-transparency png)) (start (* 3 place)))
     (if (< start (length palette))
         (shade-of-colour (aref palette start) (aref palette (+ 1 start)) (aref palette (+ 2 start))
@@ -197,7 +197,7 @@ behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
          (ldb (byte depth 0) (ash (aref row (+ start octet)) (- (+ bit depth) 8)))))))
 
 (defun shade-row-by-table (row table depth step samples start width)
-  "Let WIDTH of SAMPLES from START be what TABLE has for the values of ROW, behind STEP octets."
+  "Set WIDTH of SAMPLES from START by TABLE and the values of ROW, behind STEP octets."
   (declare (type octets row) (type samples table samples) (type (unsigned-byte 30) start width)
            (type (integer 1 8) step) (type (integer 1 16) depth) #.*hot*)
   (dotimes (x width)
@@ -229,7 +229,7 @@ behind as many other ones as PNG-STEP says. Signals UNUSABLE-FLOOR."
 ;;; The image.
 
 (defun row-shader (png samples rule)
-  "Return a function of y and a row of PNG that puts what that comes to into SAMPLES."
+  "Return a function of y and a row of PNG that sets the SAMPLES of that row."
   (let ((width (png-width png)) (depth (png-depth png)) (step (png-step png))
         (channels (png-channels png)))
     (if (= 1 channels)
@@ -251,7 +251,7 @@ Signals UNUSABLE-FLOOR."
       (make-image (png-width png) (png-height png) (white-of png rule) samples))))
 
 (defun read-image (file limit mode)
-  "Return the image in FILE, of at most LIMIT pixels, for MODE: PGM or PNG, whatever FILE is called.
+  "Return the image in FILE, of at most LIMIT pixels, for MODE: PGM or PNG, by its first bytes.
 Signals UNUSABLE-FLOOR."
   (let ((tape (make-tape file (read-octets file limit))))
     (cond ((png-begins-p tape) (read-png tape limit mode))

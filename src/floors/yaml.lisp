@@ -1,4 +1,4 @@
-;;;; yaml.lisp -- what is wrong with a file; its numbers; the little of YAML that describes floors.
+;;;; yaml.lisp -- UNUSABLE-FLOOR, decimal numbers, and the subset of YAML that describes floors.
 
 (in-package :ars-magna.floors)
 
@@ -20,7 +20,7 @@
       (documentation 'unusable-floor-line 'function)
       "Return the number of the line that an UNUSABLE-FLOOR is about, or NIL."
       (documentation 'unusable-floor-reason 'function)
-      "Return in words what is wrong, and what to do about it.")
+      "Return a text that says what is wrong with the file, and what to do about it.")
 
 (defun reject-floor (file line control &rest arguments)
   "Signal UNUSABLE-FLOOR about LINE, perhaps NIL, of FILE. The text names the remedy."
@@ -62,7 +62,7 @@ UNUSABLE-FLOOR for ~user."
   (if (< start end) (parse-integer text :start start :end end) 0))
 
 (defun exponent-at (text start)
-  "Return the exponent that TEXT ends with from START on, 0 if it ends there; NIL if neither."
+  "Return the exponent in TEXT from START to its end, 0 if TEXT ends at START; NIL if it is none."
   (cond ((= start (length text)) 0)
         ((char-equal #\e (char text start))
          (multiple-value-bind (sign digits) (sign-at text (1+ start))
@@ -71,7 +71,7 @@ UNUSABLE-FLOOR for ~user."
                (and (<= size +largest-exponent+) (* sign size))))))))
 
 (defun decimal-at (text start)
-  "Return the number without a sign that is in TEXT from START on, exactly, or NIL."
+  "Return the exact number without a sign in TEXT from START on, or NIL."
   (let* ((point (digits-end text start))
          (pointed (and (< point (length text)) (char= #\. (char text point))))
          (end (if pointed (digits-end text (1+ point)) point))
@@ -83,14 +83,14 @@ UNUSABLE-FLOOR for ~user."
          (expt 10 exponent)))))
 
 (defun read-decimal (text)
-  "Return the number, exactly, that TEXT stands for, such as -12.5, .5 or 1e-2; NIL if none."
+  "Return the exact number in TEXT, such as -12.5, .5 or 1e-2, or NIL."
   (when (<= (length text) +longest-decimal+)
     (multiple-value-bind (sign start) (sign-at text 0)
       (let ((number (decimal-at text start)))
         (and number (* sign number))))))
 
 (defun decimal (number)
-  "Return the shortest text that READ-DECIMAL makes NUMBER, as a double-float, of again."
+  "Return the shortest text that READ-DECIMAL reads as NUMBER, rounded to a double-float."
   (let ((*read-default-float-format* 'double-float)
         (value (double number)))
     (if (and (= value (ftruncate value)) (< (abs value) 1d15))
@@ -99,13 +99,13 @@ UNUSABLE-FLOOR for ~user."
 
 ;;;; YAML
 
-;;; This is no reader of YAML, but a strict one of the flat form that map savers write: lines
-;;; `key: value', each key once, where a value is a word, a text in quotes, or a list [a, b, c],
-;;; which may also stand below its key, an item a line behind a dash. What else YAML has is refused
-;;; with the number of its line. Values are strings; nothing is evaluated.
+;;; This reads only the flat form of YAML that map savers write: lines `key: value', each key once.
+;;; A value is a word, a text in quotes, or a list [a, b, c], which may also be below its key, with
+;;; a dash before each item. Everything else in YAML is refused with the number of its line. Values
+;;; are strings; nothing is evaluated.
 
 (defstruct (entry (:constructor make-entry (key line value)) (:copier nil))
-  "That a file has KEY on LINE with VALUE: a string, or a list of strings."
+  "KEY on LINE of a file, with VALUE, a string or a list of strings."
   (key "" :type string :read-only t)
   (line 1 :type (integer 1) :read-only t)
   (value "" :type (or string list)))
@@ -138,7 +138,7 @@ quotes, or behind a backslash in double ones, does not close them."
         finally (reject-floor file line "the quotes are not closed; add a ~C at the end" quote)))
 
 (defun unquoted (file line text end)
-  "Return what stands between the quotes of TEXT, which are closed at END."
+  "Return the text between the quotes of TEXT, which are closed at END."
   (with-output-to-string (out)
     (loop with quote = (char text 0) and i = 1
           while (< i end)
@@ -176,7 +176,7 @@ quotes, or behind a backslash in double ones, does not close them."
     (t (without-comment text))))
 
 (defun key-end (text)
-  "Return where the colon behind the key in TEXT is, or NIL if that begins with no key."
+  "Return the position of the colon behind the key that TEXT begins with, or NIL."
   (let ((end (position-if-not (lambda (char) (or (alphanumericp char) (find char "_-"))) text)))
     (and end
          (plusp end)
@@ -203,7 +203,7 @@ quotes, or behind a backslash in double ones, does not close them."
          (or (= 1 (length text)) (blank-p (char text 1))))))
 
 (defun add-item (file line text entry)
-  "Let the list of ENTRY, which stands above TEXT, end with the item in that."
+  "Append the item in TEXT, on LINE of FILE, to the list of ENTRY above it."
   (unless (and entry (or (consp (entry-value entry)) (string= "" (entry-value entry))))
     (reject-floor file line "an item of a list stands below no key; write the list behind its key, ~
                              as in origin: [0.0, 0.0, 0.0]"))
@@ -212,7 +212,7 @@ quotes, or behind a backslash in double ones, does not close them."
                 (list (without-comment (trim (subseq (trim text) 1)))))))
 
 (defun read-entries (file text)
-  "Return the entries, in order, that TEXT, which FILE has, consists of. Signals UNUSABLE-FLOOR."
+  "Return the entries in TEXT, the content of FILE, in order. Signals UNUSABLE-FLOOR."
   (let ((entries '()))
     (loop for line from 1
           for whole in (uiop:split-string text :separator '(#\Newline))

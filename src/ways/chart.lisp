@@ -1,4 +1,4 @@
-;;;; chart.lisp -- a map as one robot knows it: with cells that it found barred.
+;;;; chart.lisp -- a map as one robot knows it, with the cells that it has found barred.
 
 (in-package :ars-magna.ways)
 
@@ -8,11 +8,11 @@
 (addition chart)
 (addition chart-p)
 (define-record (chart (:constructor %make-chart (terrain)))
-  "A map as one robot knows it: a terrain, and which of its cells are barred, or cost more."
+  "A map as one robot knows it: a terrain, and which of its cells are barred or cost more."
   (terrain nil terrain "the terrain of the chart, which it shares with others of its map" :addition)
-  (barred '() list "pairs (node . cost): what a metre costs more than on the terrain" :writable)
+  (barred '() list "pairs (node . cost): the extra cost of a metre" :writable)
   (field nil (or null field) "a field in which cells are barred, or NIL" :writable)
-  (changed '() list "the nodes that have changed since the field was looked at" :writable))
+  (changed '() list "the nodes whose cost has changed since the field was updated" :writable))
 (declaim-final chart)
 
 (addition chart-map)
@@ -142,7 +142,7 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
 ;;; The field of a goal. All charts of a terrain share one, until they bar a cell.
 
 (defconstant +nodes-kept+ 2000000
-  "How many nodes the fields that a terrain keeps may have together; but it keeps two at least.")
+  "How many nodes the fields that a terrain keeps may have in all; it keeps at least two fields.")
 
 (defun known-field (terrain goal)
   (find goal (terrain-fields terrain) :key #'field-goal))
@@ -154,7 +154,7 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
     (setf (terrain-fields terrain) (subseq fields 0 (min (length fields) (1- most))))))
 
 (defun shared-field (terrain goal)
-  "Return the field of TERRAIN with the goal in the node GOAL that all threads share."
+  "Return the field of TERRAIN with its goal in the node GOAL, which all threads share."
   (or (known-field terrain goal)
       (with-lock ((terrain-lock terrain))
         (or (known-field terrain goal)
@@ -163,10 +163,10 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
               (push field (terrain-fields terrain))
               field)))))
 
-(defun take-over-field (chart goal)
+(defun copy-shared-field (chart goal)
   "Give CHART its own copy of the field of the node GOAL, with nothing barred yet."
   (let* ((shared (shared-field (chart-terrain chart) goal))
-         ;; If interrupted, it would be half of one field and half of the other.
+         ;; An interrupted copy would mix two fields, so CHART has none meanwhile.
          (old (shiftf (chart-field chart) nil))
          (own (with-lock ((field-lock shared))
                 (if old (copy-into-field old shared) (copy-field shared)))))
@@ -174,10 +174,10 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
           (chart-field chart) own)))
 
 (defun field-to (chart goal)
-  "Return the field for CHART as it is now that has its goal in the node GOAL."
+  "Return the field with its goal in the node GOAL, for CHART as it is now."
   (cond ((null (chart-barred chart)) (shared-field (chart-terrain chart) goal))
         (t (unless (and (chart-field chart) (= goal (field-goal (chart-field chart))))
-             (take-over-field chart goal))
+             (copy-shared-field chart goal))
            (dolist (node (shiftf (chart-changed chart) '()))
              (change-cell (chart-field chart) node (cost-of-node chart node)))
            (chart-field chart))))

@@ -1,4 +1,4 @@
-;;;; descent.lisp -- down a field to its goal at any angle, drawn as a way with few turns.
+;;;; descent.lisp -- from a start down a field to its goal, as a way at any angle with few turns.
 
 (in-package :ars-magna.ways)
 
@@ -7,16 +7,16 @@
 ;;; A line is cut at all whole and half coordinates: a piece of it is in one cell, whose cost
 ;;; counts, and in one square between nodes, which must have no wall at its corners. So lines keep
 ;;; half a metre off walls, as steps from node to node do. But one along a row of nodes, as through
-;;; a doorway, need only cross free cells; and who stands near a wall may leave his own cell at any
-;;; angle at which nothing else is near.
+;;; a doorway, need only cross free cells; and from near a wall a line may leave its first cell at
+;;; any angle at which nothing else is near.
 
 (deftype metres () '(double-float -1d5 1d5))
 (deftype halves () "A whole number of half metres." '(signed-byte 20))
 
 (declaim (inline piece-cost))
 (defun piece-cost (cells columns i j narrow)
-  "Return what a metre costs in the half cell (I J) of CELLS; it is half as wide and high as one.
-NARROW is true of a line that only needs free cells."
+  "Return what a metre costs in the half cell (I J) of CELLS, half as wide and high as a cell.
+NARROW is true for a line that only needs free cells."
   (declare (type amounts cells) (type (integer 0 40000) columns) (type halves i j))
   (flet ((cell (column row) (aref cells (the node (+ 1 column row))))
          (row (j) (* columns (1+ (ash j -1)))))
@@ -29,7 +29,7 @@ NARROW is true of a line that only needs free cells."
               +barred+)))
         (cell (ash i -1) (row j)))))
 
-;; It lives on the stack, and functions get it instead of floats, which would have to be boxed.
+;; Allocated on the stack and passed to functions instead of floats, which would have to be boxed.
 (declaim (inline make-line))
 (defstruct (line (:constructor make-line (x y end-x end-y limit)) (:copier nil) (:predicate nil))
   "A straight line from (X,Y) to (END-X,END-Y), which is to cost no more than LIMIT, and what it
@@ -43,8 +43,8 @@ costs."
 (declaim-final line)
 
 (defun measure-line (line cells columns leaving)
-  "Let LINE have what it costs; +BARRED+ if it is not free, or costs more than its limit. CELLS are
-those of a terrain or field, COLUMNS in a row. LEAVING is true if it may begin near a wall."
+  "Set the cost of LINE, +BARRED+ if it is not free or costs more than its limit. CELLS are those of
+a terrain or field, COLUMNS in a row. LEAVING is true if LINE may begin near a wall."
   (declare #.*hot* (type line line) (type amounts cells) (type (integer 0 40000) columns))
   (let* ((u (* 2 (line-x line))) (v (* 2 (line-y line)))
          (du (- (* 2 (line-end-x line)) u)) (dv (- (* 2 (line-end-y line)) v))
@@ -86,14 +86,13 @@ those of a terrain or field, COLUMNS in a row. LEAVING is true if it may begin n
 ;;;; Steps
 
 ;;; From a point in a cell, a step leads to the best point of the ring around the cell's middle: of
-;;; the eight sides between the middles of its neighbours. Only what costs less than where one is,
-;;; by an eighth at least, is looked at, so that a descent ends, and depends on nothing that has not
-;;; been settled.
+;;; the eight sides between the middles of its neighbours. Only points whose cost is less by at
+;;; least an eighth count. So a descent ends, and depends only on settled nodes.
 
-(defconstant +least-drop+ 0.125d0 "By how much each step must come nearer to the goal.")
+(defconstant +least-drop+ 0.125d0 "By how much each step must lower the cost to the goal.")
 
 (defstruct (descent (:constructor make-descent (field x y value)) (:copier nil))
-  "Somebody on the way down FIELD, at (X,Y), from where the goal costs VALUE."
+  "A position (X,Y) on the way down FIELD, from where the goal costs VALUE."
   (field nil :type field :read-only t)
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
@@ -110,9 +109,8 @@ those of a terrain or field, COLUMNS in a row. LEAVING is true if it may begin n
 
 (declaim (inline best-on-side))
 (defun best-on-side (ahead aside drop cost)
-  "Return how far along a side, from 0 to 1, the best point of it is for somebody AHEAD metres
-before it and ASIDE from its start: on the way to it a metre costs COST, and the goal costs DROP
-less at its end."
+  "Return how far along a side, from 0 to 1, its best point is, seen from AHEAD metres before it and
+ASIDE from its start. On the way to it a metre costs COST; at its end the goal costs DROP less."
   (declare (type double-float ahead aside drop cost))
   (cond ((<= drop 0d0) (clamp aside 0d0 1d0))
         ((>= drop cost) 1d0)
@@ -124,16 +122,16 @@ less at its end."
 ;;; SIDE and runs from the middle of the neighbour there, STRAIGHT, in the direction ACROSS to that
 ;;; of the one at the corner, DIAGONAL:
 ;;;
-;;;        square | DIAGONAL         On the way to the start of the side one crosses two cells, this
-;;;        -------+-----^---         one and STRAIGHT, along their EDGE; to any other point of it
+;;;        square | DIAGONAL         The way to the start of the side crosses two cells, this one
+;;;        -------+-----^---         and STRAIGHT, along their EDGE; that to any other point of it
 ;;;           *   | STRAIGHT         possibly all four of the SQUARE. A metre costs what it costs in
-;;;                                  the dearest of the cells that may be crossed.
+;;;                                  the most expensive cell that may be crossed.
 ;;;
 ;;; The robot * is OFF the middle of its cell: the side is AHEAD metres away, and the robot ASIDE
 ;;; metres along it. PART of a side, from 0 to 1, is how far along it a point lies.
 
 (defun step-down (descent)
-  "Take a step. True if there was one."
+  "Take a step down. True if there was one."
   (declare #.*hot* (type descent descent))
   (let* ((field (descent-field descent)) (node (descent-node descent))
          (x (descent-x descent)) (y (descent-y descent))
@@ -182,25 +180,24 @@ less at its end."
 ;;;; Drawing a way
 
 (defconstant +dearer-if-straight+ 1.02d0
-  "How many times as much a straight piece may cost as the steps that it stands for: it saves
-turns.")
+  "How many times the cost of its steps a straight piece may have, as it saves turns.")
 
-(defstruct (pencil (:constructor make-pencil (x y)) (:copier nil))
-  "The way drawn so far: it turns at (X,Y), and steps that cost SINCE have led on to (END-X,END-Y)."
+(defstruct (polyline (:constructor make-polyline (x y)) (:copier nil))
+  "The way so far: its last vertex (X,Y), its end (END-X,END-Y), and the cost SINCE that vertex."
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
   (end-x x :type double-float)
   (end-y y :type double-float)
   (since 0d0 :type double-float)
   (points '() :type list))
-(declaim-final pencil)
+(declaim-final polyline)
 
-(defun turn-here (pencil)
-  "Let the way of PENCIL have a point where it has come to."
-  (push (make-pt (pencil-end-x pencil) (pencil-end-y pencil)) (pencil-points pencil))
-  (setf (pencil-x pencil) (pencil-end-x pencil)
-        (pencil-y pencil) (pencil-end-y pencil)
-        (pencil-since pencil) 0d0))
+(defun add-vertex (polyline)
+  "Make the end of POLYLINE a vertex."
+  (push (make-pt (polyline-end-x polyline) (polyline-end-y polyline)) (polyline-points polyline))
+  (setf (polyline-x polyline) (polyline-end-x polyline)
+        (polyline-y polyline) (polyline-end-y polyline)
+        (polyline-since polyline) 0d0))
 
 (declaim (inline free-line-cost))
 (defun free-line-cost (field x y end-x end-y limit leaving)
@@ -212,69 +209,67 @@ if it is not free, or costs more than LIMIT. LEAVING is true if it may begin nea
     (line-cost line)))
 
 (declaim (inline first-line-p))
-(defun first-line-p (pencil)
-  (null (pencil-points pencil)))
+(defun first-line-p (polyline)
+  (null (polyline-points polyline)))
 
-(declaim (inline go-straight-p draw-on))
-(defun go-straight-p (pencil field x y limit last)
-  "True if the line from the last turn of PENCIL to (X,Y) is free and costs no more than LIMIT. The
-LAST line of a way may end as near to a wall as the first may begin."
-  (declare (type pencil pencil) (type metres x y) (type double-float limit))
-  (let ((from-x (pencil-x pencil)) (from-y (pencil-y pencil)))
-    (or (< (free-line-cost field from-x from-y x y limit (first-line-p pencil)) +barred+)
+(declaim (inline go-straight-p extend-polyline))
+(defun go-straight-p (polyline field x y limit last)
+  "True if the line from the last vertex of POLYLINE to (X,Y) is free and costs no more than LIMIT.
+The LAST line of a way may end as near to a wall as the first may begin."
+  (declare (type polyline polyline) (type metres x y) (type double-float limit))
+  (let ((from-x (polyline-x polyline)) (from-y (polyline-y polyline)))
+    (or (< (free-line-cost field from-x from-y x y limit (first-line-p polyline)) +barred+)
         (and last (< (free-line-cost field x y from-x from-y limit t) +barred+)))))
 
-(defun draw-on (pencil field x y cost last)
-  "Let the way of PENCIL go on to (X,Y), by a free step that costs COST: straight, if that is as
-good."
-  (declare #.*hot* (type pencil pencil) (type metres x y) (type double-float cost))
-  (let ((since (+ (pencil-since pencil) cost)))
-    (unless (or (zerop (pencil-since pencil))
-                (go-straight-p pencil field x y (* since +dearer-if-straight+) last))
-      (turn-here pencil)
+(defun extend-polyline (polyline field x y cost last)
+  "Extend POLYLINE to (X,Y) by a free step that costs COST, straight on if that is as good."
+  (declare #.*hot* (type polyline polyline) (type metres x y) (type double-float cost))
+  (let ((since (+ (polyline-since polyline) cost)))
+    (unless (or (zerop (polyline-since polyline))
+                (go-straight-p polyline field x y (* since +dearer-if-straight+) last))
+      (add-vertex polyline)
       (setf since cost))
-    (setf (pencil-since pencil) since
-          (pencil-end-x pencil) x
-          (pencil-end-y pencil) y)
+    (setf (polyline-since polyline) since
+          (polyline-end-x polyline) x
+          (polyline-end-y polyline) y)
     nil))
 
-(defun draw-to (pencil field x y cost &optional last)
-  "Let the way of PENCIL go on to (X,Y), by a step that costs COST at most. LAST is true of its
-last."
-  (declare #.*hot* (type pencil pencil) (type metres x y) (type double-float cost))
-  (let* ((from-x (pencil-end-x pencil)) (from-y (pencil-end-y pencil))
-         (true-cost (free-line-cost field from-x from-y x y cost (first-line-p pencil))))
+(defun extend-to (polyline field x y cost &optional last)
+  "Extend POLYLINE to (X,Y) by a step that costs COST at most. LAST is true for the last step."
+  (declare #.*hot* (type polyline polyline) (type metres x y) (type double-float cost))
+  (let* ((from-x (polyline-end-x polyline)) (from-y (polyline-end-y polyline))
+         (true-cost (free-line-cost field from-x from-y x y cost (first-line-p polyline))))
     (declare (type metres from-x from-y))
-    (when (and (>= true-cost +barred+) (not last) (plusp (pencil-since pencil)))
-      ;; By way of the cell's middle one comes near to no wall.
+    (when (and (>= true-cost +barred+) (not last) (plusp (polyline-since polyline)))
+      ;; By way of the cell's middle it keeps off all walls.
       (let ((middle-x (+ (ffloor from-x) 0.5d0)) (middle-y (+ (ffloor from-y) 0.5d0)))
-        (draw-on pencil field middle-x middle-y
-                 (free-line-cost field from-x from-y middle-x middle-y (/ +barred+ 2)
-                                 nil)
-                 nil)))
-    (draw-on pencil field x y (min cost true-cost) last)))
+        (extend-polyline polyline field middle-x middle-y
+                         (free-line-cost field from-x from-y middle-x middle-y (/ +barred+ 2) nil)
+                         nil)))
+    (extend-polyline polyline field x y (min cost true-cost) last)))
 
-(defun draw-way (pencil descent goal-x goal-y until turns)
-  "Draw the way down DESCENT to (GOAL-X,GOAL-Y), or into a cell for which UNTIL is true, or to its
-turn number TURNS."
+(defun trace-way (polyline descent goal-x goal-y until turns)
+  "Extend POLYLINE down DESCENT to (GOAL-X,GOAL-Y), to a cell for which UNTIL is true, or to vertex
+number TURNS."
   (let* ((field (descent-field descent)) (goal (field-goal field))
          (node (descent-node descent)))
     (loop until (or (= node goal)
-                    (and turns (nthcdr (1- turns) (pencil-points pencil)))
+                    (and turns (nthcdr (1- turns) (polyline-points polyline)))
                     (not (step-down descent)))
-          do (draw-to pencil field (descent-x descent) (descent-y descent) (descent-step descent))
+          do (extend-to polyline field
+                        (descent-x descent) (descent-y descent) (descent-step descent))
              (let ((next (descent-node descent)))
                (when (and until (/= node next))
                  (multiple-value-bind (row column) (floor (the node next) (field-columns field))
                    (when (funcall (the function until) (1- column) (1- row)) (return))))
                (setf node next))
-          finally (when (= node goal) (draw-to-goal pencil descent goal-x goal-y)))
-    (turn-here pencil)))
+          finally (when (= node goal) (extend-to-goal polyline descent goal-x goal-y)))
+    (add-vertex polyline)))
 
-(defun draw-to-goal (pencil descent x y)
-  "Draw the last step, within the cell of the goal, which is at (X,Y)."
+(defun extend-to-goal (polyline descent x y)
+  "Extend POLYLINE by the last step, within the cell of the goal, to (X,Y)."
   (let ((field (descent-field descent))
         (dx (- x (descent-x descent))) (dy (- y (descent-y descent))))
-    (draw-to pencil field x y
-             (* (sqrt (+ (* dx dx) (* dy dy))) (aref (field-cells field) (field-goal field)))
-             t)))
+    (extend-to polyline field x y
+               (* (sqrt (+ (* dx dx) (* dy dy))) (aref (field-cells field) (field-goal field)))
+               t)))

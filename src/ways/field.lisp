@@ -1,8 +1,8 @@
-;;;; field.lisp -- what it costs to get to one goal from each node, kept up to date.
+;;;; field.lisp -- the cost to get to one goal from each node, kept up to date.
 
 (in-package :ars-magna.ways)
 
-;;;; The queue: nodes that wait, by their keys, a binary heap in two arrays
+;;;; The queue: waiting nodes by their keys, a binary heap in two arrays
 
 ;;; A node may be in it more than once; when it is taken out, check whether it still counts.
 
@@ -25,7 +25,7 @@
 
 (declaim (inline put-in-place))
 (defun put-in-place (keys nodes place key node)
-  "Let NODE with KEY be at PLACE of the arrays KEYS and NODES of a queue."
+  "Store NODE and KEY at PLACE of the arrays KEYS and NODES of a queue."
   (declare (type amounts keys) (type nodes nodes))
   (setf (aref keys place) key
         (aref nodes place) node))
@@ -89,7 +89,7 @@
 (defun crossing-by (straight diagonal edge square)
   "Return the cost to the goal from a node through the opposite side of a square. STRAIGHT and
 DIAGONAL are the costs from the ends of that side, EDGE and SQUARE the costs of a metre on the line
-to the first, and in the square. The result is larger than what it depends on, by a third at least."
+to the first, and in the square. The result exceeds the costs it depends on by at least a third."
   (declare (type double-float straight diagonal edge square))
   (let ((drop (- straight diagonal)) (along (+ edge straight)))
     (if (or (<= drop 0d0) (>= square +barred+))
@@ -106,13 +106,13 @@ to the first, and in the square. The result is larger than what it depends on, b
 
 ;;; The method is that of D* Lite (S. Koenig and M. Likhachev, "D* Lite", AAAI 2002), without its
 ;;; heuristic: each node has a TOTAL (their g), and a DRAFT (their rhs), which is what its
-;;; neighbours' totals make it now. Nodes whose two differ wait in a queue, by the lesser of the
-;;; two. When all that is less than a node's total has been dealt with, that total is right.
+;;; neighbours' totals make it now. Nodes whose two values differ wait in a queue, by the lesser
+;;; value. When all that is less than a node's total has been processed, that total is final.
 ;;;
 ;;; Totals depend on cells and goal alone, to the bit: a total depends on lesser ones only (see
 ;;; CROSSING-BY), and a draft that might have to rise is computed anew. So earlier queries, cells
-;;; that were barred once, and the order of the queue have no influence. Without a heuristic a field
-;;; serves all starts.
+;;; that were barred before, and the order of the queue have no influence. Without a heuristic a
+;;; field serves all starts.
 
 (defstruct (field (:constructor %make-field (goal columns cells totals drafts)) (:copier nil))
   "The costs to get to the node GOAL. If there is a lock, threads share the field and CELLS are
@@ -127,7 +127,7 @@ the terrain's: totals are found in it, but no cell changes."
 (declaim-final field)
 
 (defun make-field (terrain goal)
-  "Return a field of TERRAIN with the goal in the node GOAL; no other total is known in it."
+  "Return a new field of TERRAIN with its goal in the node GOAL. No other total is known yet."
   (ensure-room (length (terrain-cells terrain)) 16)
   (let* ((cells (terrain-cells terrain)) (size (length cells))
          (field (%make-field goal (terrain-columns terrain) cells
@@ -202,13 +202,13 @@ the terrain's: totals are found in it, but no cell changes."
     (unless (= draft total)
       (queue-push (field-queue field) node (min draft total)))))
 
-(defun redraft (field node)
+(defun update-draft (field node)
   (declare #.*hot* (type field field) (type node node))
   (when (< (aref (field-cells field) node) +barred+)
     (let ((draft (best-draft field node)))
       (unless (= draft (aref (field-drafts field) node)) (note-draft field node draft)))))
 
-(defun offer (field node)
+(defun lower-neighbours (field node)
   "Update the drafts of the neighbours of NODE, whose total has become known."
   (declare #.*hot* (type field field) (type node node))
   (with-field (field)
@@ -240,7 +240,7 @@ the terrain's: totals are found in it, but no cell changes."
         (diagonal -1 columns)
         (diagonal -1 (- columns))))))
 
-(defun redraft-neighbours (field node least)
+(defun update-neighbours (field node least)
   "Compute anew the drafts of neighbours of NODE that may depend on it: those above LEAST."
   (declare #.*hot* (type field field) (type node node) (type double-float least))
   (let ((columns (field-columns field)) (drafts (field-drafts field)))
@@ -248,25 +248,25 @@ the terrain's: totals are found in it, but no cell changes."
              (declare (type (signed-byte 32) offset))
              (let ((other (+ node offset)))
                (declare (type node other))
-               (when (> (aref drafts other) least) (redraft field other)))))
+               (when (> (aref drafts other) least) (update-draft field other)))))
       (look 1) (look -1) (look columns) (look (- columns))
       (look (+ columns 1)) (look (- columns 1)) (look (- 1 columns)) (look (- -1 columns)))))
 
 ;;; Totals.
 
 (defun settle-node (field node)
-  "Bring the total of NODE, the first of the queue of FIELD, nearer to its draft."
+  "Update the total of NODE, the first of the queue of FIELD, by its draft."
   (declare #.*hot* (type field field) (type node node))
   (let* ((totals (field-totals field))
          (total (aref totals node)) (draft (aref (field-drafts field) node)))
-    (cond ((= total draft))             ; It was dealt with when it was met before.
+    (cond ((= total draft))             ; It has been processed before.
           ((< draft total)
            (setf (aref totals node) draft)
            (if (= total +barred+)
-               (offer field node)
-               (redraft-neighbours field node draft)))
+               (lower-neighbours field node)
+               (update-neighbours field node draft)))
           (t (setf (aref totals node) +barred+)
-             (redraft-neighbours field node total)
+             (update-neighbours field node total)
              (note-draft field node draft)))))
 
 (defun settle (field node)
@@ -299,4 +299,4 @@ the terrain's: totals are found in it, but no cell changes."
     (when (>= cost +barred+) (note-draft field node +barred+))
     (loop for row in (list (- columns) 0 columns)
           do (loop for offset from (1- row) to (1+ row)
-                   do (redraft field (+ node offset))))))
+                   do (update-draft field (+ node offset))))))

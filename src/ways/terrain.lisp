@@ -4,14 +4,14 @@
 
 (export '(terrain))
 
-;;; A metre costs 1 in the open, four times as much nearer to a wall than the clearance, and as much
-;;; as the caller says in a cell of a place type that is named. Costs are numbers from 1 up, and
+;;; A metre costs 1 in the open, four times as much nearer to a wall than the clearance, and what
+;;; the caller says in the cells of named place types. Costs are numbers from 1 up, and
 ;;; +BARRED+ for walls. Cells have numbers, row by row, with a margin of walls, one cell wide,
 ;;; around them: so each cell of the map has neighbours on all sides. The number of a cell stands
 ;;; for its middle too, and is called a node then.
 
 (defconstant +barred+ 1d100
-  "More than any way costs: the cost of what cannot be crossed, or from where no way is known.")
+  "More than any way costs: for cells that cannot be crossed, and where no way is known.")
 
 (defconstant +close-to-wall+ 4d0
   "What a metre costs nearer to a wall than the clearance.")
@@ -47,21 +47,21 @@ altered" :writable)
 ;;; Keeping them.
 
 (define-global **terrains** (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "Lists of terrains by their maps, newest first. Whoever needs one shares it.")
+  "Lists of terrains by their maps, newest first. All threads share them.")
 
 (define-global **terrains-lock** (make-lock "terrains")
-  "Held while a terrain is made, so that none is made twice.")
+  "Held while a terrain is made, so that no other thread makes the same one.")
 
 (defconstant +terrains-kept+ 8
   "How many terrains of one map are kept, with different clearances and costs.")
 
 (defun forget-fields ()
-  "Keep no field of any terrain. What they say can be computed again."
+  "Discard the fields of all terrains. They can be computed again."
   (dolist (terrains (hash-table-values **terrains**))
     (dolist (terrain terrains) (setf (terrain-fields terrain) '()))))
 
 (defun ensure-room (cells octets)
-  "See that there is room for OCTETS of each of so many CELLS. Signals MISUSE."
+  "Signal MISUSE unless there is memory for OCTETS times CELLS bytes; discard fields if needed."
   (let ((all (* cells octets)))
     (unless (or (room-p all)
                 (progn (forget-fields) (room-p all)))
@@ -73,7 +73,7 @@ altered" :writable)
 
 (declaim (inline cell-node node-column node-row))
 (defun cell-node (terrain x y)
-  "Return the number of the cell (X Y) of the map, which may be of the margin."
+  "Return the number of the cell (X Y) of the map or its margin."
   (declare (type (integer -1 32767) x y))
   (+ (1+ x) (* (1+ y) (terrain-columns terrain))))
 
@@ -119,7 +119,7 @@ nearer than CLEARANCE to the wall's cell: a list of lists (dx offset)."
                       thereis (and (< -1 other (length cells)) (< (aref cells other) +barred+)))))
 
 (defun mark-near-walls (cells columns clearance)
-  "Let those of CELLS that are free and nearer to a wall than CLEARANCE cost more."
+  "Raise the cost of free CELLS that are nearer to a wall than CLEARANCE."
   (declare (type amounts cells))
   (let ((offsets (offsets-within clearance columns)))
     (dotimes (node (length cells))
@@ -133,7 +133,7 @@ nearer than CLEARANCE to the wall's cell: a list of lists (dx offset)."
     cells))
 
 (defun mark-places (cells columns map costs)
-  "Let those of CELLS that are places cost what COSTS, a list of (name cost), says of their types."
+  "Set the cost of CELLS that are places of a type in COSTS, a list of (name cost)."
   (let ((factors (cl:map 'vector
                          (lambda (type)
                            (second (and type (assoc (place-type-name type) costs

@@ -45,7 +45,7 @@ map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
     (and x (make-pt x y))))
 
 (defun end-of-way (operator chart point)
-  "Return the coordinates of the POINT, or of what is free near it. Signals WRONG-ARGUMENT."
+  "Return the coordinates of POINT, or of a free point near it. Signals WRONG-ARGUMENT."
   (node-of-point operator chart point)
   (multiple-value-bind (x y) (free-coordinates chart (point-x point) (point-y point))
     (unless x
@@ -67,13 +67,13 @@ map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
 
 (defun points-of-way (chart x y goal-x goal-y until turns)
   "Return the points of the way on CHART from (X,Y) to (GOAL-X,GOAL-Y), both free, without the
-first: () if there is none. UNTIL and TURNS are as for DRAW-WAY."
+first: () if there is none. UNTIL and TURNS are as for TRACE-WAY."
   (let* ((field (field-to chart (node-at chart goal-x goal-y)))
          (total (find-total field (node-at chart x y))))
     (when (< total +barred+)
-      (let ((pencil (make-pencil x y)))
-        (draw-way pencil (make-descent field x y total) goal-x goal-y until turns)
-        (nreverse (pencil-points pencil))))))
+      (let ((polyline (make-polyline x y)))
+        (trace-way polyline (make-descent field x y total) goal-x goal-y until turns)
+        (nreverse (polyline-points polyline))))))
 
 ;;; What users call.
 
