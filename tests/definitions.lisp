@@ -235,10 +235,10 @@
            (go-on (base:make-semaphore "settle"))
            (arrived (base:make-semaphore "arrived"))
            (threads '()))
-      (robot::take-out-all 'settler "test")
-      (host:wrap-function 'robot::take-out-all
-                          (lambda (take-out-all &rest arguments)
-                            (apply take-out-all arguments)
+      (robot::remove-robots-called 'settler "test")
+      (host:wrap-function 'robot::remove-robots-called
+                          (lambda (remove-robots-called &rest arguments)
+                            (apply remove-robots-called arguments)
                             (base:signal-semaphore arrived)
                             (base:wait-on-semaphore go-on 10))
                           'test)
@@ -250,5 +250,5 @@
              (loop repeat 3 do (base:wait-on-semaphore arrived 10))
              (loop repeat 3 do (base:signal-semaphore go-on))
              (mapc #'base:join-thread threads))
-        (host:unwrap-function 'robot::take-out-all 'test))
+        (host:unwrap-function 'robot::remove-robots-called 'test))
       (is (= 1 (count 'settler (world:world-robots world) :key #'robot:robot-name))))))

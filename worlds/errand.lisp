@@ -12,7 +12,7 @@
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
-(defstruct (errand (:include course) (:copier nil))
+(defstruct (errand (:include claim) (:copier nil))
   "The parts, description and continuation of an errand. PATIENCE is how many more setbacks it
 accepts."
   (camera nil :read-only t)
@@ -110,7 +110,7 @@ of the robot shows that ERRAND was taken over, end it instead."
 
 (defun go-to-target (errand)
   "Drive to what the camera tracks. If something blocks the way, check whether it is near enough."
-  (robot-goto-designator (own errand) (errand-camera errand)
+  (robot-goto-designator (robot-to-command errand) (errand-camera errand)
     (continuation (err robot camera designator)
       (unless-interrupted errand err
         (lambda ()
@@ -121,11 +121,11 @@ of the robot shows that ERRAND was taken over, end it instead."
 
 (defun turn-aside (errand)
   "Turn aside, drive on for two ticks, and search again."
-  (robot-turn (own errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
+  (robot-turn (robot-to-command errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
     (continuation (err robot angle)
       (unless-interrupted errand err
         (lambda ()
-          (robot-go-forward (own errand) 2
+          (robot-go-forward (robot-to-command errand) 2
             (continuation (err robot)
               (go-on errand err #'find-target #'find-target :robot-blocked))))))))
 

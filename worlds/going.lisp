@@ -14,35 +14,34 @@
 (in-readtable :nisp)
 
 ;;; A newer command interrupts an older one, whose continuation receives :INTERRUPT. But a program
-;;; may be waiting for a camera when another program, or STOP, commands the robot. So a COURSE
+;;; may be waiting for a camera when another program, or STOP, commands the robot. So a CLAIM
 ;;; compares how many commands the robot has received with how many the program itself has issued.
 
 (defun asked-so-far (robot) (ars-magna.time:resource-asked robot))
 
-(defstruct (course (:constructor make-course (robot &aux (asked (asked-so-far robot))))
-                   (:copier nil))
-  "A program's hold on a robot: the robot, and how many commands it should have received by now. If
+(defstruct (claim (:constructor nil) (:copier nil))
+  "A program's claim on a robot: the robot, and how many commands it should have received by now. If
 it has received more, another program has taken it over."
   (robot nil :type robot :read-only t)
   (asked 0 :type integer))
 
-(defun own (course)
-  "Return the robot of COURSE, and count the command that is about to be issued to it."
-  (incf (course-asked course))
-  (course-robot course))
+(defun robot-to-command (claim)
+  "Return the robot of CLAIM, and count the command that is about to be issued to it."
+  (incf (claim-asked claim))
+  (claim-robot claim))
 
-(defun taken-p (course)
-  "True if another program has taken over the robot of COURSE."
-  (/= (course-asked course) (asked-so-far (course-robot course))))
+(defun taken-over-p (claim)
+  "True if another program has taken over the robot of CLAIM."
+  (/= (claim-asked claim) (asked-so-far (claim-robot claim))))
 
-(defun over-p (course err)
-  "True if COURSE has to end: ERR, the error code of its last command, is :INTERRUPT, or another
+(defun over-p (claim err)
+  "True if CLAIM has to end: ERR, the error code of its last command, is :INTERRUPT, or another
 program has taken over its robot."
-  (or (eq err :interrupt) (taken-p course)))
+  (or (eq err :interrupt) (taken-over-p claim)))
 
 ;;; Journeys.
 
-(defstruct (journey (:include course) (:copier nil))
+(defstruct (journey (:include claim) (:copier nil))
   "The goal and the reckoning of a robot. STEPS and PATIENCE are how many more steps and obstacles
 it accepts."
   (me nil :type reckoning :read-only t)
@@ -125,7 +124,7 @@ OTHERWISE. If the command was interrupted or the robot taken over, end JOURNEY i
 
 (defun face-point (journey point next)
   "Turn the robot of JOURNEY to face POINT, then call NEXT."
-  (robot-turn (own journey) (angle-towards (journey-me journey) point)
+  (robot-turn (robot-to-command journey) (angle-towards (journey-me journey) point)
     (continuation (err robot angle) (after-command journey err next next))))
 
 (defun drive-to-point (journey point next)
@@ -134,15 +133,15 @@ OTHERWISE. If the command was interrupted or the robot taken over, end JOURNEY i
               (lambda ()
                 (drive-straight journey (distance-left (journey-me journey) point) next))))
 
-(defun drive-metres (course metres top continuation)
-  "Drive the robot of COURSE METRES straight ahead, in whole ticks, at most TOP metres per tick.
+(defun drive-metres (claim metres top continuation)
+  "Drive the robot of CLAIM METRES straight ahead, in whole ticks, at most TOP metres per tick.
 CONTINUATION gets an error code or NIL, and the robot."
   (let ((ticks (if (plusp top) (max 1 (ceiling metres top)) 1)))
-    (robot-set-speed (own course) (/ metres ticks)
+    (robot-set-speed (robot-to-command claim) (/ metres ticks)
       (continuation (err robot speed)
-        (if (over-p course err)
+        (if (over-p claim err)
             (funcall continuation :interrupt robot)
-            (robot-go-forward (own course) ticks continuation))))))
+            (robot-go-forward (robot-to-command claim) ticks continuation))))))
 
 (defun drive-straight (journey distance next)
   "Drive the robot of JOURNEY DISTANCE metres ahead, then call NEXT, a function of JOURNEY."
@@ -164,7 +163,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
     (unless (correct-by-wall me) (bar-ahead me))
     (cond ((zerop (decf (journey-patience journey))) (end-journey journey :gave-up))
           ((zerop (mod (journey-patience journey) 3))
-           (robot-turn (own journey) (if (evenp (journey-patience journey)) 2.4 -2.4)
+           (robot-turn (robot-to-command journey) (if (evenp (journey-patience journey)) 2.4 -2.4)
              (continuation (err robot angle)
                (after-command journey err
                               (lambda () (drive-straight journey 2 #'go-on-journey))
@@ -198,7 +197,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
         ;; It is called again when the track ends.
         (unless begun
           (setf begun t)
-          (when (taken-p journey) (free-from-track journey doorway))
+          (when (taken-over-p journey) (free-from-track journey doorway))
           (after-command journey err
                          (lambda () (follow-to-doorway journey doorway beyond))
                          (lambda () (note-obstacle journey))))))))
@@ -214,7 +213,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
 
 (defun follow-to-doorway (journey doorway beyond)
   "Drive the robot of JOURNEY to the designator DOORWAY, which its camera tracks."
-  (robot-set-speed (own journey) driving-speed*
+  (robot-set-speed (robot-to-command journey) driving-speed*
     (continuation (err robot speed)
       (flet ((follow () (go-to-tracked journey doorway beyond)))
         (when (over-p journey err) (free-from-track journey doorway))
@@ -222,7 +221,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
 
 (defun go-to-tracked (journey doorway beyond)
   "Drive the robot of JOURNEY, whose speed is set, to the designator DOORWAY."
-  (robot-goto-designator (own journey) (journey-camera journey)
+  (robot-goto-designator (robot-to-command journey) (journey-camera journey)
     (continuation (err robot camera designator)
       (free-from-track journey doorway)
       (after-command journey err
@@ -235,7 +234,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
 (defun leave-doorway (journey beyond)
   "Correct the reckoning of JOURNEY if the robot senses a doorway, and drive on to BEYOND."
   (flet ((on () (drive-to-point journey beyond #'go-on-journey)))
-    (robot-place (own journey)
+    (robot-place (robot-to-command journey)
       (continuation (err robot type)
         (let ((cell (doorway-nearby (journey-me journey))))
           (if (and cell (eq type 'doorway) (not (over-p journey err)))
@@ -246,7 +245,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
   "Correct position and heading in the reckoning of JOURNEY, whose robot is in the doorway CELL."
   (let ((me (journey-me journey)))
     (correct-by-cell me cell)
-    (robot-align-place (own journey)
+    (robot-align-place (robot-to-command journey)
       (continuation (err robot angle)
         (after-command journey err
                        (lambda ()

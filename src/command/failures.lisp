@@ -37,7 +37,7 @@ known."
     (setf (robot-failure (resource-robot (operation-resource operation)))
           (make-failure (if interruption (interruption-tick interruption) tick)
                         (operation-asked operation) (request-name operation)
-                        (resource-told operation) (operation-arguments operation)
+                        (named-resource operation) (operation-arguments operation)
                         (request-asker operation) code text
                         (and interruption
                              (list (interruption-by interruption)
@@ -113,7 +113,7 @@ tick. THINK counts as a command of the robot. NIL if there was none."
 (defun argument-as-typed (argument)
   "Return ARGUMENT of a command as one would type it in Lisp, as far as one can."
   (typecase argument
-    ((or robot part) (form-of-resource argument))
+    ((or robot part) (resource-form argument))
     (designator `(find-designator ,(robot-name (designator-robot argument))
                                   ,(designator-number argument)))
     ((or symbol cons) (if (constantp argument) argument `',argument))

@@ -20,7 +20,7 @@
         ((designator-denotation destination) (location-name (designator-denotation destination)))
         (t (princ-to-string destination))))
 
-(defun succeed-saying (operation text &rest results)
+(defun succeed-with-message (operation text &rest results)
   (tell-of operation text)
   (apply #'succeed operation results))
 
@@ -128,7 +128,7 @@ designators invalid silently."
     "Drop what HAND holds: into the container the hand is in, or where the robot stands."
   (let ((thing (hand-holding hand)))
     (cond (thing (set-down hand thing)
-                 (succeed-saying operation (dropped-text hand thing)))
+                 (succeed-with-message operation (dropped-text hand thing)))
           (t (fail-with operation :not-grasping)))))
 
 ;;; Feeling.

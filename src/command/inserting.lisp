@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.command)
 
-;;; Insertion goes one level in, removal one level out. The robot's bins, and what stands in the
-;;; open, are reached from the open only.
+;;; Insertion goes one level in, removal one level out. Only from the open can parts reach the
+;;; robot's bins, and what stands in the open.
 
 (defun inserted-text (operation destination)
   (format nil "~A inserted into ~A" (operation-resource operation)
@@ -80,13 +80,13 @@
 
 ;;; Out again.
 
-(defun take-out (operation part)
+(defun take-part-out (operation part)
   "Take PART one level out of its container and end OPERATION (reading 160)."
   (let ((location (part-location part)))
     (cond (location
            (move-part part (space-around part))
-           (succeed-saying operation
-                           (format nil "~A removed from ~A" part (location-name location))))
+           (succeed-with-message
+            operation (format nil "~A removed from ~A" part (location-name location))))
           (t (fail-with operation :not-inside)))))
 
 (define-command hand-remove (operation (hand hand))
@@ -94,14 +94,14 @@
     ((:family :handling) (:section "3.6") (:delay hand-move-delay*)
      (:errors (:not-inside (text-of "~A is not inside anything"))))
     "Take HAND, with what it holds, one level out of its container."
-  (take-out operation hand))
+  (take-part-out operation hand))
 
 (define-command camera-remove (operation (camera camera))
     ()
     ((:family :handling) (:section "3.4.3") (:delay camera-move-delay*)
      (:errors (:not-inside (text-of "~A is not inside anything"))))
     "Take CAMERA out of the container that it is inside of, one level. It loses its track."
-  (take-out operation camera))
+  (take-part-out operation camera))
 
 ;;; Cameras.
 
@@ -158,7 +158,7 @@
     "Open STORAGE-BIN."
   (cond ((storage-bin-closed-p storage-bin)
          (setf (storage-bin-closed-p storage-bin) nil)
-         (succeed-saying operation (format nil "~A opened" storage-bin)))
+         (succeed-with-message operation (format nil "~A opened" storage-bin)))
         (t (fail-with operation :bin-open))))
 
 ;; As readings 163 and 166 say.
@@ -179,4 +179,4 @@
               (chance bin-close-jam-prob* (handling-dice storage-bin)))
          (fail-with operation :bin-jammed))
         (t (setf (storage-bin-closed-p storage-bin) t)
-           (succeed-saying operation (format nil "~A closed" storage-bin)))))
+           (succeed-with-message operation (format nil "~A closed" storage-bin)))))

@@ -7,7 +7,7 @@
 
 ;;; Arguments from another run.
 
-(defun owner-of-argument (argument)
+(defun argument-robot (argument)
   (typecase argument
     (designator (designator-robot argument))
     (part (part-robot argument))))
@@ -15,7 +15,7 @@
 (defun check-of-this-run (command resource arguments)
   (let ((world (robot-world (resource-robot resource))))
     (dolist (argument arguments)
-      (let* ((robot (if (robot-p argument) argument (owner-of-argument argument)))
+      (let* ((robot (if (robot-p argument) argument (argument-robot argument)))
              (other (cond (robot (robot-world robot))
                           ((thing-p argument) (thing-world argument)))))
         (unless (or (null other) (eq other world))
@@ -26,7 +26,7 @@
 
 ;;; Warnings given once for each name.
 
-(defun told-at-end (command)
+(defun continuation-arguments (command)
   (list* 'err (spec-name (command-resource command))
          (mapcar #'spec-name (command-results command))))
 
@@ -40,7 +40,8 @@
             do (let ((other (position name told :test #'string=)))
                  (when (and other (/= place other)) (return t)))))))
 
-(defun doubt-continuation (command world continuation &optional (told (told-at-end command)))
+(defun doubt-continuation (command world continuation
+                           &optional (told (continuation-arguments command)))
   "Say once if CONTINUATION cannot be called with what COMMAND tells at its end, which is TOLD."
   (let ((*print-pretty* nil))
     (when (and continuation
@@ -77,7 +78,7 @@ of WORLD passed."
 
 ;;; One command after the other, and no tick between them.
 
-(defun lasting-p (command)
+(defun takes-time-p (command)
   "True if COMMAND takes time, and does not just stop the robot: a newer one cuts it short."
   (not (or (command-instant-p command) (trait-p :stops command))))
 
@@ -86,24 +87,24 @@ of WORLD passed."
   (or (null *asker*)
       (and (stringp *asker*) (starts-with-subseq "the continuation of " *asker*))))
 
-(defun not-yet-begun (resource timeline)
+(defun not-begun (resource timeline)
   "Return the last request for a lasting command on RESOURCE that has not begun, or NIL."
   (find-if (lambda (request)
              (and (operation-p request)
                   (eq resource (operation-resource request))
-                  (lasting-p (operation-command request))))
+                  (takes-time-p (operation-command request))))
            (timeline-inbox timeline)))
 
-(defun barely-begun (resource timeline)
+(defun just-begun (resource timeline)
   "Return the lasting command that live RESOURCE carries out since the last tick; or NIL."
   (let ((event (resource-event resource)))
     (and (live-p timeline)
          (operation-p event)
-         (lasting-p (operation-command event))
+         (takes-time-p (operation-command event))
          (<= (timeline-tick timeline) (1+ (operation-asked event)))
          event)))
 
-(defun corrects-p (command resource arguments before)
+(defun may-replace-p (command resource arguments before)
   "True if COMMAND may be meant to replace BEFORE, the same command: RESOURCE is a part, ARGUMENTS
 are none or others, or BEFORE may be from an earlier time, as in a map's resident world."
   (and (eq command (operation-command before))
@@ -113,18 +114,18 @@ are none or others, or BEFORE may be from an earlier time, as in a map's residen
                  (let ((world (robot-world resource)))
                    (not (eq world (map-resident (world-map world)))))))))
 
-(defun doubt-hurry (command resource arguments timeline)
+(defun doubt-interrupting (command resource arguments timeline)
   "Warn once for a pair of commands if COMMAND, issued to RESOURCE with ARGUMENTS, interrupts one
 that the same program issued in this tick (live: or the last), without a continuation."
-  (when (and (by-program-p) (lasting-p command))
-    (let ((before (or (not-yet-begun resource timeline) (barely-begun resource timeline))))
+  (when (and (by-program-p) (takes-time-p command))
+    (let ((before (or (not-begun resource timeline) (just-begun resource timeline))))
       (when (and before
-                 (not (corrects-p command resource arguments before))
+                 (not (may-replace-p command resource arguments before))
                  (null (operation-continuation before))
                  (equal (note-of-asker) (request-asker before)))
-        (warn-of-hurry (operation-command before) command resource)))))
+        (warn-of-interrupting (operation-command before) command resource)))))
 
-(defun warn-of-hurry (before command resource)
+(defun warn-of-interrupting (before command resource)
   (let ((*print-pretty* nil))
     (warn-once (list :hurry (command-name before) (command-name command))
                (robot-world (resource-robot resource))
@@ -133,10 +134,10 @@ that the same program issued in this tick (live: or the last), without a continu
                             continuation, (~(~A~) ... (continuation ~(~A~) (~(~A~) ...))), or ~
                             let ticks pass before it: ~:[(run-ticks N)~;(await-idle)~]."
                        (command-name before) (command-name command) resource
-                       (command-name before) (told-at-end before) (command-name command)
+                       (command-name before) (continuation-arguments before) (command-name command)
                        (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
-(defun doubt-again (command resource arguments timeline)
+(defun doubt-repeating (command resource arguments timeline)
   "Warn once if COMMAND starts over in a headless run: a relative turn of RESOURCE by ARGUMENTS that
 the same program issues again while it is in progress without a continuation."
   (let ((before (resource-event resource)))
@@ -149,22 +150,22 @@ the same program issues again while it is in progress without a continuation."
                (null (operation-continuation before))
                (equal arguments (operation-arguments before))
                (equal (note-of-asker) (request-asker before)))
-      (warn-of-again command (- (timeline-tick timeline) (operation-asked before)) resource))))
+      (warn-of-repeating command (- (timeline-tick timeline) (operation-asked before)) resource))))
 
-(defun warn-of-again (command ticks resource)
+(defun warn-of-repeating (command ticks resource)
   (let ((*print-pretty* nil))
     (warn-once (list :again (command-name command))
                (robot-world (resource-robot resource))
                (format nil "~(~A~) was asked for again after ~D tick~:P, when it had not ended: it ~
                             was interrupted, and began anew. Let it end by (run-ticks N) with more ~
                             ticks, or ask again in its (continuation ~(~A~) ...)."
-                       (command-name command) ticks (told-at-end command)))))
+                       (command-name command) ticks (continuation-arguments command)))))
 
 ;; Manipulations, and commands that users define, may be for two robots.
 (defun doubt-owners (command robot arguments)
   (unless (or (command-guarded-p command) (eq :manipulating (command-family command)))
     (dolist (argument arguments)
-      (let ((owner (owner-of-argument argument)))
+      (let ((owner (argument-robot argument)))
         (unless (member owner (list nil robot))
           (warn-once (list :owner (command-name command) (robot-name owner)) (robot-world robot)
                      (format nil "~(~A~): ~A belongs to ~A, not to ~A."
@@ -234,7 +235,7 @@ continue."
          (not (live-p timeline))
          (not (timeline-passing-p timeline)))))
 
-(defun form-of-resource (resource)
+(defun resource-form (resource)
   "Return the form that returns RESOURCE, a robot or part, in a run of its robot."
   (let ((name (robot-name (resource-robot resource)))
         (index (and (part-p resource) (part-index resource))))
@@ -245,7 +246,7 @@ continue."
       (storage-bin `(robot-storage-bin ,name ,index))
       (part `(robot-part ,name ,(make-keyword (type-of resource)) ,index)))))
 
-(defun way-to-run (resource)
+(defun how-to-run-text (resource)
   "Return in sentences how to have RESOURCE in a run."
   (let* ((robot (resource-robot resource)) (name (robot-name robot)) (world (robot-world robot)))
     (cond ((or (null *world*)
@@ -255,14 +256,14 @@ continue."
           ((find name (world-robots *world*) :key #'robot-name)
            (format nil "This ~(~A is of the ~A~) outside of this WITH-SIMULATION, which has a ~
                         ~(~A~) of its own. Inside write ~(~A~)."
-                   (type-of resource) name name (safe-text (form-of-resource resource))))
+                   (type-of resource) name name (safe-text (resource-form resource))))
           (t (format nil "A robot is in the run of WITH-SIMULATION if it is named there, as ~(~A~) ~
                           is in (with-simulation ((ROBOT ~:*~(~A~))) ...)." name)))))
 
 (defvar *ticks-follow-p* nil
   "True if the caller lets ticks pass for its commands, or says that none do.")
 
-(defun tell-if-kept (command resource robot)
+(defun warn-if-kept (command resource robot)
   "Warn once for ROBOT, that of RESOURCE, if COMMAND is kept for a later run, and once for each
 WITH-SIMULATION in another thread that binds its name. Not of plans: running one passes ticks."
   (when (and (between-runs-p (robot-world robot))
@@ -271,7 +272,7 @@ WITH-SIMULATION in another thread that binds its name. Not of plans: running one
     (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
       (warn-once (list :kept (robot-name robot) number) (robot-world robot)
                  (format nil "~(~A~) is kept for a later run, as none of ~A is under way. ~A"
-                         (command-name command) robot (or elsewhere (way-to-run resource)))))))
+                         (command-name command) robot (or elsewhere (how-to-run-text resource)))))))
 
 ;;; Issuing.
 
@@ -293,8 +294,8 @@ takes another number of arguments."
                         (copy-argument (command-name command) "arguments" arguments)
                         arguments)))
     (note-asked (occupied command resource))
-    (doubt-hurry command (occupied command resource) arguments timeline)
-    (doubt-again command (occupied command resource) arguments timeline)
+    (doubt-interrupting command (occupied command resource) arguments timeline)
+    (doubt-repeating command (occupied command resource) arguments timeline)
     (post (make-operation command (occupied command resource) arguments
                           (if (untold-p timeline) nil continuation)
                           timeline)
@@ -304,5 +305,5 @@ takes another number of arguments."
     (note-asked-elsewhere world)
     (doubt-owners command robot arguments)
     (doubt-continuation command world continuation)
-    (tell-if-kept command resource robot)
+    (warn-if-kept command resource robot)
     (values)))

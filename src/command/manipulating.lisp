@@ -112,18 +112,19 @@
 
 ;;; Issuing.
 
-(defun designators-given (operation)
+(defun designator-arguments (operation)
   (remove-if-not #'designator-p (operation-arguments operation)))
 
 (defun outcome-text (operation value)
   "Return a text of the objects and the resource of OPERATION, and its VALUE if any (manual E)."
   (format nil "~{~A~^, ~} by ~A~@[: ~A~]"
-          (mapcar #'destination-name (designators-given operation)) (operation-resource operation)
+          (mapcar #'destination-name (designator-arguments operation))
+          (operation-resource operation)
           (and value (one-line (safe-text value :escape nil :length 100)))))
 
-(defun things-meant (operation)
+(defun designated-things (operation)
   "Return what the designators given to OPERATION designate; NIL if one of them nothing."
-  (let ((things (loop for designator in (designators-given operation)
+  (let ((things (loop for designator in (designator-arguments operation)
                       collect (designated-thing designator (operation-resource operation)))))
     (and (notany #'null things) things)))
 
@@ -133,8 +134,8 @@
                robot-goto-designator, and search again with the type :local~]~@[: none of its ~
                methods is for ~{~A~^, ~}; their patterns ask for something else~]"
           (command-prefix (operation-command operation))
-          (find :local (designators-given operation) :key #'designator-type :test-not #'eq)
-          (and (null (operation-subject operation)) (things-meant operation))))
+          (find :local (designator-arguments operation) :key #'designator-type :test-not #'eq)
+          (and (null (operation-subject operation)) (designated-things operation))))
 
 (define-record (manipulation-command (:include command) (:constructor %make-manipulation-command))
   "The command by which a manipulation is carried out.")

@@ -136,7 +136,7 @@ for its resource, and such lists for all that follows. The type is NIL where non
                   (find-if (lambda (old) (retyped-p old method)) current))))
     (cons method (remove old current))))
 
-(defun say-if-shared (name methods method)
+(defun warn-if-shared (name methods method)
   (let* ((file (source-file (method-source method)))
          (files (mapcar (lambda (old) (source-file (method-source old))) methods))
          (others (remove nil files)))
@@ -158,7 +158,7 @@ parameter list, BODY a function of as many arguments. Return NAME."
                   :delay (check-option definition :delay delay 'tick-span))))
     (dolist (pattern (parameter-list-patterns (method-parameters method)))
       (warn-of-slips definition "a pattern" pattern))
-    (say-if-shared name (manipulation-methods manipulation) method)
+    (warn-if-shared name (manipulation-methods manipulation) method)
     (setf (manipulation-methods manipulation)
           (with-method name (manipulation-methods manipulation) method))
     (unless (find-manipulation name nil)

@@ -61,7 +61,7 @@ command that it cut short, or NIL"))
 (defun operation-agenda (operation)
   (timeline-agenda (the timeline (operation-timeline operation))))
 
-(defun resource-told (operation)
+(defun named-resource (operation)
   "Return the resource of OPERATION as programs and journals name it: the robot, not its mind."
   (let ((resource (operation-resource operation)))
     (if (mind-p resource) (mind-robot resource) resource)))
@@ -76,7 +76,7 @@ command that it cut short, or NIL"))
 (defgeneric command-entry (command operation)
   (:documentation "Return what a journal notes of OPERATION, which carries out COMMAND.")
   (:method ((command command) operation)
-    (list* (command-name command) (resource-told operation)
+    (list* (command-name command) (named-resource operation)
            (operation-arguments operation))))
 
 (defmethod request-entry ((operation operation))
@@ -98,11 +98,11 @@ command that it cut short, or NIL"))
   (lambda (operation)
     (apply #'format nil control (operation-resource operation) (operation-arguments operation))))
 
-(defun name-of-robot (operation)
+(defun operation-robot-name (operation)
   (robot-name (resource-robot (operation-resource operation))))
 
 (defun tell-of (operation text)
-  (let ((*told-of* (request-asker operation)) (*robot-told-of* (name-of-robot operation)))
+  (let ((*told-of* (request-asker operation)) (*robot-told-of* (operation-robot-name operation)))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
 (defun tell-of-failure (operation kind code text)
@@ -116,7 +116,7 @@ command that it cut short, or NIL"))
 (defun report (operation code results)
   "Queue the message that OPERATION ends with (reading 229)."
   (let* ((*told-of* (request-asker operation))
-         (*robot-told-of* (name-of-robot operation))
+         (*robot-told-of* (operation-robot-name operation))
          (command (operation-command operation))
          (report (command-report command)))
     (cond ((eq code :interrupt)
@@ -134,7 +134,7 @@ command that it cut short, or NIL"))
       (begin-moment (operation-timeline operation)))
     (apply #'call-user-code (operation-continuation operation)
            (command-origin (operation-command operation))
-           code (resource-told operation) results)))
+           code (named-resource operation) results)))
 
 (defun notify (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
@@ -235,9 +235,9 @@ message and end OPERATION with :FAILED."
 (define-step start-body (operation t)
   "Run the body of OPERATION's command."
   (apply (command-body (operation-command operation))
-         operation (resource-told operation) (operation-arguments operation)))
+         operation (named-resource operation) (operation-arguments operation)))
 
-(defun make-way (operation agenda rival)
+(defun free-resource (operation agenda rival)
   "Free the resource of RIVAL, the event pending on it, for OPERATION. Interrupt RIVAL, or execute
 it first if it takes no time, as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWARD (reading 77)."
   (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
@@ -261,7 +261,7 @@ it first if it takes no time, as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWAR
     (when rival
       (when (operation-p rival)
         (note-cut-short (command-name (operation-command operation)) operation rival))
-      (make-way operation agenda rival))
+      (free-resource operation agenda rival))
     (go-on operation 'start-body (ticks-for delay))))
 
 ;; A robot may have been retired since the command was issued.

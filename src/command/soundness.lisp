@@ -16,7 +16,7 @@
         (and (= (length arguments) (length (command-parameters command)))
              (every (lambda (spec argument) (argument-of-type-p argument (spec-type spec)))
                     (cons (command-resource command) (command-parameters command))
-                    (cons (resource-told operation) arguments))))))
+                    (cons (named-resource operation) arguments))))))
 
 (defun check-operation (operation)
   (must-hold (and (command-p (request-operator operation))
@@ -27,7 +27,7 @@
              "a command under way makes no sense")
   (let ((name (command-name (operation-command operation))))
     (must-hold (eq (operation-resource operation)
-                   (occupied (operation-command operation) (resource-told operation)))
+                   (occupied (operation-command operation) (named-resource operation)))
                "~(~A~) does not occupy what it should" name)
     (must-hold (arguments-fit-p operation) "~(~A~) has not the arguments that it needs" name)
     (when (operation-step operation)
@@ -35,7 +35,7 @@
                  "~(~A~) would go on with what is no step of a command" name)
       (must-hold (step-fits-p operation) "~(~A~) would go on with what it has not" name))
     (must-hold (eq (operation-timeline operation)
-                   (timeline-of (resource-told operation)))
+                   (timeline-of (named-resource operation)))
                "~(~A~) is under way in another run" name)))
 
 (defmethod check-request ((operation operation))

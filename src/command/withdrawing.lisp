@@ -20,29 +20,29 @@ where the command is: :COMMAND, :TRACK or NIL" :export)))
   (let ((track (and (camera-p resource) (camera-tracking resource))))
     (and track (operation-p (track-operation track)) (track-operation track))))
 
-(defun tells-p (operation continuation)
+(defun has-continuation-p (operation continuation)
   (and (operation-p operation)
        (eq continuation (operation-continuation operation))))
 
-(defun place-of-withdrawn (withdrawal)
+(defun withdrawn-place (withdrawal)
   "Return where the command of WITHDRAWAL is: :COMMAND, on its resource, :TRACK, or NIL."
   (destructuring-bind (resource &optional place) (request-arguments withdrawal)
     (let ((continuation (withdrawal-continuation withdrawal)))
       (cond ((null continuation) place)
-            ((tells-p (resource-event resource) continuation) :command)
-            ((tells-p (track-operation-of resource) continuation) :track)))))
+            ((has-continuation-p (resource-event resource) continuation) :command)
+            ((has-continuation-p (track-operation-of resource) continuation) :track)))))
 
 ;; Called right before it is performed.
 (defmethod request-entry ((withdrawal withdrawal))
   (list 'withdraw-command
         (first (request-arguments withdrawal))
-        (place-of-withdrawn withdrawal)))
+        (withdrawn-place withdrawal)))
 
 (defmethod perform ((withdrawal withdrawal) timeline)
   (let* ((resource (first (request-arguments withdrawal)))
          (agenda (timeline-agenda timeline))
          (tick (1+ (agenda-tick agenda))))
-    (ecase (place-of-withdrawn withdrawal)
+    (ecase (withdrawn-place withdrawal)
       (:command (let ((event (resource-event resource)))
                   (note-interruption event withdrawal tick)
                   (interrupt-event agenda event)))

@@ -183,7 +183,7 @@ robot."
                (reject (list option (getf options option)) (format nil words))))))
 
 (defun value-form (definition form clause expected)
-  "Return a form for the value of FORM, which stands in CLAUSE; that it has none is DEFINITION's."
+  "Return a form for the value of FORM, in CLAUSE of DEFINITION; without one it signals an error."
   (if (constantp form)
       form
       `(call-for-value (lambda () ,form) ,definition ',clause ,expected)))

@@ -19,7 +19,7 @@
   (:fixed
    (robot nil (or null robot) "the robot that the designator is a handle for" :addition)
    (number 0 fixnum "the designator's number; after it was dropped, another may have it" :addition)
-   (serial 0 fixnum "how many designators the robot had before it" :export))
+   (serial 0 fixnum "the serial number: how many designators the robot had before" :export))
   (:state
    (type :non-local (member :local :non-local) ":LOCAL or :NON-LOCAL (manual 3.4.1)" :addition)
    (angle 0d0 double-float "the estimated angle of what the designator denotes relative to the
@@ -112,7 +112,7 @@ WRONG-ARGUMENT if there is none."
                      (null (aref designators (1- (length designators)))))
           do (vector-pop designators))))
 
-;;; Where things are, to a robot.
+;;; Where things are, as a robot sees it.
 
 (defun thing-space (thing)
   "Return the container or storage bin that THING is in, :NOWHERE, or NIL for the open. A thing in
@@ -143,8 +143,8 @@ and NIL if it is nowhere (reading 54)."
       (null (values (designator-x designator) (designator-y designator))))))
 
 (defun designator-local-p* (designator)
-  "True if what DESIGNATOR denotes really is local now: where it was seen, be that in the open, in
-a container or in a bin, and within reach. False of places."
+  "True if what DESIGNATOR denotes is truly local now: within reach, and still in the container, the
+bin or the open space where it was seen. False for places."
   (let ((denotation (designator-denotation designator)))
     (and (designator-valid-p designator)
          (not (place-p denotation))
@@ -153,8 +153,8 @@ a container or in a bin, and within reach. False of places."
          (multiple-value-bind (x y) (designator-position designator)
            (and x (within-reach-p (designator-robot designator) x y))))))
 
-;;; In a journal: also one that has been dropped can be named, perhaps in a run before this one,
-;;; whose serial numbers are given again. So it has none.
+;;; A journal can also name a designator that has been dropped, perhaps in an earlier run. Its
+;;; serial number may be in use again, so it is written as -1.
 
 (defmethod copy-plan-value ((designator designator) fork)
   (copy-of-robots designator (designator-robot designator) fork))
@@ -166,7 +166,7 @@ a container or in a bin, and within reach. False of places."
         (designator-type designator)))
 
 (defun serial-designator (robot serial)
-  "Return the valid designator of ROBOT that had SERIAL before it, or NIL."
+  "Return the valid designator of ROBOT with the serial number SERIAL, or NIL."
   (find serial (live-designators robot) :key #'designator-serial))
 
 ;;; Giving a robot a designator, and making room for it.

@@ -54,7 +54,7 @@
   (max 0d0 (- (storage-bin-capacity bin)
               (loop for thing in (storage-bin-contents bin) sum (thing-size thing)))))
 
-;;; A hand in a closed container keeps what it holds in there.
+;;; What a hand in a closed container holds cannot get out.
 
 (defmethod location-closed-p :around ((hand hand))
   (or (call-next-method)
@@ -90,7 +90,7 @@ holds moves along; its track is lost; warnings say so."
   (warning-set (format nil "~A was pulled out of ~A" part (location-name (part-location part))))
   (move-part part nil))
 
-(defun astray-p (part)
+(defun must-pull-out-p (part)
   "True if PART is inside a thing out of its robot's reach, or in a closed or another robot's bin."
   (let ((location (part-location part)))
     (and (thing-p location)
@@ -102,7 +102,7 @@ holds moves along; its track is lost; warnings say so."
 
 ;; As reading 113 says.
 (defun settle-part (part)
-  (when (astray-p part) (pull-out part)))
+  (when (must-pull-out-p part) (pull-out part)))
 
 (defun settle-parts (robot)
   "Pull the parts of ROBOT out of things beyond its reach; make its hands drop all but one thing."
@@ -115,7 +115,7 @@ holds moves along; its track is lost; warnings say so."
         do (when (camera-location camera) (settle-part camera))))
 
 (defun break-circle (thing location)
-  "If THING, now in LOCATION, is so inside itself, pull out the hand by way of which it is."
+  "If THING, now in LOCATION, is inside itself by way of a hand, pull out that hand."
   (let ((hand nil))
     (loop for outer = (if (eq location :floor) nil location) then (outer-location outer)
           until (or (null outer) (eq outer thing))

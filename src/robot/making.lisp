@@ -1,4 +1,4 @@
-;;;; making.lisp -- robots made by their blueprints, put back, and retired (manual 5.2).
+;;;; making.lisp -- robots are made from their blueprints, reset, and retired (manual 5.2).
 
 (in-package :ars-magna.robot)
 
@@ -9,7 +9,7 @@
 ;;; name; a fresh simulation makes another by the same blueprint.
 
 (defun blueprint-robot (blueprint)
-  "Return the robot of BLUEPRINT here and now: the value of its variable."
+  "Return the current robot of BLUEPRINT: the value of its variable, or that in the resident world."
   (let* ((name (blueprint-name blueprint)) (value (and (boundp name) (symbol-value name)))
          (map (find-map (blueprint-map blueprint) nil)))
     (cond ((robot-p value) value)
@@ -35,7 +35,7 @@ NIL."
 ;;; Making robots.
 
 (defun make-parts (robot specifications)
-  "Return a list of parts of ROBOT, made as SPECIFICATIONS, lists (kind initarg value ...), say."
+  "Return a list of parts of ROBOT, made from SPECIFICATIONS, lists (kind initarg value ...)."
   (loop with counts = '()
         for (kind . initargs) in specifications
         collect (apply (kind-constructor kind)
@@ -47,10 +47,10 @@ NIL."
                            (symbol-package kind))))
     (if (and name (fboundp name))
         name
-        (reject-use "Nothing makes a ~(~A~): there is no function make-~(~:*~A~)." kind))))
+        (reject-use "No ~(~A~) can be made: there is no function make-~(~:*~A~)." kind))))
 
 (defun start-trouble (map x y)
-  "Return in words why a robot cannot start at (X,Y) in MAP, or NIL."
+  "Return a text on why a robot cannot start at (X,Y) in MAP, or NIL."
   (cond ((not (map-index map x y))
          (format nil "~A is outside the map, which is ~D by ~D metres"
                  (point-in-text x y) (map-width map) (map-height map)))
@@ -106,7 +106,7 @@ NIL."
                        operator (robot-name robot) (robot-retired robot)
                        (and newest (null (robot-retired newest)) (robot-name robot))))))
 
-(defun take-out (robot reason)
+(defun remove-robot (robot reason)
   (let ((world (robot-world robot)))
     (deferring-interrupts
       (in-any-case
@@ -115,24 +115,24 @@ NIL."
         (abandon (timeline-of robot) (robot-resources robot))
         (setf (world-robots world) (remove robot (world-robots world)))))))
 
-(defun take-out-all (name reason)
+(defun remove-robots-called (name reason)
   "Take all robots called NAME out of the worlds that top-level code works in."
   (dolist (world (remove nil (mapcar #'map-resident (all-maps))))
     (dolist (robot (remove name (world-robots world) :key #'robot-name :test-not #'eq))
-      (asking ((ensure-timeline world)) (take-out robot reason)))))
+      (asking ((ensure-timeline world)) (remove-robot robot reason)))))
 
-(defun robot-made-by (blueprint world)
+(defun find-robot-of (blueprint world)
   (find-if (lambda (robot)
              (and (eq blueprint (robot-blueprint robot)) (null (robot-retired robot))))
            (world-robots world)))
 
-(defun settle-in (world blueprint)
+(defun ensure-robot-in (world blueprint)
   "Return the robot in WORLD made by BLUEPRINT, the only one of its name; this thread owns WORLD."
-  (or (robot-made-by blueprint world)
+  (or (find-robot-of blueprint world)
       (progn
         (dolist (robot (world-robots world))
           (when (eq (robot-name robot) (blueprint-name blueprint))
-            (take-out robot "it has been defined anew")))
+            (remove-robot robot "it has been defined anew")))
         (make-robot blueprint world))))
 
 (defun resident-p (world)
@@ -149,14 +149,14 @@ definition of its name. Return it, or the one that is already there."
   (loop
     (let ((world (map-resident-world (find-map (blueprint-map blueprint)))) (robot nil))
       (check-start blueprint (world-map world))
-      (unless (robot-made-by blueprint world)
-        (take-out-all (blueprint-name blueprint) "it has been defined anew"))
+      (unless (find-robot-of blueprint world)
+        (remove-robots-called (blueprint-name blueprint) "it has been defined anew"))
       (asking ((ensure-timeline world))
-        (when (resident-p world) (setf robot (settle-in world blueprint))))
+        (when (resident-p world) (setf robot (ensure-robot-in world blueprint))))
       (when robot (return robot)))))
 
 (defmethod take-back ((blueprint blueprint))
-  (take-out-all (blueprint-name blueprint) "its definition has been taken back"))
+  (remove-robots-called (blueprint-name blueprint) "its definition has been taken back"))
 
 (defmethod reinstate ((blueprint blueprint))
   (let ((robot (blueprint-robot blueprint)))

@@ -1,4 +1,4 @@
-;;;; matching.lisp -- how wrongly things are read, and which fit a description (3.4.2).
+;;;; matching.lisp -- noisy readings of attributes, and which things fit a description (3.4.2).
 
 (in-package :ars-magna.robot)
 
@@ -6,7 +6,7 @@
           specification-p specification-trouble notice-probability))
 
 ;;; A discrete attribute is read right with a probability that falls with distance. A wrong reading
-;;; is any value of the domain, so it may be right by luck. A reading of a numeric attribute is
+;;; is any value of the domain, so it may be right by chance. A reading of a numeric attribute is
 ;;; normally distributed; its deviation grows with distance. We follow the manual's formula, by
 ;;; which it comes near its largest within a metre (the manual's figure looks more gradual).
 ;;; Undeclared attributes are read exactly.
@@ -142,7 +142,7 @@ are NIL, if it is one of CHOICES."
        (every #'demand-form-p object)))
 
 (defun specification-trouble (object)
-  "Return in words what of OBJECT, which is no descriptor specification, cannot be used, or NIL."
+  "Return a text on what makes OBJECT unusable as a descriptor specification, or NIL."
   (let* ((form (and (proper-list-p object)
                     (find-if-not #'demand-form-p object)))
          (attribute (and (consp form) (symbolp (first form)) (attribute-of (first form))))
@@ -218,7 +218,7 @@ false, but for a user's attribute only if some thing of MAP starts with it."
 
 (defun notice-attributes (map keys value-of distance dice)
   "Return readings of attributes not among KEYS that happen to be noticed in MAP. VALUE-OF, a
-function of an attribute, returns its value, and secondly whether there is anything that has one."
+function of an attribute, returns its value, and whether there is a thing to have one."
   (loop for attribute in (all-attributes)
         for key = (attribute-name attribute)
         unless (member key keys :test #'eq)

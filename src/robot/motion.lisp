@@ -20,8 +20,8 @@
 
 ;; Inline, so that no float has to be boxed on the way. A position on a border belongs to the cell
 ;; behind it when moving right or down, and to the cell before it when moving left or up.
-(declaim (inline free-way))
-(defun free-way (world x y dx dy distance)
+(declaim (inline free-distance))
+(defun free-distance (world x y dx dy distance)
   "Return how far the way is free from (X,Y), in the map, in direction (DX,DY), at most DISTANCE;
 column and row of the cell at its end; the obstacle: :WALL, :THING or NIL; and whether that is in
 another column."
@@ -61,57 +61,57 @@ another column."
         (setf (robot-x robot) beyond-x
               (robot-y robot) beyond-y)))))
 
-(defun brushes-p (direction left)
+(defun only-touches-p (direction left)
   "True if a robot that moves LEFT metres comes no farther than the contact gap in DIRECTION."
   (<= (* left (abs direction)) +contact-gap+))
 
-(defun over-border-p (position cell direction left)
-  "True if a robot at POSITION on an axis, in the column or row CELL, that has LEFT metres to go may
-be taken over the nearest border: it goes there anyway, or it goes along."
+(defun may-cross-border-p (position cell direction left)
+  "True if a robot at POSITION on an axis, in the column or row CELL, with LEFT metres to go, may be
+moved over the nearest border: it moves towards it or along it."
   (cond ((zerop direction) (/= position (fround position)))
-        ((brushes-p direction left) t)
+        ((only-touches-p direction left) t)
         ((= cell (round position)) (minusp direction))
         (t (plusp direction))))
 
-(declaim (inline stand pass-cells))
-(defun stand (robot dx dy moved cell-x cell-y)
+(declaim (inline move-within-cell move-through-cells))
+(defun move-within-cell (robot dx dy moved cell-x cell-y)
   (declare (type robot robot) (type double-float dx dy moved))
   (setf (robot-x robot) (within-cell (+ (robot-x robot) (* dx moved)) cell-x)
         (robot-y robot) (within-cell (+ (robot-y robot) (* dy moved)) cell-y)
         (robot-moved robot) moved))
 
-(defun pass-cells (robot world dx dy distance)
+(defun move-through-cells (robot world dx dy distance)
   "Move ROBOT, in the map of WORLD, by DISTANCE in direction (DX,DY), or to what blocks it. Leave
 the metres in ROBOT-MOVED; return :WALL, :THING or NIL."
   (declare (type robot robot) (type world world) (type double-float dx dy distance))
   (multiple-value-bind (moved cell-x cell-y block sideways)
-      (free-way world (robot-x robot) (robot-y robot) dx dy distance)
+      (free-distance world (robot-x robot) (robot-y robot) dx dy distance)
     (declare (type double-float moved))
     (cond (block
-           (meet robot block dx dy moved (- distance moved) cell-x cell-y sideways))
-          (t (stand robot dx dy moved cell-x cell-y)
+           (meet-obstacle robot block dx dy moved (- distance moved) cell-x cell-y sideways))
+          (t (move-within-cell robot dx dy moved cell-x cell-y)
              nil))))
 
-(defun meet (robot block dx dy moved left cell-x cell-y sideways)
+(defun meet-obstacle (robot block dx dy moved left cell-x cell-y sideways)
   "Stop ROBOT before BLOCK, in the next column if SIDEWAYS, else in the next row, after MOVED metres
 with LEFT to go; continue if BLOCK only touches its way. Return what blocks it, or NIL."
   (let ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved))))
-    (cond ((brushes-p (if sideways dx dy) left)
-           (stand robot dx dy moved cell-x cell-y)
+    (cond ((only-touches-p (if sideways dx dy) left)
+           (move-within-cell robot dx dy moved cell-x cell-y)
            (if sideways
-               (pass-on robot 0d0 dy left moved)
-               (pass-on robot dx 0d0 left moved)))
+               (move-on robot 0d0 dy left moved)
+               (move-on robot dx 0d0 left moved)))
           ((and (if sideways
-                    (over-border-p y cell-y dy left)
-                    (over-border-p x cell-x dx left))
+                    (may-cross-border-p y cell-y dy left)
+                    (may-cross-border-p x cell-x dx left))
                 (pass-corner robot x y cell-x cell-y))
-           (pass-on robot dx dy left moved))
-          (t (stand robot dx dy (max 0d0 (- moved +contact-gap+)) cell-x cell-y)
+           (move-on robot dx dy left moved))
+          (t (move-within-cell robot dx dy (max 0d0 (- moved +contact-gap+)) cell-x cell-y)
              block))))
 
-(defun pass-on (robot dx dy distance moved)
-  "Do as PASS-CELLS does, for a ROBOT that has come MOVED metres already."
-  (prog1 (pass-cells robot (robot-world robot) dx dy distance)
+(defun move-on (robot dx dy distance moved)
+  "Do as MOVE-THROUGH-CELLS does, for a ROBOT that has moved MOVED metres already."
+  (prog1 (move-through-cells robot (robot-world robot) dx dy distance)
     (incf (robot-moved robot) moved)))
 
 (defun leave-cell (robot)
@@ -126,9 +126,9 @@ outside the map there is no way."
            (setf (robot-moved robot) 0d0)
            :wall)
           ((minusp distance)
-           (prog1 (pass-cells robot world (- 0d0 dx) (- 0d0 dy) (- distance))
+           (prog1 (move-through-cells robot world (- 0d0 dx) (- 0d0 dy) (- distance))
              (setf (robot-moved robot) (- (robot-moved robot)))))
-          (t (pass-cells robot world dx dy distance)))))
+          (t (move-through-cells robot world dx dy distance)))))
 
 (declaim (inline sweep))
 (defun sweep (robot distance)
@@ -150,13 +150,13 @@ Leave the metres in ROBOT-MOVED; return :WALL, :THING or NIL (reading 100)."
 
 (declaim (inline component))
 (defun component (number)
-  "Return NUMBER, a component of a heading; 0 if it is so small that only rounding can be behind it.
-So a robot can drive along the border of two cells, and stay in one of them."
+  "Return NUMBER, a component of a heading, or 0 if it is so small that it comes from rounding. So a
+robot can drive along the border of two cells and stay in one of them."
   (declare (type double-float number))
   (if (< (abs number) 1d-12) 0d0 number))
 
 (defun set-robot-angle (robot angle)
-  "Turn ROBOT to the heading ANGLE, in radians, at once; its odometers do not notice."
+  "Turn ROBOT to the heading ANGLE, in radians, at once; its odometers do not change."
   (let ((angle (double angle)))
     ;; Designators keep their directions in the world, but for those at the robot's own position.
     (loop for designator across (robot-designators robot)
@@ -168,7 +168,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
   robot)
 
 (defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))
-  "Put ROBOT at (X,Y), in metres, heading ANGLE, at once; its odometers do not notice."
+  "Put ROBOT at (X,Y), in metres, heading ANGLE, at once; its odometers do not change."
   (setf (robot-x robot) (double x)
         (robot-y robot) (double y)
         (robot-start-x robot) (robot-x robot)
@@ -190,7 +190,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
   (min (robot-speed robot) (double max-speed*)))
 
 (defun step-now (robot)
-  "Return how far ROBOT means to drive in a tick at its speed, in metres."
+  "Return how far ROBOT drives in a tick at its speed, in metres, without noise."
   (* (the double-float (robot-speed-now robot)) (double tick-quantum*)))
 
 (defun standing-p (robot)
@@ -199,7 +199,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
   (< (the double-float (robot-speed-now robot)) 1d-12))
 
 (defun longest-step (robot)
-  "Return how far ROBOT can come in a tick at most, in metres."
+  "Return how far ROBOT can get in a tick at most, in metres."
   (* (step-now robot) (+ 1d0 (double motion-noise*))))
 
 (defun robot-turn-angle-now (robot)
@@ -226,7 +226,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
 
 (declaim (inline count-distance))
 (defun count-distance (robot low high)
-  "Tell the odometers of ROBOT that it drove LOW to HIGH metres, negative if backwards."
+  "Add LOW to HIGH metres, negative if backwards, to the odometers of ROBOT."
   (declare #.*hot* (type robot robot) (type double-float low high))
   (dolist (odometer (robot-odometer-list robot))
     (odometer-drive odometer low high))

@@ -1,4 +1,4 @@
-;;;; odometer.lisp -- what the robot feels of its own motion and place (manual 2.2, 3.2.2).
+;;;; odometer.lisp -- odometers, and the place that a robot senses (manual 2.2, 3.2.2).
 
 (in-package :ars-magna.robot)
 
@@ -7,7 +7,7 @@
 
 ;;; An odometer is dead reckoning with intervals. It starts at (0,0) with heading 0 when it is
 ;;; reset, so the x axis of its positions is the heading at that moment. Each step adds an interval
-;;; that is sure to contain what really happened; so does the sum. The bounds of the cosine
+;;; that contains the true movement, so the sum contains the true position. The bounds of the cosine
 ;;; and sine of the heading change only when the robot turns. Sums are widened by more than their
 ;;; rounding error.
 
@@ -17,7 +17,7 @@
     "An uncertain estimate of the robot's position and heading since the odometer was reset (manual
 3.2.2)."
   (:fixed
-   (robot nil (or null robot) "the robot that the odometer is of" :export)
+   (robot nil (or null robot) "the robot of the odometer" :export)
    (name nil symbol "the symbol that names the odometer" :addition))
   (:state
    (x-min 0d0 double-float "the least x, in metres") (x-max 0d0 double-float "the greatest x")
@@ -28,7 +28,7 @@
    (cos-max 1d0 double-float "the greatest cosine of the heading")
    (sin-min 0d0 double-float "the least sine of the heading")
    (sin-max 0d0 double-float "the greatest sine of the heading"))
-  ;; Where and in what heading the robot really was when it was reset; for displays.
+  ;; The true position and heading at the last reset; for displays.
   (:memory
    (origin-x 0d0 double-float "the robot's true x when the position was last reset, in metres")
    (origin-y 0d0 double-float "the robot's true y when the position was last reset, in metres")
@@ -43,8 +43,8 @@
         (string (odometer-name odometer))))
 
 (defun odometer-estimate (odometer)
-  "Return where ODOMETER, seen from outside, puts the robot: the middle of its box, x and y in
-metres on the map, and the heading in radians. For displays: no program of the robot can know."
+  "Return the robot's position on the map by ODOMETER, the middle of its interval: x and y in
+metres, and the heading in radians. For displays, as programs of the robot cannot know it."
   (let* ((x (* 0.5d0 (+ (odometer-x-min odometer) (odometer-x-max odometer))))
          (y (* 0.5d0 (+ (odometer-y-min odometer) (odometer-y-max odometer))))
          (axis (odometer-origin-angle odometer))
@@ -183,16 +183,16 @@ NAME is a symbol or a string."
   "Return the odometer that ROBOT started with; it is called MAIN (manual 3.2.2; reading 232)."
   (robot-odometer robot 'main))
 
-;;; The place that a robot feels (manual 3.4.3, 3.5).
+;;; The place that a robot senses (manual 3.4.3, 3.5).
 
 (defun robot-place-here (robot)
   "Return the PLACE that ROBOT is really in, or NIL."
   (cell-type (map-cell (world-map (robot-world robot)) (robot-x robot) (robot-y robot))))
 
 (defun sense-place-type (robot)
-  "Return the place type that ROBOT senses where it is, or NIL. Where there is one it is missed
-with TYPE-FALSE-NEG*, where there is none a random one is sensed with
-TYPE-FALSE-POS* (reading 221)."
+  "Return the place type that ROBOT senses where it is, or NIL. A true one is missed with the
+probability TYPE-FALSE-NEG*. Where there is none, a random one is sensed with TYPE-FALSE-POS*
+(reading 221)."
   (let ((place (robot-place-here robot))
         (dice (world-dice (robot-world robot) :place)))
     (cond (no-sensor-error* (and place (place-type place)))

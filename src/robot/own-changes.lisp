@@ -10,7 +10,7 @@
 
 (defstruct (planned-way (:constructor make-planned-way (points interruption)) (:copier nil))
   "POINTS, a list of lists (x y), and INTERRUPTION, the robot's last interruption when they were
-published. If the last interruption is another one now, the way is void."
+published. The way is void after another interruption."
   (points '() :type list :read-only t)
   (interruption nil :read-only t))
 
@@ -26,8 +26,8 @@ published. If the last interruption is another one now, the way is void."
 (defun publish-way (robot points)
   "Show the way of ROBOT through POINTS in pictures, in the layer :PLANNED-WAY. POINTS is a list of
 PTs or lists (x y), as FIND-WAY returns it; () removes the way. It is shown until you publish
-another or a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call this; your programs
-may. ROBOT does not move, and digests and journals do not change. Return ROBOT. Signals
+another or a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call this, and your
+programs can. ROBOT does not move, and digests and journals do not change. Return ROBOT. Signals
 WRONG-ARGUMENT."
   (check-argument publish-way robot (robot-p robot) (argument-type-text 'robot robot))
   (check-argument publish-way points
@@ -39,8 +39,8 @@ WRONG-ARGUMENT."
 
 (addition robot-planned-way)
 (defun robot-planned-way (robot)
-  "Return the points, lists (x y), of the way that ROBOT is about to take as its program has told by
-PUBLISH-WAY; () if it is on none, or was taken off it."
+  "Return the points, lists (x y), of the way that PUBLISH-WAY has set for ROBOT; () if there is
+none, or a command of ROBOT has been interrupted since."
   (let ((way (robot-published-way robot)))
     (and way
          (eq (planned-way-interruption way) (resource-interruption robot))
@@ -124,8 +124,8 @@ no longer changes (manual 3.2.2)."
 (addition place-robot)
 (defun place-robot (robot x y angle)
   "Put ROBOT at (X,Y) heading ANGLE at once, without error and ignoring obstacles: a change from
-outside, as the prompt's POS and ANGLE make. That it is inside a wall then is a warning among the
-messages. Signals WRONG-ARGUMENT (manual E). See reading 114."
+outside, as the prompt's POS and ANGLE make. Inside a wall, a warning is queued. Signals
+WRONG-ARGUMENT (manual E). See reading 114."
   (check-argument place-robot robot (robot-p robot) (argument-type-text 'robot robot))
   (check-of-type 'place-robot 'x x 'number)
   (check-of-type 'place-robot 'y y 'number)

@@ -5,11 +5,11 @@
 (export '(all-blueprints blueprint *robots* find-blueprint robot-resources mind-p
           *part-vectors* parts-of-kind part unsettle ensure-timeline))
 
-;;; A blueprint is fixed once DEFROBOT has read it; any number of robots can be made by it, each in
-;;; a world of its own.
+;;; A blueprint does not change after DEFROBOT has read it. Any number of robots can be made from
+;;; it, each in its own world.
 
 (define-record blueprint
-  "What DEFROBOT said of a robot."
+  "A robot as DEFROBOT has defined it."
   (name nil symbol "the name of the robot" :export)
   (map nil symbol "the name of the map that the robot starts in" :export)
   (x 0d0 double-float "the x coordinate where the robot starts, in metres" :export)
@@ -32,7 +32,7 @@
 ;;; (with the robot), a container among the things, or a storage bin.
 
 (define-kind (mind :include resource)
-    "What a robot thinks with: one thought at a time, beside what its body and parts do."
+    "The resource that THINK occupies: one thought at a time, while body and parts continue."
   (:fixed
    (robot nil t "the robot whose mind it is" :export)))
 
@@ -44,13 +44,13 @@
 2.2)."
   (:fixed
    (name nil symbol "the symbol that the robot was defined by" :addition)
-   (blueprint nil (or null blueprint) "what the robot was made by" :export)
+   (blueprint nil (or null blueprint) "the blueprint that the robot was made from" :export)
    (world nil (or null world) "the world that the robot is in" :addition)
    (cameras #() simple-vector "the vector of the robot's cameras" :part :addition)
    (hands #() simple-vector "the vector of the robot's hands" :part :addition)
    (bins #() simple-vector "the vector of the robot's storage bins" :part :addition)
    (sensors #() simple-vector "the vector of the robot's parts of other kinds" :part :addition)
-   (mind nil (or null mind) "what the robot thinks with, beside what it does" :part :export))
+   (mind nil (or null mind) "the resource that THINK occupies" :part :export))
   (:state
    (x 0d0 double-float "the robot's true x coordinate, in metres" :addition)
    (y 0d0 double-float "the robot's true y coordinate, in metres" :addition)
@@ -62,7 +62,7 @@
    (odometer-list '() list "the robot's odometers, oldest first" :part)
    (designators (make-array 4 :adjustable t :fill-pointer 0) vector
                 "the vector of the robot's designators by number; NIL: none" :part :export)
-   (designators-made 0 fixnum "how many designators the robot ever had")
+   (designators-made 0 fixnum "how many designators the robot has had so far")
    (ended-tracks '() list
                  "the tracks that have ended in this tick, newest first: (track . code)" :export)
    (last-place nil symbol "the name of the place type that the robot last sensed, or NIL" :addition)
@@ -70,25 +70,24 @@
   (:memory
    (start-x 0d0 double-float "where the last movement began, the x coordinate in metres")
    (start-y 0d0 double-float "where the last movement began, the y coordinate in metres")
-   (estimate-x 0d0 double-float "how far the robot believes it has moved since, in x, in metres")
-   (estimate-y 0d0 double-float "how far the robot believes it has moved since, in y, in metres")
+   (estimate-x 0d0 double-float "the estimate of how far it has moved since, in x, in metres")
+   (estimate-y 0d0 double-float "the estimate of how far it has moved since, in y, in metres")
    (placements 0 fixnum
                "how many times the robot has been put somewhere, other than by driving" :export)
    (put-x 0d0 double-float "where the robot was last put, the x coordinate in metres" :export)
    (put-y 0d0 double-float "where the robot was last put, the y coordinate in metres" :export)
    (failure nil t
-            "what is known of the command that failed last on the robot or a part, or NIL" :export)
-   (published-way nil t "the way that the robot's program said last it would take, or NIL"
-                  :shared))
+            "a record of the command that failed last on the robot or a part, or NIL" :export)
+   (published-way nil t "the way that PUBLISH-WAY was last given, or NIL" :shared))
   (:scratch
-   (moved 0d0 double-float "the metres that the last step of driving really took the robot" :export)
+   (moved 0d0 double-float "the true length of the last step of driving, in metres" :export)
    (turned-low 0d0 double-float
                "the lower bound read for the last step of turning, in radians" :export)
    (turned-high 0d0 double-float
                 "the upper bound read for the last step of turning, in radians" :export))
   (:link
-   (retired nil (or null string) "why the robot's run is over, or NIL as long as it is not" :export)
-   (enders '() list "the functions that are called when the robot's run is over" :export)))
+   (retired nil (or null string) "why the robot's run is over, or NIL while it is not" :export)
+   (enders '() list "the functions to call when the robot's run is over" :export)))
 
 ;; Parts of another run are not copied.
 (defun copy-of-robots (object robot copier)
@@ -102,7 +101,7 @@
 
 (addition part-p)
 (define-kind (part :include resource :constructor nil)
-    "A camera, hand or storage bin of a robot, or a sensor of a kind of one's own."
+    "A camera, hand or storage bin of a robot, or a part of a kind that you have defined."
   (:fixed
    (robot nil (or null robot) "the robot that the part is mounted on" :addition)
    (index 0 fixnum "the part's index among its kind, from 0" :addition))
@@ -138,7 +137,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
    (contents '() list "a list of the thing that the hand holds, or ()" :addition))
   (:memory
    (way-in '() list
-           "what plans told the hand to go into and it is inside of, innermost first" :export)))
+           "what plans have put the hand into and it is still in, innermost first" :export)))
 
 (public storage-bin)
 (addition storage-bin-p)
@@ -154,7 +153,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
           storage-bin-robot storage-bin-index)
 
 (defun not-a-robot-text (value)
-  "Return in words why VALUE is no robot, and how to have one, if it is NIL or a robot's name."
+  "Return a text on how to get a robot if VALUE is NIL or a robot's name; else NIL."
   (let ((name (and value (typep value '(or symbol string)) (find-blueprint value nil)
                    (string-downcase value))))
     (when (or name (null value))
@@ -222,7 +221,7 @@ first vector whose type it has.")
         append (coerce (the simple-vector (funcall reader robot)) 'list)))
 
 (defun (setf robot-parts) (parts robot)
-  "Give ROBOT, which is being made, PARTS, a list."
+  "Set the parts of ROBOT, which is being made, to the list PARTS."
   (dolist (row *part-vectors* parts)
     (destructuring-bind (key reader type) row
       (declare (ignore key))
@@ -238,7 +237,7 @@ parts and its mind."
   (append (list robot) (robot-parts robot) (list (robot-mind robot))))
 
 (defun unsettle (robot)
-  "Make the next tick settle the world of ROBOT. Call this before creating anything that
+  "Make the next tick check the world of ROBOT. Call this before creating anything that
 WORLD-SETTLED-P excludes."
   (setf (world-settled-p (robot-world robot)) nil))
 
@@ -274,7 +273,7 @@ WORLD-SETTLED-P excludes."
 
 (addition robot-part)
 (defun robot-part (robot kind index)
-  "Return the part of ROBOT of KIND, a symbol such as CAMERA or a kind of one's own, with INDEX
+  "Return the part of ROBOT of KIND, a symbol such as CAMERA or a kind of your own, with INDEX
 among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument robot-part kind (typep kind '(or symbol string)) "the name of a kind of part")
   (unless (find-kind-name kind 'part)
@@ -285,7 +284,7 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   "Return a vector of the parts of ROBOT of the kind called KIND."
   (coerce (remove kind (robot-parts robot) :key #'type-of :test-not #'same-name-p) 'simple-vector))
 
-;;; Parts are called by their numbers (manual E).
+;;; Parts are printed with their numbers (manual E).
 
 (defmethod print-object ((robot robot) stream)
   (print-named robot stream (symbol-name (robot-name robot))))
@@ -296,7 +295,7 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 (defmethod print-object ((part part) stream)
   (print-named part stream (format nil "~@(~A~) ~D" (type-of part) (part-index part))))
 
-;;; Hands and bins are places where things can be (see the world layer).
+;;; Things can be in hands and bins (see the world layer).
 
 (defmethod location-contents ((hand hand)) (hand-contents hand))
 (defmethod (setf location-contents) (contents (hand hand))

@@ -150,8 +150,8 @@ meet within REACH columns and rows."
   (if (or all (null finds)) finds (list (roll-element finds dice))))
 
 (defun matching-things (camera type demands dice)
-  "Return a list of (thing . readings) for what CAMERA has in view, does not overlook and takes
-for what DEMANDS describe (reading 129)."
+  "Return a list of (thing . readings) for things that CAMERA has in view and does not miss, and
+whose readings fit DEMANDS (reading 129)."
   (loop with missing = (sensing-chance miss-thing-prob*)
         for thing in (things-in-view camera type)
         for distance = (seen-from camera thing)

@@ -57,8 +57,8 @@ return the point just beyond it, as two values; else NIL. Cells with a flag of M
       (beyond-corner world mask x y (before x dx) (before y dy)))))
 
 ;;; Sight passes from cell to cell until a wall, or a cell where something on the floor obstructs
-;;; it. Neither the cell of the eye nor that of the target does. The walk ends after as many borders
-;;; as lie between them, as by distance rounding could end it one cell before or behind the target.
+;;; it. The cells at both ends do not. The walk ends after as many borders as lie between them:
+;;; counted by distance, rounding could end it one cell before or behind the target.
 
 (defun same-cell-p (x y to-x to-y)
   (and (= (floor x) (floor to-x))

@@ -8,7 +8,7 @@
 ;;; one after another, so each must still be where it was seen when its turn comes.
 
 (define-kind (sighting :constructor (make-sighting (type denotation x y data)))
-    "Something seen, or imagined if it has no DENOTATION, at (X,Y)."
+    "Something seen at (X,Y); it is false if it has no DENOTATION."
   (:state
    (type :non-local (member :local :non-local) "whether it is next to the robot")
    (denotation nil (or null thing place) "what was really seen, or NIL")
@@ -21,7 +21,7 @@
         (sighting-data sighting)
         (and (sighting-denotation sighting) (reference (sighting-denotation sighting)))))
 
-;;; From the robot, things have a direction unless they are right where it is.
+;;; Things have a direction from the robot unless they are exactly where it is.
 
 (defconstant +no-distance+ 1d-9
   "At no more than this, in metres, things have no direction.")
@@ -35,7 +35,7 @@
   "Return the true direction from ROBOT to (X,Y), in radians."
   (arctangent (- y (robot-y robot)) (- x (robot-x robot))))
 
-;;; Imagination (manual 3.4.1, chapter 4).
+;;; False sightings (manual 3.4.1, chapter 4).
 
 (defun clip-to-map (map x y)
   (values (clamp x 0d0 (- (map-width map) 1d-6))

@@ -1,4 +1,4 @@
-;;;; soundness.lisp -- robots that were put together from a file are some, or it is said why not.
+;;;; soundness.lisp -- checks of robots that were read from a file.
 
 (in-package :ars-magna.robot)
 
@@ -10,16 +10,16 @@
         do (must-hold (and (typep part type)
                            (eq robot (part-robot part))
                            (or (eq type 'part) (= position (part-index part))))
-                      "number ~D of the parts of ~A is none of them" position robot)
+                      "part number ~D of ~A makes no sense" position robot)
            (must-hold (typep (part-location part) '(or null thing storage-bin))
-                      "~A is inside of nothing" part)
+                      "the location of ~A makes no sense" part)
            (check-occupant part)))
 
 (defun check-contents (holder contents most)
   (must-hold (and (proper-list-of-p #'thing-p contents)
                   (<= (length contents) most)
                   (every (lambda (thing) (eq holder (thing-location thing))) contents))
-             "what ~A holds is not in it" holder))
+             "the contents of ~A are not inside it" holder))
 
 (defun check-track (track)
   "Signal CONTRADICTION if TRACK has an operation that is not a valid request."
@@ -33,7 +33,7 @@
                       (eq (camera-robot camera)
                           (designator-robot (track-designator track)))
                       (designator-valid-p (track-designator track)))
-                 "~A tracks nothing that could be tracked" camera)
+                 "the track of ~A makes no sense" camera)
       (check-track track))))
 
 (defun check-designator (robot number designator)
@@ -50,13 +50,13 @@
 (defun check-designators (robot)
   (let ((designators (robot-designators robot)))
     (must-hold (and (arrayp designators) (array-has-fill-pointer-p designators))
-               "the designators of ~A cannot become more" robot)
+               "the vector of designators of ~A cannot grow" robot)
     (loop for designator across designators
           for number from 0
           do (check-designator robot number designator))
     (must-hold (proper-list-of-p (lambda (end) (typep end '(cons track keyword)))
                                  (robot-ended-tracks robot))
-               "the tracks of ~A that have ended are none" robot)
+               "the ended tracks of ~A make no sense" robot)
     (loop for (track) in (robot-ended-tracks robot) do (check-track track))))
 
 (defun check-odometers (robot)
@@ -65,19 +65,19 @@
                                            (eq robot (odometer-robot odometer))))
                                     (robot-odometer-list robot))
                   (robot-main-odometer robot))
-             "the odometers of ~A are not its own" robot))
+             "the odometers of ~A do not belong to it" robot))
 
 (defun check-stance (robot)
   "Signal CONTRADICTION unless ROBOT stands somewhere in its map, and could move from there."
   (must-hold (every #'within-reason-p
                     (list (robot-x robot) (robot-y robot) (robot-angle robot)
                           (robot-speed robot) (robot-turn-angle robot)))
-             "~A is beyond all bounds" robot)
+             "a coordinate, angle or speed of ~A is too large" robot)
   (must-hold (robot-cell-index robot) "~A is outside of its map" robot)
-  ;; On another machine the last bit may be another.
+  ;; On another machine the last bit may differ.
   (must-hold (and (< (abs (- (robot-cos robot) (cosine (robot-angle robot)))) 1d-9)
                   (< (abs (- (robot-sin robot) (sine (robot-angle robot)))) 1d-9))
-             "~A does not look where it looks" robot))
+             "the heading of ~A is not that of its cosine and sine" robot))
 
 (defun check-robot (robot world)
   "Signal an error, CONTRADICTION where we check for it, unless ROBOT of WORLD, which was read from
@@ -86,7 +86,7 @@ a file, is in a state that a run can reach."
                   (eq world (robot-world robot))
                   (robot-blueprint robot)
                   (eq (robot-name robot) (blueprint-name (robot-blueprint robot))))
-             "its robots are not those of its world")
+             "a robot does not belong to its world")
   (check-occupant robot)
   (check-stance robot)
   (loop for (nil reader type) in *part-vectors*

@@ -4,8 +4,8 @@
 
 (export '(tend-tracks tracks-busy-p start-track trackable-p out-of-sight-p end-on-arrival))
 
-;;; Whether a camera that points at something sees it (manual 2.2, 3.4.3). A search sends rays, and
-;;; what none of them reaches is not found. A track is held to the same.
+;;; Whether a camera that points at something sees it (manual 2.2, 3.4.3). A search sends rays and
+;;; does not find what no ray reaches. The same holds for tracks.
 
 (defun ray-crosses-cell-p (dx dy angle)
   "True if a ray in the direction ANGLE crosses the cell whose centre is at (DX,DY) from its start."
@@ -160,16 +160,16 @@ CAMERA, if one may."
   (and (followable-p designator)
        (not (visible-p designator camera))))
 
-(defun gone-p (camera designator)
-  "True if CAMERA cannot follow the non-local DESIGNATOR any longer. Arrival at the end of an
-approach is the approach's to tell (reading 112)."
+(defun cannot-follow-p (camera designator)
+  "True if CAMERA cannot follow the non-local DESIGNATOR any longer. The arrival of an approach does
+not count, as the approach reports it (reading 112)."
   (if (arrived-p designator)
       (not (approached-p camera))
       (or (not (trackable-p designator camera))
           ;; As reading 141 says.
           (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))
 
-(defun keep-or-lose (camera designator dice)
+(defun keep-or-lose-track (camera designator dice)
   "Point CAMERA at DESIGNATOR, unless chance makes it lose that (readings 220, 235)."
   (if (and (not no-sensor-error*)
            (chance (per-tick-probability (if (designator-denotation designator)
@@ -186,19 +186,19 @@ approach is the approach's to tell (reading 112)."
           (t (unless local (setf (designator-type designator) :non-local))
              (if (out-of-sight-p designator camera)
                  (lose-track camera)
-                 (keep-or-lose camera designator dice))))))
+                 (keep-or-lose-track camera designator dice))))))
 
 (defun tend-track (camera designator tick dice)
   "Update the track of DESIGNATOR by CAMERA in TICK."
   (refresh-once designator tick dice)
   (cond ((eq (designator-type designator) :local)
          (tend-local-track camera designator dice))
-        ((gone-p camera designator) (lose-track camera))
-        (t (keep-or-lose camera designator dice))))
+        ((cannot-follow-p camera designator) (lose-track camera))
+        (t (keep-or-lose-track camera designator dice))))
 
 ;;; The tracks phase.
 
-(defun tend-untracked (robot)
+(defun drop-out-of-reach (robot)
   "Drop the local designators of ROBOT that no camera tracks and that are out of reach."
   (let ((designators (robot-designators robot)))
     (loop for number from 0
@@ -218,7 +218,7 @@ approach is the approach's to tell (reading 112)."
           for designator = (camera-tracks camera)
           when designator
             do (tend-track camera designator tick dice))
-    (tend-untracked robot))
+    (drop-out-of-reach robot))
   (when (robot-ended-tracks robot)
     (loop for (track . code) in (reverse (shiftf (robot-ended-tracks robot) '()))
           do (tell-track-ended track code))))
@@ -246,8 +246,7 @@ approach is the approach's to tell (reading 112)."
         (camera-tracking camera) (make-track designator operation)))
 
 (defun end-on-arrival (camera)
-  "End the track of CAMERA, since the robot has arrived; the camera has pointed there to the end
-(reading 108)."
+  "End the track of CAMERA, since the robot has arrived. Point CAMERA there before (reading 108)."
   (let ((designator (camera-tracks camera)))
     (when (designator-denotation designator)
       (refresh-designator designator (world-dice (robot-world (camera-robot camera)) :tracking))

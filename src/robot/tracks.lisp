@@ -19,13 +19,13 @@
     "What a camera does while it tracks a designator."
   (:state
    (designator nil (or null designator) "what is tracked")
-   (operation nil t "what is told when the track ends, see TRACK-ENDED; or NIL" :export)))
+   (operation nil t "the operation to tell of the track's end (see TRACK-ENDED), or NIL" :export)))
 
 (defgeneric track-ended (operation code designator)
-  (:documentation "Let OPERATION know that its track of DESIGNATOR has ended with CODE."))
+  (:documentation "Report to OPERATION that its track of DESIGNATOR has ended with CODE."))
 
 (defgeneric approaching-p (event camera)
-  (:documentation "True if EVENT, pending on a robot, is to take it to what CAMERA tracks.")
+  (:documentation "True if EVENT, pending on a robot, moves it to what CAMERA tracks.")
   (:method (event camera)
     (declare (ignore event camera))
     nil))
