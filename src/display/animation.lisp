@@ -92,14 +92,6 @@ WATCH with the simulation at the beginning and after each tick. Signals what FUN
         (format nil "~A~%~A" (or title (title-of-journal journal)) words)
         title)))
 
-(defun animation-kind (file series)
-  "Return :HTML, :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT for other names, and
-says what is for a film, or for a SERIES."
-  (if series
-      (picture-kind 'save-animation file)
-      (picture-kind 'save-animation file '(:html :svg)
-                    ".html or .svg; with :series t in .svg or .png")))
-
 (defun shown-end (operator journal until)
   "Return the tick at which what is shown of JOURNAL, up to UNTIL, an argument of OPERATOR, ends.
 Signals WRONG-ARGUMENT if UNTIL is no tick of it, nor NIL."
@@ -134,27 +126,28 @@ nothing there. The first frame shows how the run began. With ANYWAY the run is r
 definitions are not those at hand. The other arguments are those of
 SVG-PICTURE. Return the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY
 does."
-  (let* ((kind (animation-kind file series))
+  (let* ((kind (if series
+                   (picture-kind 'save-animation file)
+                   (picture-kind 'save-animation file '(:html :svg)
+                                 ".html or .svg; with :series t in .svg or .png")))
          (journal (journal-meant journal 'save-animation))
          (moments (checked-moments 'save-animation moments
                                    (shown-end 'save-animation journal until)))
          (title (titled-anyway title journal anyway))
          ;; The tick, which a title has that nobody gave, is told of by frames.
-         (look (list :layers (if (or series title) layers (remove :title layers))
+         (look (list :every every :until until
+                     :layers (if (or series title) layers (remove :title layers))
                      :in-color in-color :scale scale :title title :part part)))
     (check-animation series every rate display layers scale title)
     (check-kinds 'save-animation kinds)
     (telling-what-breaks
       (replaying (anyway)
-        (cond (series
-               (apply #'save-series journal file :every every :until until :display display look))
-              ((eq kind :html)
-               (save-text (apply #'film-text journal moments :every every :until until :rate rate
-                                                             :kinds kinds look)
-                          file))
-              (t (save-text (apply #'animation-text journal :every every :until until :rate rate
-                                                            look)
-                            file)))))))
+        (if series
+            (apply #'save-series journal file :display display look)
+            (save-text (if (eq kind :html)
+                           (apply #'film-text journal moments :rate rate :kinds kinds look)
+                           (apply #'animation-text journal :rate rate look))
+                       file))))))
 
 (defun animation-text (journal &key every until rate layers in-color scale title part)
   (let ((snapshots '()))

@@ -17,15 +17,13 @@
   "Return how many characters fit into WIDTH pixels; at least one does."
   (max 1 (floor width +character-width+)))
 
-(defun fit-text (text width)
-  (let ((count (characters-in width)))
-    (if (<= (length text) count)
-        text
-        (concatenate 'string (subseq text 0 (1- count)) "~"))))
-
 (defun draw-line-of-text (canvas x y width text)
-  "Write TEXT in the line whose top is at Y."
-  (draw-text canvas x (+ y 12) (fit-text text (- width x +margin+))))
+  "Write TEXT, cut to fit into WIDTH, in the line whose top is at Y."
+  (let ((count (characters-in (- width x +margin+))))
+    (draw-text canvas x (+ y 12)
+               (if (<= (length text) count)
+                   text
+                   (concatenate 'string (subseq text 0 (1- count)) "~")))))
 
 (defun draw-paragraph (canvas x y width text)
   "Write TEXT, in as many lines as it takes, from Y. Return where it ends."

@@ -7,16 +7,13 @@
 ;;; Terrain never changes and may be kept by a canvas; movers are drawn over it. Angles grow
 ;;; clockwise from the right on the map and on the canvas alike.
 
-(defun shown-by (layer image)
-  "Return what LAYER shows of IMAGE, a snapshot or the image of a robot or camera; NIL if nothing."
-  (if (%layer-shown layer)
-      (funcall (%layer-shown layer) image)
-      (getf (robot-image-notes image) (%layer-name layer))))
-
 (defun shown-at (depth layers image &rest more)
-  "Return lists (layer shown . MORE) of those of LAYERS at DEPTH that show something of IMAGE."
+  "Return lists (layer shown . MORE) of those of LAYERS at DEPTH that show something of IMAGE, a
+snapshot or the image of a robot or camera."
   (loop for layer in (layers-at depth layers)
-        for shown = (shown-by layer image)
+        for shown = (if (%layer-shown layer)
+                        (funcall (%layer-shown layer) image)
+                        (getf (robot-image-notes image) (%layer-name layer)))
         when shown collect (list* layer shown more)))
 
 (defun shown-below-things (snapshot layers)

@@ -240,16 +240,13 @@ pieces, lists x y ... in pixels."
   (loop for layer in layers
         when (%layer-entries layer) append (funcall (%layer-entries layer) snapshot)))
 
-(defun layers-drawn (snapshot layers)
-  "Return those of LAYERS for which something of SNAPSHOT is drawn, in the order of legends."
-  (let* ((shown (mapcar #'first (shown-lines snapshot layers)))
-         (drawn (remove-if-not (lambda (layer) (member layer shown)) *layers*)))
-    (append (remove-if #'%layer-last-p drawn) (remove-if-not #'%layer-last-p drawn))))
-
 (defun line-entries (snapshot layers)
-  (let ((layers (layers-drawn snapshot layers)))
-    (append (mapcar #'line-entry (remove nil layers :key #'%layer-legend))
-            (further-entries layers snapshot))))
+  "Return the entries for those of LAYERS for which something of SNAPSHOT is drawn."
+  (let* ((shown (mapcar #'first (shown-lines snapshot layers)))
+         (drawn (remove-if-not (lambda (layer) (member layer shown)) *layers*))
+         (drawn (append (remove-if #'%layer-last-p drawn) (remove-if-not #'%layer-last-p drawn))))
+    (append (mapcar #'line-entry (remove nil drawn :key #'%layer-legend))
+            (further-entries drawn snapshot))))
 
 ;;; The whole.
 

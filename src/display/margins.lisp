@@ -166,9 +166,9 @@ the least room."
 (defun lines-width (lines per-character)
   (ceiling (* per-character (reduce #'max lines :key #'length :initial-value 0))))
 
-(defun with-title (arrangement title subtitle per-pixel)
-  "Return ARRANGEMENT with TITLE, and SUBTITLE, a string or NIL, below that; a character is
-PER-PIXEL pixels wide for each pixel that its font is high."
+(defun add-title (arrangement title subtitle per-pixel)
+  "Give ARRANGEMENT the TITLE, and SUBTITLE, a string or NIL, below that; a character is PER-PIXEL
+pixels wide for each pixel that its font is high."
   (let* ((room (max +least-title+ (arrangement-width arrangement)))
          (room (- room (arrangement-left arrangement) (arrangement-right arrangement)))
          (title-character (* per-pixel +title-size+))
@@ -184,8 +184,7 @@ PER-PIXEL pixels wide for each pixel that its font is high."
                   (max (lines-width titles title-character)
                        (lines-width subtitles subtitle-character)))))
     (incf (arrangement-top arrangement) more)
-    (incf (arrangement-height arrangement) more)
-    arrangement))
+    (incf (arrangement-height arrangement) more)))
 
 ;;;; Drawing what stands around the map
 
@@ -263,18 +262,6 @@ PER-PIXEL pixels wide for each pixel that its font is high."
               (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
               (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0)))))))
 
-(defun arrangement-for (canvas snapshot layers title subtitle more legend)
-  "Return the arrangement for a picture of SNAPSHOT with LAYERS on CANVAS, with TITLE and SUBTITLE,
-and with MORE entries of the legend, of which LEGEND has the options."
-  (let ((arrangement (arrange snapshot layers
-                              (and (member :legend layers)
-                                   (append more
-                                           (apply #'legend-entries snapshot layers legend))))))
-    (if (member :title layers)
-        (with-title arrangement (or title (map-title snapshot)) subtitle
-          (character-width canvas 1))
-        arrangement)))
-
 (defun call-on-part (function canvas snapshot)
   "Call FUNCTION with the origin in the corner of the map of SNAPSHOT; what it draws on CANVAS
 beside what is to be shown of that stays invisible."
@@ -289,8 +276,12 @@ beside what is to be shown of that stays invisible."
 on it; return width and height of all that, and how far from the left the map begins. TITLE stands
 above, or if it is NIL, robots, map and tick; then SUBTITLE, if any. MORE are entries of the legend
 that come first; LEGEND are options of LEGEND-ENTRIES for the others."
-  (let* ((arrangement (arrangement-for canvas snapshot layers title subtitle more legend))
+  (let* ((entries (and (member :legend layers)
+                       (append more (apply #'legend-entries snapshot layers legend))))
+         (arrangement (arrange snapshot layers entries))
          (left (arrangement-left arrangement)))
+    (when (member :title layers)
+      (add-title arrangement (or title (map-title snapshot)) subtitle (character-width canvas 1)))
     (with-origin (canvas left (arrangement-top arrangement))
       (draw-margins canvas snapshot layers arrangement)
       (call-on-part draw canvas snapshot))

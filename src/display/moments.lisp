@@ -97,13 +97,9 @@ arguments, which returns the moments seen so far, the earliest first."
 (defun remarked-moments (journal until)
   "Return the moments that the remarks of JOURNAL, up to the tick UNTIL or its end, tell of."
   (loop for (tick kind text robot x y) in (reverse (journal-remarks journal))
+        for blueprint = (and robot (find-blueprint robot nil))
         when (or (null until) (<= tick until))
-          collect (make-moment tick kind text x y (name-of-robot robot))))
-
-(defun name-of-robot (text)
-  "Return the name, a symbol, of the robot that a journal calls TEXT; NIL if there is none."
-  (let ((blueprint (and text (find-blueprint text nil))))
-    (and blueprint (blueprint-name blueprint))))
+          collect (make-moment tick kind text x y (and blueprint (blueprint-name blueprint)))))
 
 ;;; What users add.
 

@@ -86,18 +86,14 @@ or :DIAMOND."
       (with-gcontext (draw-gcontext* :foreground white*) (upright 3/2))
       (upright 0))))
 
-(defun draw-thing-on-map (canvas image)
-  (let ((x (to-pixels (thing-image-x image)))
-        (y (to-pixels (thing-image-y image))))
-    (with-subject (canvas image)
-      (if in-color*
-          (draw-thing-sample canvas image x y (half-width image))
-          (draw-upright-line canvas x y)))))
-
 (defun draw-things (canvas images)
   "Draw the things, the large ones first, so that small ones are seen on them."
   (dolist (image (stable-sort (coerce images 'list) #'> :key #'thing-image-size))
-    (draw-thing-on-map canvas image)))
+    (let ((x (to-pixels (thing-image-x image))) (y (to-pixels (thing-image-y image))))
+      (with-subject (canvas image)
+        (if in-color*
+            (draw-thing-sample canvas image x y (half-width image))
+            (draw-upright-line canvas x y))))))
 
 (defun moving-things (snapshot)
   (coerce (remove-if-not #'thing-image-moving-p (snapshot-things snapshot)) 'list))
@@ -255,17 +251,17 @@ direction ANGLE."
 ;;; Beliefs.
 
 (defun believed-place (robot designator)
-  "Return, in pixels, where ROBOT believes DESIGNATOR to be: it knows that from where it is."
-  (around (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
+  "Return the point (x y), in metres, where ROBOT believes DESIGNATOR to be, seen from where it is."
+  (around (robot-image-x robot) (robot-image-y robot)
           (+ (robot-image-angle robot) (designator-image-angle designator))
-          (to-pixels (designator-image-distance designator))))
+          (designator-image-distance designator)))
 
 (defun track-radius () (max 4 (* 1/2 graphics-scale*)))
 
 (defun draw-track (canvas designator robot snapshot)
   "Draw a line to where ROBOT believes DESIGNATOR, which a camera tracks, to be."
   (declare (ignore snapshot))
-  (let ((target (believed-place robot designator)))
+  (let ((target (pixels-of (believed-place robot designator))))
     (inked ((layer-ink :tracks) :dashes (layer-dashes :tracks))
       (draw-segments canvas draw-gcontext*
                      (list* (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
@@ -276,13 +272,13 @@ direction ANGLE."
 (defun track-boxes (designator robot snapshot)
   "Return the box of the ring around where ROBOT believes DESIGNATOR to be, in pixels, as a list."
   (declare (ignore snapshot))
-  (destructuring-bind (x y) (believed-place robot designator)
+  (destructuring-bind (x y) (pixels-of (believed-place robot designator))
     (list (box-around x y (+ 2 (track-radius))))))
 
 (defun draw-designator-on-map (canvas robot designator)
   "Draw a cross with the number of DESIGNATOR where ROBOT believes it to be, and a line from there
 to what it denotes."
-  (destructuring-bind (x y) (believed-place robot designator)
+  (destructuring-bind (x y) (pixels-of (believed-place robot designator))
     (let ((true-x (designator-image-x designator)) (true-y (designator-image-y designator))
           (color (layer-ink :designators))
           (number (princ-to-string (designator-image-number designator))))
@@ -299,7 +295,7 @@ to what it denotes."
   "Return the boxes (left top right bottom) of the crosses and numbers of DESIGNATORS, in pixels."
   (declare (ignore snapshot))
   (loop for designator in designators
-        for (x y) = (believed-place robot designator)
+        for (x y) = (pixels-of (believed-place robot designator))
         for text = (princ-to-string (designator-image-number designator))
         collect (list (- x 5) (- y 13) (+ x 9 (words-width text)) (+ y 5))))
 

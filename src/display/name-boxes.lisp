@@ -132,8 +132,9 @@ on it, meets."
 (defconstant +thick-wall+ 4 "From this many pixels to a cell on a name may hide a part of a wall.")
 
 (defun box-cost (snapshot layers box anywhere-p)
-  "Return how much a name in BOX would hide on the map that SNAPSHOT shows with LAYERS, from 0 for
-nothing; NIL if it may not stand there, on a wall that is not thick, unless ANYWHERE-P."
+  "Return how much a name in BOX would hide on the map of SNAPSHOT with LAYERS: 0 for nothing, 1 for
+a trail, 2 for marks of places, 3 for both, 4 for a part of a wall. NIL if it may not stand there,
+on a wall that is not thick, unless ANYWHERE-P."
   (let ((map (snapshot-map snapshot)))
     (cond ((not (on-wall-p map box))
            (+ (if (and (member :places layers) (on-mark-p map box)) 2 0)
@@ -141,10 +142,8 @@ nothing; NIL if it may not stand there, on a wall that is not thick, unless ANYW
           ((or anywhere-p (<= +thick-wall+ graphics-scale*)) 4))))
 
 (defun best-box (snapshot layers boxes taken &key anywhere-p (own-p (constantly t)))
-  "Return the first of those of BOXES that hide least, are in the part of the map that SNAPSHOT
-shows, meet none of the index TAKEN, and for which OWN-P is true; or NIL. Rather than nothing a name
-hides a trail, then the mark of a place, and at last a part of a wall that is thick, or of any if
-ANYWHERE-P."
+  "Return the first of those of BOXES that hide least (see BOX-COST), are in the part of the map
+that SNAPSHOT shows, meet none of the index TAKEN, and for which OWN-P is true; or NIL."
   (loop with best = nil and least = nil
         for box in boxes
         for cost = (and (within-shown-p snapshot box)

@@ -23,21 +23,19 @@
     (reject-use "It had not come to its end after ~D seconds. Mend what goes on without an end."
                 +drawing-seconds+)))
 
-(defun call-drawing (function)
-  "Call FUNCTION, which is users' code, within limits. Return true if it comes to its end."
-  (let ((*calls-left* +drawing-calls+) (draw-gcontext* (create-gcontext)))
-    (call-with-limit function +drawing-seconds+ #'give-up-drawing)
-    t))
-
 (defun draw-by-user (canvas function origin x y width height &rest arguments)
   "Have FUNCTION draw in a box of CANVAS, called with CANVAS and ARGUMENTS. ORIGIN, an item or list
 of items, says whose it is (reading 214). Return true if it can; if not, it has been said why, and
 what it has drawn is to be drawn over."
-  (flet ((draw () (apply function canvas arguments)))
+  (flet ((draw ()
+           (let ((*calls-left* +drawing-calls+) (draw-gcontext* (create-gcontext)))
+             (call-with-limit (lambda () (apply function canvas arguments))
+                              +drawing-seconds+ #'give-up-drawing)
+             t)))
     (unless (gethash function *broken-graphics*)
       (with-clipping (canvas x y width height)
         (let ((*user-calls* (or *user-calls* (make-user-calls))))
-          (unless (call-user-code #'call-drawing origin #'draw)
+          (unless (call-user-code #'draw origin)
             (setf (gethash function *broken-graphics*) t)))))
     (not (gethash function *broken-graphics*))))
 

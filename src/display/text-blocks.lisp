@@ -174,16 +174,12 @@ by its substance."
   "Return the arrow that points most nearly in the direction ANGLE, in radians."
   (char ">v<^" (mod (round (/ angle (/ pi 2))) 4)))
 
-(defun names-text (images)
-  "Return what the things are called, each name once."
-  (format nil "~{~A~^, ~}"
-          (remove-duplicates (mapcar (lambda (image) (thing-name (thing-image-thing image))) images)
-                             :from-end t)))
-
 (defun robot-glyph (robot things)
   "Return the glyph of ROBOT, which stands on THINGS: all are images."
   (make-glyph :robot (arrow-glyph (robot-image-angle robot))
-              (format nil "~A (~,2F,~,2F)~:[ with ~A~;~]" (robot-image-name robot)
+              (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-name robot)
                       (hundredths (robot-image-x robot)) (hundredths (robot-image-y robot))
-                      (null things) (names-text things))
+                      (remove-duplicates (loop for image in things
+                                               collect (thing-name (thing-image-thing image)))
+                                         :from-end t))
               :reverse))

@@ -78,11 +78,7 @@
                                   :bold))))
 
 (defun designator-marks (view robot designator)
-  "Return where ROBOT believes what DESIGNATOR denotes to be: it knows that from where it is."
-  (destructuring-bind (x y)
-      (around (robot-image-x robot) (robot-image-y robot)
-              (+ (robot-image-angle robot) (designator-image-angle designator))
-              (designator-image-distance designator))
+  (destructuring-bind (x y) (believed-place robot designator)
     (mark-at view x y
              (make-glyph :layer (digit-char (mod (designator-image-number designator) 10))
                          (subject-title designator) :bold))))

@@ -84,10 +84,6 @@ WRONG-ARGUMENT."
 (defun multiple-above (step value)
   (* step (ceiling (- (/ value step) +slack+))))
 
-(defun multiples (step low high)
-  (loop for value from (multiple-above step low) to (multiple-below step high) by step
-        collect value))
-
 (defun step-text (value step largest percent)
   "Return the text of VALUE, one of some STEP apart up to LARGEST; each has as many decimals."
   (flet ((decimals (step) (max 0 (- (power-of-ten step)))))
@@ -103,5 +99,5 @@ WRONG-ARGUMENT."
 (defun step-marks (step low high percent)
   "Return a list of marks (value text) for an axis from LOW to HIGH, STEP apart."
   (let ((largest (max (abs low) (abs high))))
-    (loop for value in (multiples step low high)
+    (loop for value from (multiple-above step low) to (multiple-below step high) by step
           collect (list value (step-text value step largest percent)))))

@@ -172,15 +172,14 @@ large that what lies right there, as what was let go of does, is within it."
 
 (defun boxes-to-spare (snapshot spots)
   "Return boxes around robots, spots and things: what no number should hide."
-  (append (loop for robot in (snapshot-robots snapshot)
-                collect (box-around (to-pixels (robot-image-x robot))
-                                    (to-pixels (robot-image-y robot)) (max 8 (to-pixels 1))))
-          (loop for spot in spots
-                collect (box-around (to-pixels (spot-x spot)) (to-pixels (spot-y spot))
-                                    +ring-radius+))
-          (loop for image across (snapshot-things snapshot)
-                collect (box-around (to-pixels (thing-image-x image))
-                                    (to-pixels (thing-image-y image)) (max 4 (to-pixels 1/2))))))
+  (flet ((box (x y half) (box-around (to-pixels x) (to-pixels y) half)))
+    (append (loop for robot in (snapshot-robots snapshot)
+                  collect (box (robot-image-x robot) (robot-image-y robot)
+                               (max 8 (to-pixels 1))))
+            (loop for spot in spots collect (box (spot-x spot) (spot-y spot) +ring-radius+))
+            (loop for image across (snapshot-things snapshot)
+                  collect (box (thing-image-x image) (thing-image-y image)
+                               (max 4 (to-pixels 1/2)))))))
 
 (defun places-around (x y radius)
   "Return points (x y), the nearest first, for the number of a spot at X, Y with a ring of RADIUS."
