@@ -202,7 +202,7 @@
                                      (:run ,form))))))))
     (is-true (has-words-p (first (warnings-of-run '(run:with-simulation (rover)
                                                     (driver:run-plan 'anything))))
-                          "a trial is a run of its own" "Leave with-simulation out"))
+                          "a trial is already a run" "Leave with-simulation out"))
     (is (null (warnings-of-run '(driver:run-plan 'anything))))))
 
 (test programs.that-end-before-their-commands-have-are-told

@@ -248,10 +248,10 @@
 (test compare.tells-a-plain-difference-among-hundreds-of-tests
   (let ((differences (measured-differences 600 1000 22)))
     (is (< (experiment:paired-adjusted-p (first differences)) .001))
-    (is (notany #'ars-magna.experiment::told-difference-p (rest differences)))))
+    (is (notany #'ars-magna.experiment::significant-p (rest differences)))))
 
 (defun doubts-of (count trials)
-  (ars-magna.experiment::doubt-words (first (measured-differences count 1000 trials))))
+  (ars-magna.experiment::no-difference-words (first (measured-differences count 1000 trials))))
 
 (test compare.says-how-many-seeds-so-many-tests-need
   (is (mentions-p (doubts-of 60 8) (format nil "over 8 seeds p cannot be below .008, too much for ~

@@ -124,7 +124,7 @@
          file)
         (handler-case (progn (walk directory :trials 2) (fail))
           (experiment:damaged-table (condition)
-            (is (search "rows.csv, line 2: This is no row: it has bytes that are no text."
+            (is (search "rows.csv, line 2: This is no row: it has bytes that are not text."
                         (princ-to-string condition)))))))))
 
 (test directories.have-plain-files-only

@@ -21,19 +21,19 @@
 (defun panel-shapes (results)
   "Return for each panel of RESULTS where it is, and what its series are called."
   (loop for panel in (experiment::panels (experiment:results-samples results)
-                                         (experiment::factors-beside results)
+                                         (experiment::series-factors results)
                                          (experiment:results-factors results))
         collect (cons (experiment::panel-where panel)
                       (mapcar #'first (experiment::panel-series panel)))))
 
 (test panels.have-numbers-along-them-and-words-as-series
   (with-report (results '("way" "noise") '() (grid '("a" "b") '("0" "1" "2")))
-    (is (= 1 (experiment::factor-across results)))
+    (is (= 1 (experiment::x-axis-factor results)))
     (is (equal '((nil "a" "b")) (panel-shapes results))))
   (with-report (results '("noise") '() (grid '("0" "1" "2")))
     (is (equal '((nil nil)) (panel-shapes results))))
   (with-report (results '("way") '() (grid '("a" "b")))
-    (is (= 0 (experiment::factor-across results)))))
+    (is (= 0 (experiment::x-axis-factor results)))))
 
 (test panels.are-several-where-series-were-too-many
   (with-report (results '("way" "size" "noise") '("m")
@@ -47,7 +47,7 @@
   (with-report (results '("case" "noise" "speed") '()
                         `((("calm" "0" "1") ("success")) (("rough" "1" "1") ("success"))))
     (is (equal '(0) (experiment::free-factors results)))
-    (is (= 0 (experiment::factor-across results)))))
+    (is (= 0 (experiment::x-axis-factor results)))))
 
 ;;; Files.
 

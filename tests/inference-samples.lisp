@@ -127,8 +127,8 @@
 2000 samples of theirs."
   (is-printed 1 '("171.5") (own-variance (map 'vector #'base:double *spatial*)))
   (is-printed 3 '("0.061")
-              (stats::skewness-of-influence (map 'stats::doubles #'base:double *spatial*)
-                                            #'own-variance))
+              (stats::bootstrap-acceleration (map 'stats::doubles #'base:double *spatial*)
+                                             #'own-variance))
   (multiple-value-bind (low high)
       (stats:bootstrap-interval *spatial* :statistic #'own-variance :confidence .9)
     (is (near low 115.8 3))
@@ -156,7 +156,7 @@
   (let* ((dice (base:make-dice 6))
          (numbers (coerce (loop repeat 5000 collect (- (log (- 1 (base:roll dice)))))
                           'stats::doubles)))
-    (is (near (stats::skewness-of-influence numbers #'stats:mean)
+    (is (near (stats::bootstrap-acceleration numbers #'stats:mean)
               (/ 2 (* 6 (sqrt 5000)))
               25d-4))))
 

@@ -48,7 +48,7 @@
                                    (60 "1.671" "2.000" "2.660") (120 "1.658" "1.980" "2.617"))
         do (loop for confidence in '(.9d0 .95d0 .99d0) for text in texts
                  do (is-printed 3 (list text)
-                                (stats::student-reach confidence (base:double freedom))))))
+                                (stats::student-critical-value confidence (base:double freedom))))))
 
 (defun student-tail (number freedom)
   "Return the probability that Student's t of FREEDOM degrees is above NUMBER (Abramowitz and
@@ -68,7 +68,7 @@ Stegun 26.7.1)."
   (is (relatively-near (student-tail 1d9 1d0) (/ (* pi 1d9))))
   (loop for confidence in '(1d-6 .3d0 .5d0 .95d0 .999999d0)
         do (is (near confidence
-                     (- 1 (* 2 (student-tail (stats::student-reach confidence 7d0) 7d0)))
+                     (- 1 (* 2 (student-tail (stats::student-critical-value confidence 7d0) 7d0)))
                      1d-15))))
 
 (test chi-square.as-in-tables

@@ -68,7 +68,7 @@
 
 ;;; Checking.
 
-(defun call-check (experiment condition subject at-least trials level workers)
+(defun decide-check (experiment condition subject at-least trials level workers)
   "Check by up to TRIALS of CONDITION of EXPERIMENT, that of SUBJECT or NIL, that AT-LEAST so many
 succeed. True if they do."
   (check-rates 'is-success-rate at-least trials level)
@@ -81,15 +81,15 @@ succeed. True if they do."
           (t (fail "~A" (failure-text check))
              nil))))
 
-(defun hold-form (subject at-least trials level workers seed)
+(defun check-form-rate (subject at-least trials level workers seed)
   (let ((experiment (experiment-of subject 'is-success-rate seed)))
-    (call-check experiment (first (experiment-conditions experiment)) subject
-                at-least trials level workers)))
+    (decide-check experiment (first (experiment-conditions experiment)) subject
+                  at-least trials level workers)))
 
-(defun hold-experiment (name condition at-least trials level workers)
+(defun check-experiment-rate (name condition at-least trials level workers)
   (let ((experiment (find-experiment name)))
-    (call-check experiment (condition-given experiment condition) nil
-                at-least (or trials (experiment-trials experiment)) level workers)))
+    (decide-check experiment (condition-given experiment condition) nil
+                  at-least (or trials (experiment-trials experiment)) level workers)))
 
 (defun experiment-clause (form options)
   "Return the arguments of FORM, (:experiment name :condition c). Signals MALFORMED-DEFINITION if
@@ -138,6 +138,6 @@ REPLAY-TRIAL, in any Lisp with the same code."
   (if (and (consp form) (eq :experiment (first form)))
       (destructuring-bind (name condition)
           (experiment-clause form (intersection '(:robots :seed :parameters :clean :limit) options))
-        `(hold-experiment ,name ,condition ,at-least ,trials ,level ,workers))
-      `(hold-form ,(subject-maker "is-success-rate" form robots parameters clean limit)
-                  ,at-least ,(or trials 200) ,level ,workers ,seed)))
+        `(check-experiment-rate ,name ,condition ,at-least ,trials ,level ,workers))
+      `(check-form-rate ,(subject-maker "is-success-rate" form robots parameters clean limit)
+                        ,at-least ,(or trials 200) ,level ,workers ,seed)))

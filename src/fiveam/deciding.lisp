@@ -39,7 +39,7 @@ TRIALS, of which there may be MOST."
   (unless (and (finite-p level) (<= 1d-9 level 1/2))
     (reject-argument operator 'level level "a probability from 1e-9 to .5, such as .05")))
 
-(defun step-odds (odds count rate)
+(defun next-odds (odds count rate)
   "Return the probabilities of 0 to COUNT successes, of the ODDS of 0 to COUNT - 1 before another
 trial that succeeds with the probability RATE."
   (let ((next (make-array (1+ count) :initial-element 0)))
@@ -61,7 +61,7 @@ take, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."
         (odds (vector 1)) (passed 0) (run 0))
     (loop for count from 1 to trials
           do (incf run (reduce #'+ odds))
-             (setf odds (step-odds odds count rate))
+             (setf odds (next-odds odds count rate))
              (loop for successes to count
                    for verdict = (and (plusp (aref odds successes))
                                       (verdict successes count trials at-least level))

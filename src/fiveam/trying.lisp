@@ -110,30 +110,30 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
         (verdict (check-successes check) (length (check-results check)) (check-trials check)
                  (check-at-least check) (check-level check))))
 
-(defun try (check trial stopping-p)
+(defun try-trial (check trial stopping-p)
   (call-in-silence
    (lambda () (run-guarded (check-experiment check) (check-condition check) trial stopping-p))))
 
 ;; Which trials count is decided in their order, whoever runs them.
-(defun try-some (check first)
+(defun run-some-trials (check first)
   "Return what comes of some trials of CHECK from FIRST on, in order; of one without workers."
   (let* ((workers (check-workers check))
          (last (min (check-trials check) (+ first (max first (* 8 workers)))))
          (results (make-array (- last first -1)))
          (stopped nil))
-    (cond ((= 1 workers) (list (try check first (constantly t))))
+    (cond ((= 1 workers) (list (try-trial check first (constantly t))))
           (t (call-by-workers (lambda (worker)
                                 (loop for trial from (+ first worker -1) to last by workers
                                       until stopped
                                       do (setf (aref results (- trial first))
-                                               (try check trial (lambda () stopped)))))
+                                               (try-trial check trial (lambda () stopped)))))
                               workers :stop (lambda () (setf stopped t)))
              (coerce results 'list)))))
 
 (defun run-check (check)
   "Run trials of CHECK until they decide. Return CHECK."
   (loop for first = (1+ (length (check-results check)))
-        until (loop for result in (try-some check first)
+        until (loop for result in (run-some-trials check first)
                       thereis (count-result check result)))
   check)
 

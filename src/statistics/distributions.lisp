@@ -19,7 +19,7 @@
              (when (< (abs (- change 1)) 1d-15)
                (return value)))))
 
-(defun arctangent-rest (w)
+(defun artanh-remainder (w)
   "Return artanh(W)/W - 1 = W^2/3 + W^4/5 + ..., to the last digits; quick for W up to 1/2."
   (declare (type double-float w) #.*hot*)
   (loop with square of-type double-float = (* w w)
@@ -36,14 +36,14 @@
 ;;; count is from its expectation. Both are small and exact (Loader 2000, "Fast and accurate
 ;;; computation of binomial probabilities").
 
-(defun stirling-rest (x)
+(defun stirling-error (x)
   "Return log gamma(X+1) less Stirling's formula, (X+1/2) log X - X + log sqrt(2 pi), for X from
 1/2: by DLMF 5.11.1, or Gudermann's steps of 1845 up to where that holds."
   (declare (type double-float x) #.*hot*)
   (let ((rest 0d0))
     (declare (type double-float rest))
     (loop while (< x 16)
-          do (incf rest (the double-float (arctangent-rest (/ (+ (* 2 x) 1)))))
+          do (incf rest (the double-float (artanh-remainder (/ (+ (* 2 x) 1)))))
              (incf x))
     (let ((y (/ (* x x))))
       (+ rest (/ (- 1/12 (* y (- 1/360 (* y (- 1/1260 (* y (- 1/1680 (* y 1/1188)))))))) x)))))
@@ -53,7 +53,7 @@
 2000)."
   (declare (type double-float x mean))
   (let ((v (/ (- x mean) (+ x mean))))
-    (cond ((< (abs v) .3d0) (+ (* v (- x mean)) (* 2 x v (arctangent-rest v))))
+    (cond ((< (abs v) .3d0) (+ (* v (- x mean)) (* 2 x v (artanh-remainder v))))
           ((zerop x) mean)
           (t (+ (* x (logarithm (/ x mean))) (- mean x))))))
 
@@ -62,7 +62,7 @@
 (defun poisson-density (a x)
   "Return X^A e^-X / gamma(A+1), for A from 1/2 and X above 0."
   (declare (type double-float a x))
-  (/ (exponential (- (+ (stirling-rest a) (deviance a x)))) (sqrt (* 2 pi a))))
+  (/ (exponential (- (+ (stirling-error a) (deviance a x)))) (sqrt (* 2 pi a))))
 
 (defun gamma-series (a x)
   "Return 1 + X/(A+1) + X^2/((A+1)(A+2)) + ... (DLMF 8.11.4)."
@@ -160,7 +160,7 @@ part)."
           (declare (type (double-float 0d0) r))
           (if (minusp q) (- size) size)))))
 
-(defun normal-reach (confidence)
+(defun normal-critical-value (confidence)
   "Return how many deviations either way hold a share CONFIDENCE of all normal numbers."
   (declare (type double-float confidence))
   (- (normal-quantile (/ (- 1 confidence) 2))))
@@ -185,11 +185,11 @@ of the probability of A successes and B failures (Loader 2000). A and B are 0 or
     (cond ((zerop n) 0d0)
           ((zerop a) (log-power y x b))
           ((zerop b) (log-power x y a))
-          (t (+ (- (stirling-rest n) (stirling-rest a) (stirling-rest b)
+          (t (+ (- (stirling-error n) (stirling-error a) (stirling-error b)
                    (deviance a (* n x)) (deviance b (* n y)))
                 (/ (logarithm (/ n (* 2 pi a b))) 2))))))
 
-(defun log-rise (a b x y)
+(defun log-beta-prefactor (a b x y)
   "Return the logarithm of X^A Y^B / beta(A, B)."
   (declare (type double-float a b x y))
   (+ (log-binomial-density a b x y) (logarithm (/ (* a b) (+ a b)))))
@@ -219,8 +219,9 @@ fraction of Didonato and Morris 1992, all of whose terms are above 0 there)."
   (declare (type double-float a b x y))
   (cond ((zerop x) 0d0)
         ((zerop y) 1d0)
-        ((<= (* b x) (* a y)) (* (exponential (log-rise a b x y)) (beta-fraction a b x y)))
-        (t (- 1 (* (exponential (log-rise b a y x)) (beta-fraction b a y x))))))
+        ((<= (* b x) (* a y))
+         (* (exponential (log-beta-prefactor a b x y)) (beta-fraction a b x y)))
+        (t (- 1 (* (exponential (log-beta-prefactor b a y x)) (beta-fraction b a y x))))))
 
 (defun beta-quantile (p a b)
   "Return the X with I_X(A, B) = P, which is between 0 and 1, and 1 - X."
@@ -242,13 +243,13 @@ fraction of Didonato and Morris 1992, all of whose terms are above 0 there)."
           repeat 100
           do (let* ((x (share odds)) (y (share (- odds)))
                     (fraction (beta-fraction a b x y))
-                    (step (* fraction (- goal (log-rise a b x y) (logarithm fraction)))))
+                    (step (* fraction (- goal (log-beta-prefactor a b x y) (logarithm fraction)))))
                (declare (type (double-float (0d0)) fraction))
                (incf odds step)
                (when (< (abs step) 1d-10) (loop-finish)))
           finally (return (values (share odds) (share (- odds)))))))
 
-(defun half-or-fewer (count trials)
+(defun fair-coin-cdf (count trials)
   "Return the probability that a fair coin falls heads COUNT times or less often in TRIALS,
 integers; COUNT may be -1."
   (let ((count (double count)) (trials (double trials)))
@@ -258,7 +259,7 @@ integers; COUNT may be -1."
 
 ;;; Student's t.
 
-(defun student-reach (confidence freedom)
+(defun student-critical-value (confidence freedom)
   "Return the t for which Student's t of FREEDOM degrees lies from -t to t with a probability of
 CONFIDENCE."
   (declare (type double-float confidence freedom))

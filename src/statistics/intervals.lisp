@@ -30,7 +30,7 @@ not, where EXACT-INTERVAL does. Of no trials the bounds are 0 and 1; of no succe
 failure, high is 1. Signals WRONG-ARGUMENT unless TRIALS is an integer from 0 to 1e9, SUCCESSES
 from 0 to TRIALS, and CONFIDENCE between 0 and 1."
   (check-trials wilson-interval successes trials)
-  (wilson-bounds successes trials (normal-reach (check-share wilson-interval confidence))))
+  (wilson-bounds successes trials (normal-critical-value (check-share wilson-interval confidence))))
 
 (defun exact-low (successes trials tail)
   "Return the probability of success that makes SUCCESSES or more of TRIALS as likely as TAIL, and
@@ -60,7 +60,7 @@ says, whatever that is, and so is wider than WILSON-INTERVAL, which see for the 
         (/ (double (if (plusp excess) (max 0 (- excess (/ trials 2))) excess))
            (sqrt (double margins))))))
 
-(defun side (a b correlation)
+(defun third-side (a b correlation)
   "Return the length of the third side of a triangle of which A and B meet at an angle with the
 cosine CORRELATION."
   (declare (type double-float a b correlation))
@@ -69,8 +69,8 @@ cosine CORRELATION."
 (defun paired-bounds (p q bounds-of-p bounds-of-q correlation)
   "Return the bounds for P less Q, of the bounds for each and their CORRELATION."
   (destructuring-bind (low-p high-p low-q high-q) (append bounds-of-p bounds-of-q)
-    (values (- (- p q) (side (- p low-p) (- high-q q) correlation))
-            (+ (- p q) (side (- high-p p) (- q low-q) correlation)))))
+    (values (- (- p q) (third-side (- p low-p) (- high-q q) correlation))
+            (+ (- p q) (third-side (- high-p p) (- q low-q) correlation)))))
 
 (addition paired-proportion-interval)
 (defun paired-proportion-interval (both first second neither &key (confidence .95d0))
@@ -84,7 +84,7 @@ counts are integers from 0 to 1e9, which together are no more, and CONFIDENCE is
   (check-count paired-proportion-interval first (- +largest+ both))
   (check-count paired-proportion-interval second (- +largest+ both first))
   (check-count paired-proportion-interval neither (- +largest+ both first second))
-  (let ((z (normal-reach (check-share paired-proportion-interval confidence)))
+  (let ((z (normal-critical-value (check-share paired-proportion-interval confidence)))
         (trials (+ both first second neither)))
     (if (zerop trials)
         (values -1d0 1d0)
@@ -100,7 +100,7 @@ counts are integers from 0 to 1e9, which together are no more, and CONFIDENCE is
     (if (< size 2)
         (values nil nil)
         (let ((mean (mean-of sample))
-              (reach (* (student-reach confidence (double (1- size)))
+              (reach (* (student-critical-value confidence (double (1- size)))
                         (deviation-of sample size))))
           (values (- mean reach) (+ mean reach))))))
 
@@ -115,7 +115,7 @@ unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
   (let ((confidence (check-share student-interval confidence)))
     (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
 
-(defun check-pairs (operator name seconds firsts)
+(defun check-same-length (operator name seconds firsts)
   "Signal WRONG-ARGUMENT unless there are as many SECONDS, its argument NAME, as FIRSTS."
   (unless (= (length firsts) (length seconds))
     (reject-argument operator name seconds
@@ -130,7 +130,7 @@ pairs. Signals WRONG-ARGUMENT as that does, and if the two are not equally many.
   (let ((confidence (check-share mean-difference-interval confidence))
         (firsts (sample 'mean-difference-interval 'firsts firsts))
         (others (sample 'mean-difference-interval 'seconds seconds)))
-    (check-pairs 'mean-difference-interval 'seconds seconds firsts)
+    (check-same-length 'mean-difference-interval 'seconds seconds firsts)
     (student-bounds (map 'doubles #'- firsts others) confidence)))
 
 (defun outer-rank (size tail)
@@ -139,7 +139,7 @@ probability of TAIL at most, or 0."
   (let ((low 0) (high size))
     (loop while (< (1+ low) high)
           do (let ((rank (floor (+ low high) 2)))
-               (if (<= (half-or-fewer (1- rank) size) tail)
+               (if (<= (fair-coin-cdf (1- rank) size) tail)
                    (setf low rank)
                    (setf high rank))))
     low))
@@ -159,7 +159,7 @@ than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONF
     (if (zerop rank)
         (values nil nil nil)
         (values (aref sample (1- rank)) (aref sample (- size rank))
-                (- 1 (* 2 (half-or-fewer (1- rank) size)))))))
+                (- 1 (* 2 (fair-coin-cdf (1- rank) size)))))))
 
 ;;;; Any statistic, by the bootstrap
 
@@ -175,7 +175,7 @@ than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONF
                          "a function that returns a number from -1e15 to 1e15"))
       (double value))))
 
-(defun draw-again (sample drawn dice)
+(defun draw-resample (sample drawn dice)
   (declare (type doubles sample drawn) (type dice dice) #.*hot*)
   (let ((size (length sample)))
     (dotimes (i (length drawn) drawn)
@@ -183,11 +183,11 @@ than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONF
             (aref sample (the fixnum (truncate (the (double-float 0d0 1d18)
                                                     (* (roll dice) size)))))))))
 
-(defun resampled (sample function resamples dice)
+(defun resample-statistics (sample function resamples dice)
   (let ((drawn (make-array (length sample) :element-type 'double-float))
         (values (make-array resamples :element-type 'double-float)))
     (dotimes (i resamples (sorted values))
-      (setf (aref values i) (funcall function (draw-again sample drawn dice))))))
+      (setf (aref values i) (funcall function (draw-resample sample drawn dice))))))
 
 (defun sample-without (sample group groups)
   (declare (type doubles sample) (type fixnum group groups))
@@ -195,7 +195,7 @@ than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONF
                 unless (= group (mod i groups)) collect x)
           'doubles))
 
-(defun skewness-of-influence (sample function)
+(defun bootstrap-acceleration (sample function)
   "Return the acceleration: how the deviation of what FUNCTION says changes with what is so (Efron
 and Tibshirani 1993, formula 14.15, of groups if SAMPLE is large)."
   (let* ((groups (min (length sample) *most-groups*))
@@ -228,9 +228,9 @@ and Tibshirani 1993, formula 14.10)."
 
 (defun bootstrap-bounds (sample function z resamples dice)
   (let* ((found (funcall function (copy-seq sample)))
-         (values (resampled sample function resamples dice))
+         (values (resample-statistics sample function resamples dice))
          (bias (bias values found))
-         (acceleration (skewness-of-influence sample function)))
+         (acceleration (bootstrap-acceleration sample function)))
     (flet ((bound (z)
              (sorted-quantile values (corrected-share z bias acceleration))))
       (values (bound (- z)) (bound z)))))
@@ -252,7 +252,7 @@ samples drawn from NUMBERS with the dice for SEED, an integer, so the bounds are
 
 Signals WRONG-ARGUMENT unless NUMBERS and the values of STATISTIC are from -1e15 to 1e15, RESAMPLES
 from 100 to 1e7, and CONFIDENCE between 0 and 1."
-  (let ((z (normal-reach (check-share bootstrap-interval confidence)))
+  (let ((z (normal-critical-value (check-share bootstrap-interval confidence)))
         (sample (sample 'bootstrap-interval 'numbers numbers))
         (function (case statistic
                     (:mean #'mean-of)

@@ -12,7 +12,7 @@
   (unless (elements-p events (lambda (event) (member event '(t nil 1 0))))
     (reject-argument operator events-name events
                      "a list or vector of T (or 1, done at that time) and NIL (or 0, cut short)"))
-  (check-pairs operator events-name events times))
+  (check-same-length operator events-name events times))
 
 (defun dated (times events &optional mark)
   "Return a vector of lists (time done-p mark), in order of TIMES."
@@ -25,7 +25,7 @@
   (or (position (first (aref dated start)) dated :key #'first :test #'/= :start start)
       (length dated)))
 
-(defun call-with-moments (function dated)
+(defun map-moments (function dated)
   "Call FUNCTION with the start and the end in DATED of each moment in which something was done."
   (loop with start = 0
         while (< start (length dated))
@@ -60,7 +60,7 @@ LOW and HIGH bound the survival at that time, by Greenwood's formula on the scal
 then, and HIGH that of the step before, or 1. Signals WRONG-ARGUMENT unless TIMES are from 0 to
 1e15, EVENTS as many, and CONFIDENCE between 0 and 1."
   (check-survival 'survival-curve 'times times 'events events)
-  (let* ((z (normal-reach (check-share survival-curve confidence)))
+  (let* ((z (normal-critical-value (check-share survival-curve confidence)))
          (dated (dated times events)) (size (length dated))
          (survival 1d0) (variance 0d0) (highest 1d0) (steps '()))
     (flet ((note (start end)
@@ -71,7 +71,7 @@ then, and HIGH that of the step before, or 1. Signals WRONG-ARGUMENT unless TIME
                (multiple-value-bind (low high) (band survival variance z highest)
                  (push (list (first (aref dated start)) at-risk done survival low high) steps)
                  (setf highest high)))))
-      (call-with-moments #'note dated))
+      (map-moments #'note dated))
     (nreverse steps)))
 
 (addition median-survival)
@@ -114,7 +114,7 @@ variance of that."
                                         (done-between dated start end))
                (incf expected mean)
                (incf variance spread))))
-      (call-with-moments #'note dated))
+      (map-moments #'note dated))
     (values observed expected variance)))
 
 (addition log-rank-test)

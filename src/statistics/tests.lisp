@@ -13,8 +13,8 @@ WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
   (check-count mcnemar-test first)
   (check-count mcnemar-test second)
   (let* ((trials (+ first second)) (fewer (min first second))
-         (tail (half-or-fewer fewer trials))
-         (point (- tail (half-or-fewer (1- fewer) trials))))
+         (tail (fair-coin-cdf fewer trials))
+         (point (- tail (fair-coin-cdf (1- fewer) trials))))
     (cond ((zerop trials) (values 1d0 1d0))
           ((= first second) (values 1d0 (- 1 (/ point 2))))
           (t (values (min 1d0 (* 2 tail)) (- (* 2 tail) point))))))
@@ -29,7 +29,7 @@ WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
 ;;; however small. What was seen counts as one of the draws (Harrison 2012, "Conservative
 ;;; hypothesis tests and confidence intervals using importance sampling").
 
-(defun minus-share (x)
+(defun negative-share (x)
   "Return how likely a number with the odds e^(2X) of being positive is negative; X is not below 0."
   (declare (type double-float x))
   (let ((odds (exponential (* -2 (min x 300d0)))))
@@ -38,7 +38,7 @@ WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
 (defun tilted-mean (sizes tilt)
   (declare (type doubles sizes) (type double-float tilt))
   (loop for size across sizes
-        sum (* size (- 1 (* 2 (minus-share (* size tilt))))) of-type double-float))
+        sum (* size (- 1 (* 2 (negative-share (* size tilt))))) of-type double-float))
 
 (defun tilt-for (sizes sum)
   "Return the tilt with which the sum of SIZES, the largest of which is 1, is SUM on average."
@@ -51,7 +51,7 @@ WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
 
 (defun log-of-cosh (x)
   (declare (type double-float x))
-  (- x (logarithm (* 2 (- 1 (minus-share x))))))
+  (- x (logarithm (* 2 (- 1 (negative-share x))))))
 
 (defun tilted-sum (sizes shares dice)
   (declare (type doubles sizes shares) (type dice dice) #.*hot*)
@@ -65,7 +65,7 @@ WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
   "Return how likely SIZES, at most 1, with signs thrown by a coin, sum up to SUM or more either
 way, by RESAMPLES tilted draws."
   (let* ((tilt (tilt-for sizes sum))
-         (shares (map 'doubles (lambda (size) (minus-share (* size tilt))) sizes))
+         (shares (map 'doubles (lambda (size) (negative-share (* size tilt))) sizes))
          (logs (loop for size across sizes sum (log-of-cosh (* size tilt)))))
     (flet ((weight (sum) (exponential (max -700d0 (- logs (* tilt sum))))))
       (/ (loop with weights = (weight sum)
@@ -144,13 +144,13 @@ one of them, so that it is never 0 (Phipson and Smyth 2010)."
                          count (>= (abs (tilted-sum sizes shares dice)) (- sum grain)))))
        (1+ resamples))))
 
-(defconstant +seldom+ .05d0
+(defconstant +small-share+ .05d0
   "What is no more likely than this is drawn anew with tilted signs, if that is wanted.")
 
 (defun share-by-draws (sizes sum grain resamples seed rare-too)
   "Return what DRAWN-SHARE says; or RARE-SHARE if that is little and RARE-TOO is true."
   (let ((share (drawn-share sizes sum grain resamples (make-dice seed "permutation"))))
-    (if (and rare-too (<= share +seldom+))
+    (if (and rare-too (<= share +small-share+))
         (rare-share sizes sum grain resamples (make-dice seed "rare signs"))
         share)))
 

@@ -96,7 +96,7 @@ MISUSE, with the text of CONTROL and ARGUMENTS, if nothing in it could be compar
       (sample-experiment (first (first pairs)))
       (sides-words contrasts (if place (nth place (results-factors results)) "condition"))
       :conditions contrasts
-      :overall (and place (worth-overall-p contrasts)
+      :overall (and place (overall-needed-p contrasts)
                     (overall-contrasts results pairs place names)))
      stream "These conditions have no seeds in common. Run more trials of the experiment in the ~
              same directory.")))
@@ -122,7 +122,7 @@ word is ambiguous or nothing can be compared."
   (check-argument compare-conditions results (results-p results) "results")
   (check-stream 'compare-conditions stream)
   (let ((names (compared-names 'compare-conditions (list results) measure)))
-    (multiple-value-bind (pairs place) (pairs-meant results first second)
+    (multiple-value-bind (pairs place) (designated-pairs results first second)
       (comparison-of-conditions results pairs place names stream))))
 
 (addition compare-levels)
@@ -137,7 +137,7 @@ COMPARE-CONDITIONS. p is corrected for all tests together, separately for those 
   (let* ((names (compared-names 'compare-levels (list results) measure))
          (place (factor-place results factor))
          (base (level-called (levels results place) against))
-         (pairs (level-pairs results place nil base)))
+         (pairs (pairs-differing-at results place nil base)))
     (unless pairs
       (reject-use "No condition differs from one with ~A=~A in that alone. (Designs, such as ~
                    :sobol, let all that they sample vary together.)"
@@ -166,7 +166,7 @@ and BEFORE; :UNKNOWN if these do not say."
                   collect (format nil "~A: ~A" title (unbroken (cut line 88))))
             (and (nthcdr 5 only) (list (format nil "~A: ..." title))))))
 
-(defun ruler-changes (after before)
+(defun experiment-changes (after before)
   (let ((now (form-described after)) (then (form-described before)))
     (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it ~
                        does, measures or counts as success may be another thing in each, so what ~
@@ -181,7 +181,7 @@ and BEFORE; :UNKNOWN if these do not say."
                     (and (/= (length others) (length parts))
                          (list "the parameters, robots or values of conditions"))))))
 
-(defun leak-lines (pairs)
+(defun unexplained-difference-lines (pairs)
   "Return lines that warn if trials of PAIRS, with equal fingerprints, have come out differently."
   (let ((count (loop for (sample other) in pairs
                      sum (loop for (i . j) in (common-trials sample other)
@@ -206,12 +206,12 @@ in the directories AFTER and BEFORE, which may be NIL."
                                    :test #'string= :from-end t)))
     (cond ((null changed)
            (cons "Both tables are of the same code and configuration: the fingerprints are equal."
-                 (leak-lines pairs)))
+                 (unexplained-difference-lines pairs)))
           ((null parts)
            (list (format nil "What differs between the tables is not known: the fingerprints do, ~
                               but no experiment.txt beside them says of what.")))
           (t (append (and (some (lambda (part) (part-of-kind-p "experiment" part)) parts)
-                          (ruler-changes after before))
+                          (experiment-changes after before))
                      (list (parts-words parts (length changed))))))))
 
 ;;;; Comparing versions
@@ -238,16 +238,16 @@ in the directories AFTER and BEFORE, which may be NIL."
 (defun condition-pairs (first second)
   "Return lists of samples of the results FIRST and SECOND that are of one condition; and the names
 of conditions that one of them lacks."
-  (flet ((called (sample results)
+  (flet ((counterpart (sample results)
            (find (sample-condition sample) (results-samples results)
                  :key #'sample-condition :test #'string=)))
     (values (loop for sample in (results-samples first)
-                  for other = (called sample second)
+                  for other = (counterpart sample second)
                   when other collect (list sample other))
             (mapcar #'sample-condition
-                    (append (remove-if (lambda (sample) (called sample second))
+                    (append (remove-if (lambda (sample) (counterpart sample second))
                                        (results-samples first))
-                            (remove-if (lambda (sample) (called sample first))
+                            (remove-if (lambda (sample) (counterpart sample first))
                                        (results-samples second)))))))
 
 (defun check-one-experiment (before after)
@@ -274,7 +274,7 @@ of conditions that one of them lacks."
          (make-comparison
           experiment (format nil "~A against ~A, before" after-name before-name)
           :versions contrasts
-          :overall (and (worth-overall-p contrasts)
+          :overall (and (overall-needed-p contrasts)
                         (list (overall-contrast first second pairs names after before)))
           :changes (changes-between pairs (results-directory after) (results-directory before))
           :notes (and lacking

@@ -10,8 +10,8 @@
   (first "" string "what the first is called, a string" :addition)
   (second "" string "what the second is called, a string" :addition)
   (trials 0 integer "how many pairs of trials with equal seeds there are" :writable :addition)
-  (alone-first 0 integer "how many trials of the first have no counterpart" :writable)
-  (alone-second 0 integer "how many trials of the second have no counterpart" :writable)
+  (unpaired-first 0 integer "how many trials of the first have no counterpart" :writable)
+  (unpaired-second 0 integer "how many trials of the second have no counterpart" :writable)
   (errors-first 0 integer "how many trials of the first that have one broke off" :writable)
   (errors-second 0 integer "how many trials of the second that have one broke off" :writable)
   (same 0 integer "in how many pairs both trials are the same run to the last bit, with equal
@@ -91,7 +91,7 @@ indexes."
              name (filter-both #'finite-value-p firsts seconds)))
           (t nil))))
 
-(defun noting-left-out (difference pairs)
+(defun count-left-out (difference pairs)
   "Enter into DIFFERENCE, unless it is NIL, how many of so many PAIRS it does not count. Return it."
   (when difference
     (setf (paired-left-out difference) (- pairs (paired-trials difference))))
@@ -106,12 +106,12 @@ indexes."
                     (loop for (nil . j) in pairs collect (aref other j)))
       (cond ((string-equal name "ticks") (mean-difference "ticks" firsts seconds))
             ((or firsts (string-equal name "success"))
-             (noting-left-out (difference-of-values (string-downcase name) firsts seconds)
-                              (length pairs)))
+             (count-left-out (difference-of-values (string-downcase name) firsts seconds)
+                             (length pairs)))
             ;; Never measured in both: reported as not comparable.
             ((or (some #'finite-value-p column) (some #'finite-value-p other))
-             (noting-left-out (mean-difference (string-downcase name) '() '())
-                              (length pairs)))))))
+             (count-left-out (mean-difference (string-downcase name) '() '())
+                             (length pairs)))))))
 
 ;;; The whole.
 
@@ -138,8 +138,8 @@ indexes."
 say. Return CONTRAST."
   (let* ((pairs (common-trials first second)) (count (length pairs)))
     (setf (contrast-trials contrast) count
-          (contrast-alone-first contrast) (- (length (sample-trials first)) count)
-          (contrast-alone-second contrast) (- (length (sample-trials second)) count)
+          (contrast-unpaired-first contrast) (- (length (sample-trials first)) count)
+          (contrast-unpaired-second contrast) (- (length (sample-trials second)) count)
           (contrast-errors-first contrast) (count-errors first (mapcar #'car pairs))
           (contrast-errors-second contrast) (count-errors second (mapcar #'cdr pairs))
           (contrast-same contrast)
@@ -231,5 +231,5 @@ trials of SEEDS."
                 when difference collect difference))
     contrast))
 
-(defun worth-overall-p (contrasts)
+(defun overall-needed-p (contrasts)
   (and (rest contrasts) (notevery #'same-runs-p contrasts)))

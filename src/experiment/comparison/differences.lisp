@@ -95,7 +95,7 @@ equal; or NIL."
   (let ((mean (/ (reduce #'+ numbers :key #'rational) (length numbers))))
     (if (some #'floatp numbers) (nearest-float mean) mean)))
 
-(defun test-mean (numbers)
+(defun p-of-mean (numbers)
   "Return the p value of the mean of the differences NUMBERS. Fewer draws are made for many numbers;
 the smallest possible p does not depend on the draws."
   (let ((draws (clamp (floor 200000000 (length numbers)) 1000 10000)))
@@ -112,7 +112,7 @@ the smallest possible p does not depend on the draws."
         (multiple-value-bind (low high) (student-interval numbers)
           (make-difference measure kind (length firsts) (exact-mean firsts) (exact-mean seconds)
                            (unscaled low scale) (unscaled high scale)
-                           (if rounding 1d0 (test-mean numbers))
+                           (if rounding 1d0 (p-of-mean numbers))
                            '() rounding)))))
 
 ;;; Several.
@@ -132,10 +132,10 @@ the smallest possible p does not depend on the draws."
           for adjusted in (holm-adjusted (mapcar #'paired-p tested))
           do (setf (paired-adjusted-p difference) adjusted))))
 
-(defun least-p (seeds)
+(defun smallest-p (seeds)
   "Return the least p of a test over so many SEEDS: all differences on one side."
   (expt 2 (- 1 (max 1 seeds))))
 
-(defun told-difference-p (difference)
+(defun significant-p (difference)
   "True if DIFFERENCE is significant at the 5 % level."
   (and (paired-adjusted-p difference) (<= (paired-adjusted-p difference) .05d0)))

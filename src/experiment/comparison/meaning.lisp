@@ -67,7 +67,7 @@
                       (loop for other from 1 below (length (results-factors results))
                             collect other)))))
 
-(defun level-pairs (results place level base)
+(defun pairs-differing-at (results place level base)
   "Return lists of two samples of RESULTS that differ at PLACE only, the second being of BASE, and
 the first of LEVEL; of any other if that is NIL."
   (let ((else (factors-else results place)))
@@ -90,10 +90,10 @@ the first of LEVEL; of any other if that is NIL."
 ;;; A word means a condition, by its name, or a level, by its value or as FACTOR=VALUE; else a part
 ;;; of these. A level that only one condition has means that one.
 
-(defun word-of (designator)
+(defun designator-text (designator)
   (if (typep designator '(or symbol string)) (string designator) (value-text designator)))
 
-(defun either (things exactly partly)
+(defun exact-or-partial (things exactly partly)
   (or (remove-if-not exactly things) (remove-if-not partly things)))
 
 (defun level-title (results level)
@@ -109,33 +109,34 @@ the first of LEVEL; of any other if that is NIL."
 (defun level-word-p (word factor level)
   (or (string-equal word level) (string-equal word (full-level-name factor level))))
 
-(defun levels-meant (results designator)
+(defun designated-levels (results designator)
   "Return lists (place level) of what DESIGNATOR, no condition's number, can mean in RESULTS."
   (unless (numbered-sample results designator)
-    (let ((word (word-of designator)))
-      (either (loop for place in (free-factors results)
-                    append (loop for level in (levels results place) collect (list place level)))
-              (lambda (level)
-                (level-word-p word (nth (first level) (results-factors results)) (second level)))
-              (lambda (level) (search word (level-title results level) :test #'char-equal))))))
+    (let ((word (designator-text designator)))
+      (exact-or-partial
+       (loop for place in (free-factors results)
+             append (loop for level in (levels results place) collect (list place level)))
+       (lambda (level)
+         (level-word-p word (nth (first level) (results-factors results)) (second level)))
+       (lambda (level) (search word (level-title results level) :test #'char-equal))))))
 
 (defun samples-called (results word)
   "Return those samples of RESULTS whose condition is called WORD; or else has that for a value; or
 else has it in its name."
   (let ((samples (results-samples results)))
     (or (remove word samples :key #'sample-condition :test-not #'string-equal)
-        (either samples
-                (lambda (sample)
-                  (some (lambda (factor text) (level-word-p word factor text))
-                        (results-factors results) (sample-texts sample)))
-                (lambda (sample)
-                  (search word (sample-condition sample) :test #'char-equal))))))
+        (exact-or-partial samples
+                          (lambda (sample)
+                            (some (lambda (factor text) (level-word-p word factor text))
+                                  (results-factors results) (sample-texts sample)))
+                          (lambda (sample)
+                            (search word (sample-condition sample) :test #'char-equal))))))
 
-(defun samples-meant-by (results designator)
+(defun designated-samples (results designator)
   "Return the samples of RESULTS that DESIGNATOR can mean: a sample, the number of a condition, from
 1, its name, or a part of that. Signals UNKNOWN-NAME."
   (let ((samples (results-samples results)) (one (numbered-sample results designator))
-        (word (word-of designator)))
+        (word (designator-text designator)))
     (cond (one (list one))
           ((and (string/= "" word) (samples-called results word)))
           (t (reject-name "condition" (if (symbolp designator) designator word)
@@ -150,53 +151,54 @@ else has it in its name."
                           (list (format nil "one of ~D others" (- (length meanings) 6))))
                   meanings)))
 
-(defun the-meaning (results designator)
+(defun designated-sample (results designator)
   "Return the one sample that DESIGNATOR means. Signals MISUSE if it could be several."
-  (let ((samples (samples-meant-by results designator)))
+  (let ((samples (designated-samples results designator)))
     (when (rest samples)
-      (reject-ambiguous (word-of designator) (mapcar #'sample-condition samples)))
+      (reject-ambiguous (designator-text designator) (mapcar #'sample-condition samples)))
     (first samples)))
 
 ;;; Pairs.
 
-(defun level-contests (results first second)
+(defun candidate-level-pairs (results first second)
   "Return lists (place level base) of what FIRST and SECOND can be of one factor; SECOND may be
 :ALL, and BASE is NIL then."
-  (loop for (place level) in (levels-meant results first)
+  (loop for (place level) in (designated-levels results first)
         append (if (eq :all second)
                    (list (list place level nil))
-                   (loop for (other base) in (levels-meant results second)
+                   (loop for (other base) in (designated-levels results second)
                          when (and (= place other) (string/= level base))
                            collect (list place level base)))))
 
-(defun contest-title (results contest)
-  (destructuring-bind (place level base) contest
+(defun level-pair-title (results level-pair)
+  (destructuring-bind (place level base) level-pair
     (format nil "~A~@[ against ~A~]" (level-title results (list place level))
             (and base (level-title results (list place base))))))
 
-(defun contest-pairs (results contest)
-  "Return pairs of samples that differ as CONTEST says, all else equal."
-  (destructuring-bind (place level base) contest
+(defun level-pair-samples (results level-pair)
+  "Return pairs of samples that differ as LEVEL-PAIR says, all else equal."
+  (destructuring-bind (place level base) level-pair
     (loop for other in (if base (list base) (remove level (levels results place) :test #'string=))
-          append (level-pairs results place level other))))
+          append (pairs-differing-at results place level other))))
 
 (defun pairs-of-levels (results first second)
   "Return the pairs of samples, all else equal, that have the levels FIRST and SECOND of one factor,
 and its place; NIL if these are none. Signals MISUSE if they could be those of several."
-  (let ((contests (level-contests results first second)))
-    (when (rest contests)
+  (let ((level-pairs (candidate-level-pairs results first second)))
+    (when (rest level-pairs)
       (reject-ambiguous (if (eq :all second)
-                            (word-of first)
-                            (format nil "~A against ~A" (word-of first) (word-of second)))
-                        (mapcar (lambda (contest) (contest-title results contest)) contests)))
-    (and contests
-         (values (contest-pairs results (first contests)) (first (first contests))))))
+                            (designator-text first)
+                            (format nil "~A against ~A" (designator-text first)
+                                    (designator-text second)))
+                        (loop for pair in level-pairs collect (level-pair-title results pair))))
+    (and level-pairs
+         (values (level-pair-samples results (first level-pairs)) (first (first level-pairs))))))
 
 (defun pairs-of-conditions (results first second)
-  (let* ((sample (the-meaning results first))
+  (let* ((sample (designated-sample results first))
          (others (if (eq :all second)
                      (remove sample (results-samples results))
-                     (list (the-meaning results second)))))
+                     (list (designated-sample results second)))))
     (when (member sample others)
       (reject-use "~A cannot be compared with itself; give two conditions."
                   (sample-condition sample)))
@@ -204,40 +206,40 @@ and its place; NIL if these are none. Signals MISUSE if they could be those of s
     (loop for other in others collect (list sample other))))
 
 ;; 4 and 8 may mean values of a factor, or the fourth and the eighth condition.
-(defun contest-of-values (results first second)
-  "Return the contest, see LEVEL-CONTESTS, of FIRST and SECOND if these are integers and both values
-of one factor; NIL if not."
+(defun level-pair-of-integers (results first second)
+  "Return the level pair (place level base) of FIRST and SECOND if these are integers and both are
+values of one factor; else NIL."
   (when (and (integerp first) (integerp second) (/= first second))
-    (let ((level (word-of first)) (base (word-of second)))
+    (let ((level (designator-text first)) (base (designator-text second)))
       (loop for place in (free-factors results)
             for levels = (levels results place)
             when (and (member level levels :test #'string=) (member base levels :test #'string=))
               return (list place level base)))))
 
-(defun same-either-way-p (results first second contest)
-  "True if the conditions numbered FIRST and SECOND are just those that CONTEST compares."
+(defun same-samples-p (results first second level-pair)
+  "True if the conditions numbered FIRST and SECOND are just those that LEVEL-PAIR compares."
   (equal (list (list (numbered-sample results first) (numbered-sample results second)))
-         (contest-pairs results contest)))
+         (level-pair-samples results level-pair)))
 
-(defun as-meant (results first second)
+(defun resolve-numbers (results first second)
   "Return FIRST and SECOND, as words if they are values of one factor and no numbers of conditions.
 Signals MISUSE if they are both."
-  (let ((contest (contest-of-values results first second)))
-    (cond ((or (null contest) (same-either-way-p results first second contest))
+  (let ((level-pair (level-pair-of-integers results first second)))
+    (cond ((or (null level-pair) (same-samples-p results first second level-pair))
            (values first second))
           ((and (numbered-sample results first) (numbered-sample results second))
            (reject-ambiguous (format nil "~D against ~D" first second)
                              (list (format nil "the conditions number ~D and ~D" first second)
-                                   (contest-title results contest))))
-          (t (values (word-of first) (word-of second))))))
+                                   (level-pair-title results level-pair))))
+          (t (values (designator-text first) (designator-text second))))))
 
-(defun pairs-meant (results first second)
+(defun designated-pairs (results first second)
   "Return the pairs of samples of RESULTS that are meant by FIRST and SECOND, which may be :ALL, and
 the place of the factor if these are levels of one that several conditions have."
-  (multiple-value-bind (first second) (as-meant results first second)
+  (multiple-value-bind (first second) (resolve-numbers results first second)
     (multiple-value-bind (pairs place)
-        (and (or (rest (samples-meant-by results first))
-                 (and (not (eq :all second)) (rest (samples-meant-by results second))))
+        (and (or (rest (designated-samples results first))
+                 (and (not (eq :all second)) (rest (designated-samples results second))))
              (pairs-of-levels results first second))
       (if pairs
           (values pairs place)

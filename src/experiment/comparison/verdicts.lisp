@@ -9,7 +9,7 @@
   "Return which decimal is the second digit of SIZE."
   (- 1 (power-of-ten (rational size))))
 
-(defun decimals-known (difference)
+(defun last-useful-decimal (difference)
   "Return which decimal is the last that the numbers of DIFFERENCE, of means, are worth."
   (let* ((low (paired-low difference)) (high (paired-high difference))
          (width (if low (number-less high low) 0))
@@ -43,7 +43,7 @@
   (cond ((eq :rate (paired-kind difference))
          (lambda (value) (hundredths-text value (paired-trials difference))))
         ((plusp (or (paired-rounding difference) 0)) #'number-in-words)
-        (t (let ((decimals (if (paired-first difference) (decimals-known difference) 0)))
+        (t (let ((decimals (if (paired-first difference) (last-useful-decimal difference) 0)))
              (lambda (value) (mean-text value decimals))))))
 
 ;;;; Verdicts
@@ -124,7 +124,7 @@
 (defun seeds-needed (tests)
   "Return over how many seeds the smallest p, as one of so many TESTS, is at most .05."
   (loop for seeds from 1
-        when (<= (* tests (least-p seeds)) 1/20) return seeds))
+        when (<= (* tests (smallest-p seeds)) 1/20) return seeds))
 
 (defun few-seeds-words (difference)
   "Return in words that over the seeds of DIFFERENCE no p can be small enough; NIL if one can."
@@ -132,9 +132,9 @@
     (when (< seeds (seeds-needed tests))
       (format nil "; over ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
                    ~D or more~@[, or compare fewer measures~]"
-              seeds (p-figure (least-p seeds)) tests (seeds-needed tests) (< 1 tests)))))
+              seeds (p-figure (smallest-p seeds)) tests (seeds-needed tests) (< 1 tests)))))
 
-(defun zero-words (difference)
+(defun not-significant-words (difference)
   "Return why DIFFERENCE is none, although its interval leaves out 0."
   (let ((tests (paired-tests difference)))
     (if (< 1 tests)
@@ -142,13 +142,13 @@
                      leaves out 0 is no proof" tests)
         "the interval leaves out 0, but it is an approximation, and p is above .05: p decides")))
 
-(defun doubt-words (difference)
+(defun no-difference-words (difference)
   "Return how large DIFFERENCE can be if there is one; or why it is none in spite of its interval."
   (let ((low (paired-low difference)) (high (paired-high difference)))
     (if (<= low 0 high)
         (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"
                 (amount-words difference (max (abs low) (abs high))))
-        (format nil "~A~@[~A~]" (zero-words difference) (few-seeds-words difference)))))
+        (format nil "~A~@[~A~]" (not-significant-words difference) (few-seeds-words difference)))))
 
 (defun verdict (difference contrast)
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
@@ -167,12 +167,12 @@
                    (format nil "~A of ~A and ~A are equal, seed by seed: ~A ~A"
                            (paired-measure difference) first second (both-words difference)
                            (trials-words difference)))
-                  ((told-difference-p difference)
+                  ((significant-p difference)
                    (format nil "~A: ~A" (direction-words difference first second)
                            (figures-words difference)))
                   (t (format nil "No difference in ~A between ~A and ~A can be told: ~A; ~A"
                              (paired-measure difference) first second
-                             (figures-words difference) (doubt-words difference)))))))
+                             (figures-words difference) (no-difference-words difference)))))))
 
 (defun success-verdict (contrast)
   "Return :BETTER or :WORSE if the first of CONTRAST succeeds more or less often, :SAME if both are
@@ -180,7 +180,7 @@ the same runs, else NIL."
   (let ((difference (difference-called "success" contrast)))
     (cond ((same-runs-p contrast) :same)
           ((null difference) nil)
-          ((told-difference-p difference)
+          ((significant-p difference)
            (if (plusp (paired-estimate difference)) :better :worse)))))
 
 (defun contrast-verdicts (contrast)
@@ -235,8 +235,8 @@ are corrected separately. Each interval is for one difference alone."
     (and words (format nil "~@[~A: ~]~{~A~^ and ~}" (contrast-where contrast) words))))
 
 (defun left-out-notes (contrast)
-  (let ((alone (counts-words contrast (contrast-alone-first contrast)
-                             (contrast-alone-second contrast)))
+  (let ((alone (counts-words contrast (contrast-unpaired-first contrast)
+                             (contrast-unpaired-second contrast)))
         (errors (counts-words contrast (contrast-errors-first contrast)
                               (contrast-errors-second contrast))))
     (append (and alone (list (format nil "Left out, as only one has their seeds: ~A." alone)))

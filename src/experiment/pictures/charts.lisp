@@ -17,15 +17,15 @@ of, if that is one factor."
 
 ;;; Factors.
 
-(defun factor-across (results)
+(defun x-axis-factor (results)
   "Return the factor that runs along pictures of RESULTS, or NIL if nothing varies."
   (let ((free (free-factors results)))
     (or (find-if (lambda (place) (every #'number-in (levels results place))) free)
         (first free))))
 
-(defun factors-beside (results)
+(defun series-factors (results)
   "Return the factors that tell series apart."
-  (remove (factor-across results) (free-factors results)))
+  (remove (x-axis-factor results) (free-factors results)))
 
 ;;; Series and panels.
 
@@ -49,14 +49,14 @@ of, if that is one factor."
   (loop for group in (grouped samples (lambda (sample) (series-name sample places factors)))
         collect (cons (series-name (first group) places factors) group)))
 
-(defun in-chunks (list most)
+(defun split-evenly (list most)
   "Return LIST as lists of about equal length, at most MOST."
   (let* ((count (length list)) (size (ceiling count (max 1 (ceiling count most)))))
     (loop while list
           collect (loop repeat size while list collect (pop list)))))
 
 (defun chunk-panels (series where title)
-  (loop with chunks = (in-chunks series +most-series+)
+  (loop with chunks = (split-evenly series +most-series+)
         for chunk in chunks
         for number from 1
         collect (make-panel (format nil "~@[~A, ~]~D of ~D" where number (length chunks))
@@ -82,7 +82,7 @@ hold all series."
 
 ;;; What is written above.
 
-(defun title-of (results)
+(defun picture-title (results)
   (let ((name (sample-experiment (first (results-samples results)))))
     (or (question-of name) name)))
 
@@ -126,18 +126,18 @@ trials that broke off with an error, if there are any."
                                                (estimate-high estimate))))))
 
 (defun estimates-charts (results summaries name y-label words reader)
-  (let* ((place (factor-across results)) (factors (results-factors results))
+  (let* ((place (x-axis-factor results)) (factors (results-factors results))
          (table (pairlis (results-samples results) summaries))
          (kind (estimate-kind (funcall reader (first summaries)))))
     (flet ((estimate-of (sample) (funcall reader (cdr (assoc sample table)))))
-      (loop for panel in (panels (results-samples results) (factors-beside results) factors)
+      (loop for panel in (panels (results-samples results) (series-factors results) factors)
             for series = (chart-series panel place #'estimate-of)
             collect (list name (panel-where panel)
                           (line-chart series
                                       :percent (eq :rate kind)
                                       :log-x (and place (log-x-p (mapcar #'x-value
                                                                          (levels results place))))
-                                      :title (title-of results)
+                                      :title (picture-title results)
                                       :subtitle (subtitle panel words
                                                           (intervals-words kind summaries))
                                       :x-label (and place (nth place factors))
@@ -147,10 +147,10 @@ trials that broke off with an error, if there are any."
 (defun success-pictures (results summaries)
   (estimates-charts results summaries "success" "trials that succeed" nil #'summary-success))
 
-(defun known-p (estimates) (some #'estimate-value estimates))
+(defun any-value-p (estimates) (some #'estimate-value estimates))
 
 (defun ticks-pictures (results summaries)
-  (when (known-p (mapcar #'summary-ticks summaries))
+  (when (any-value-p (mapcar #'summary-ticks summaries))
     (estimates-charts results summaries "ticks" "ticks"
                       "Ticks of the trials that succeed: median." #'summary-ticks)))
 
@@ -159,7 +159,7 @@ trials that broke off with an error, if there are any."
 (defconstant +most-rows+ 30 "How many rows a picture has at most.")
 
 (defun pictures-of-rows (name rows chart)
-  (loop with chunks = (in-chunks rows +most-rows+)
+  (loop with chunks = (split-evenly rows +most-rows+)
         for chunk in chunks
         for number from 1
         collect (list name (and (rest chunks) (integer-text number)) (funcall chart chunk))))
@@ -176,7 +176,7 @@ trials that broke off with an error, if there are any."
                                           (estimate-value estimate) (estimate-low estimate)
                                           (estimate-high estimate)))
                       (lambda (rows)
-                        (measure-chart rows :middle-label "mean" :title (title-of results)
+                        (measure-chart rows :middle-label "mean" :title (picture-title results)
                                             :x-label name
                                             :subtitle (intervals-words :mean summaries))))))
 
@@ -186,13 +186,13 @@ trials that broke off with an error, if there are any."
         for estimates = (loop for summary in summaries
                               collect (nth place (summary-measures summary)))
         for kind = (estimate-kind (first estimates))
-        when (and (member kind '(:rate :mean)) (known-p estimates))
+        when (and (member kind '(:rate :mean)) (any-value-p estimates))
           append (let ((place place))
                    (estimates-charts results summaries (format nil "measure-~A" name) name
                                      (format nil "~@(~A~): ~:[mean~;share of trials~]." name
                                              (eq :rate kind))
                                      (lambda (summary) (nth place (summary-measures summary)))))
-        when (and (eq :mean kind) (known-p estimates))
+        when (and (eq :mean kind) (any-value-p estimates))
           append (spread-pictures results summaries place)))
 
 ;;; Until done. What has failed is never done: so it is still there at the end, and no trial is lost
@@ -238,7 +238,7 @@ trials that broke off with an error, if there are any."
      (survival-chart (loop for (name sample) in (panel-series panel)
                            collect (curve-of name sample horizon (confidence-for results sample)
                                              band-p))
-                     :title (title-of results)
+                     :title (picture-title results)
                      :subtitle (subtitle panel (concatenate 'string
                                                             (survival-words band-p results)
                                                             errors))
@@ -248,7 +248,7 @@ trials that broke off with an error, if there are any."
 
 (defun survival-pictures (results summaries)
   (let ((samples (results-samples results)))
-    (when (known-p (mapcar #'summary-ticks summaries))
+    (when (any-value-p (mapcar #'summary-ticks summaries))
       (loop with horizon = (horizon samples (limit-of results))
             for panel in (panels samples (free-factors results) (results-factors results))
             collect (survival-picture results panel horizon (errors-words summaries))))))
@@ -258,7 +258,7 @@ trials that broke off with an error, if there are any."
 (defun pairs-by (results place)
   "Return lists of two samples of RESULTS that differ in the factor PLACE, all else equal if that
 can be, the second with its first value; and whether it can."
-  (let ((pairs (level-pairs results place nil (first (levels results place)))))
+  (let ((pairs (pairs-differing-at results place nil (first (levels results place)))))
     (if pairs
         (values pairs t)
         (loop with first = (first (results-samples results))

@@ -139,7 +139,7 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG ne
 
 ;;;; A comparison: differences against zero
 
-(defun one-contest-p (comparison)
+(defun same-sides-p (comparison)
   "True if the same two are compared wherever COMPARISON does."
   (loop with one = (first (comparison-contrasts comparison))
         for contrast in (comparison-contrasts comparison)
@@ -147,7 +147,7 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG ne
                     (string= (contrast-second one) (contrast-second contrast)))))
 
 (defun picture-label (contrast comparison)
-  (if (and (contrast-where contrast) (one-contest-p comparison))
+  (if (and (contrast-where contrast) (same-sides-p comparison))
       (contrast-where contrast)
       (format nil "~@[~A: ~]~A against ~A" (contrast-where contrast) (contrast-first contrast)
               (contrast-second contrast))))

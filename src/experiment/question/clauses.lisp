@@ -1,11 +1,11 @@
-;;;; clauses.lisp -- the clauses of DEFEXPERIMENT: checked, and taken apart.
+;;;; clauses.lisp -- the clauses of DEFEXPERIMENT: reading and checking them.
 
 (in-package :ars-magna.experiment)
 
-;;;; Designs: samples from ranges, in place of all combinations
+;;;; Designs: samples from ranges, instead of all combinations
 
-;;; In :VARY stands (KIND N range...) or (KIND N :SEED seed range...). A RANGE is (what low high),
-;;; or that with a word behind it: :INTEGER or :LOG.
+;;; :VARY takes (KIND N range...) or (KIND N :SEED seed range...). A RANGE is (what low high), or
+;;; (what low high :INTEGER) or (what low high :LOG).
 
 (defun design-part-p (part)
   (member (first part) '(:latin-hypercube :sobol :random)))
@@ -23,7 +23,7 @@
 
 ;;; Values. They are rounded, so that conditions have short names.
 
-(defconstant +design-digits+ 6 "How many digits the numbers of designs have.")
+(defconstant +design-digits+ 6 "The number of significant digits of numbers of designs.")
 
 (defun check-bounds (definition range low high)
   (let* ((scale (fourth range))
@@ -41,7 +41,7 @@
     (float (* step (round (rational value) step)) 1d0)))
 
 (defun value-between (low high scale share)
-  "Return the number that has SHARE, from 0 to below 1, of what is between LOW and HIGH before it."
+  "Return the number a SHARE, from 0 to below 1, of the way from LOW to HIGH, on SCALE."
   (ecase scale
     (:integer (+ low (floor (* (rational share) (- (1+ high) low)))))
     (:log (let* ((start (logarithm (float low 1d0)))
@@ -53,7 +53,7 @@
 
 (defun design-choices (definition part bounds)
   "Return lists of settings, one for each point of the design PART, whose ranges have BOUNDS, lists
-(low high). Points that come twice, as those of few integers do, count once."
+(low high). Equal points, as a few integers give, count once."
   (let ((ranges (design-ranges part)))
     (loop for range in ranges
           for (low high) in bounds
@@ -86,13 +86,13 @@
     (:success "(:success form)")
     (:measure "(:measure (name form)...)")
     (:each-tick "(:each-tick (name form)...)"))
-  "The clauses, and how each looks.")
+  "The clauses and their syntax.")
 
-(defun usage-of (key)
+(defun clause-usage (key)
   (format nil (second (assoc key *clauses*))))
 
-(defun reject (definition clause)
-  (reject-clause definition clause (usage-of (first clause))))
+(defun reject-by-usage (definition clause)
+  (reject-clause definition clause (clause-usage (first clause))))
 
 (defun clause-key (definition clause)
   (unless (and (proper-list-p clause) (assoc (first clause) *clauses*))
@@ -112,15 +112,15 @@
         when (find key others :key (lambda (other) (and (consp other) (first other))))
           do (reject-clause definition clause (format nil "one clause ~(~S~) only" key))))
 
-(defun clause-called (key clauses)
+(defun clause-arguments (key clauses)
   "Return the rest of the clause KEY, and whether there is one."
   (let ((clause (find key clauses :key #'first)))
     (values (rest clause) (and clause t))))
 
-(defun check-each (definition clause test &optional (expected (usage-of (first clause))))
-  "Signal MALFORMED-DEFINITION about the first element of CLAUSE, after its key, that TEST is not
-true of; or about CLAUSE if there is none at all."
-  (unless (rest clause) (reject definition clause))
+(defun check-each (definition clause test &optional (expected (clause-usage (first clause))))
+  "Signal MALFORMED-DEFINITION for the first element after the key of CLAUSE that fails TEST, or for
+CLAUSE if it has none."
+  (unless (rest clause) (reject-by-usage definition clause))
   (dolist (element (rest clause))
     (unless (funcall test element) (reject-clause definition element expected))))
 
@@ -133,14 +133,14 @@ true of; or about CLAUSE if there is none at all."
 ;;; Names. What varies is a parameter, :ROBOTS, :THINKING, or a variable.
 
 (defun check-legible (definition clause name)
-  "Signal MALFORMED-DEFINITION about CLAUSE unless a table can have the symbol NAME."
+  "Signal MALFORMED-DEFINITION about CLAUSE unless the symbol NAME can name a column."
   (unless (and (string/= "" name) (every #'writable-char-p (symbol-name name)))
     (reject-clause definition clause
                    (format nil "another name: a table has it, so it cannot be empty, nor have ~
                                 characters that cannot be seen, such as line feeds"))))
 
-(defun surrounding-p (name)
-  "True if NAME is a keyword for what varies around trials besides parameters."
+(defun keyword-factor-p (name)
+  "True if NAME is the keyword of a factor: :ROBOTS or :THINKING."
   (member name '(:robots :thinking)))
 
 (defun special-p (name)
@@ -153,7 +153,7 @@ true of; or about CLAUSE if there is none at all."
            (and (special-p name) (not (package-locked-p (symbol-package name)))))))
 
 (defun check-factor-name (definition part)
-  (unless (or (surrounding-p (first part)) (can-vary-p (first part)))
+  (unless (or (keyword-factor-p (first part)) (can-vary-p (first part)))
     (reject-clause definition part
                    (format nil "something to vary that is a parameter, :robots, :thinking, or a ~
                                 variable of your own; ~(~A~) is ~:[no name~;Lisp's or the ~
@@ -162,7 +162,7 @@ true of; or about CLAUSE if there is none at all."
 
 (defun check-factor (definition part)
   (unless (and (proper-list-p part) (rest part))
-    (reject-clause definition part (usage-of :vary)))
+    (reject-clause definition part (clause-usage :vary)))
   (when (and (eq :in (second part)) (/= 3 (length part)))
     (reject-clause definition part "(what :in form)"))
   (let ((list (find-if (lambda (form) (typep form '(cons number))) (rest part))))
@@ -173,12 +173,12 @@ true of; or about CLAUSE if there is none at all."
   (check-factor-name definition part))
 
 (defun check-range (definition range)
-  "Signal MALFORMED-DEFINITION unless RANGE can be one, of something whose values are numbers."
+  "Signal MALFORMED-DEFINITION unless RANGE is a range of a factor whose values are numbers."
   (unless (and (proper-list-p range)
                (or (= 3 (length range))
                    (and (= 4 (length range)) (member (fourth range) '(:integer :log)))))
     (reject-clause definition range "a range (what low high), perhaps with :integer or :log"))
-  (when (surrounding-p (first range))
+  (when (keyword-factor-p (first range))
     (reject-clause definition range "a parameter, or a variable, whose values are numbers"))
   (check-factor-name definition range))
 
@@ -218,20 +218,20 @@ true of; or about CLAUSE if there is none at all."
 
 (defun varied-names (clauses)
   (remove-duplicates
-   (append (loop for case in (clause-called :conditions clauses)
+   (append (loop for case in (clause-arguments :conditions clauses)
                  append (mapcar #'first (rest case)))
-           (loop for part in (clause-called :vary clauses) append (part-names part)))
+           (loop for part in (clause-arguments :vary clauses) append (part-names part)))
    :from-end t))
 
 (defun varied-variables (clauses)
-  (remove-if (lambda (name) (or (surrounding-p name) (parameter-called name)))
+  (remove-if (lambda (name) (or (keyword-factor-p name) (parameter-called name)))
              (varied-names clauses)))
 
 ;;; All of them.
 
 (defun check-columns (definition taken clauses key)
-  "Signal MALFORMED-DEFINITION if two columns of a table would be called the same: those TAKEN, what
-CLAUSES vary, and what the clause KEY names."
+  "Signal MALFORMED-DEFINITION if two columns of a table would have one name: those TAKEN, the
+factors in CLAUSES, and the names in the clause KEY."
   (flet ((check (name clause)
            (check-legible definition clause name)
            (when (member name taken :test #'string-equal)
@@ -240,16 +240,16 @@ CLAUSES vary, and what the clause KEY names."
                                     name)))
            (push name taken)))
     (dolist (name (varied-names clauses)) (check name name))
-    (dolist (part (clause-called key clauses)) (check (first part) part))))
+    (dolist (part (clause-arguments key clauses)) (check (first part) part))))
 
 (defun check-column-names (definition clauses)
-  (let ((before (append *columns-before* (and (clause-called :conditions clauses) '("case")))))
+  (let ((before (append *columns-before* (and (clause-arguments :conditions clauses) '("case")))))
     (check-columns definition (append before *columns-between* *columns-after*) clauses :measure)
     (check-columns definition (append before *series-columns*) clauses :each-tick)))
 
 (defun check-number-clause (definition clause test)
   (unless (and (= 2 (length clause)) (funcall test (second clause)))
-    (reject definition clause)))
+    (reject-by-usage definition clause)))
 
 (defun seconds-p (value)
   (and (quantity-p value) (<= 1/1000 value +largest+)))
@@ -263,7 +263,7 @@ CLAUSES vary, and what the clause KEY names."
                  "(parameter form), with a parameter of the simulation such as max-speed*")
      (check-names definition clause (mapcar #'first (rest clause))))
     (:clean (unless (member (rest clause) '(() (t) (nil)) :test #'equal)
-              (reject definition clause)))
+              (reject-by-usage definition clause)))
     (:vary (check-each definition clause #'consp)
      (dolist (part (rest clause))
        (if (design-part-p part) (check-design definition part) (check-factor definition part)))
@@ -277,9 +277,9 @@ CLAUSES vary, and what the clause KEY names."
                           (lambda (n) (and (integerp n) (<= 1 n +largest+)))))
     (:time-limit (check-number-clause definition clause #'seconds-p))
     (:seed (check-number-clause definition clause #'integerp))
-    (:run (unless (rest clause) (reject definition clause))
+    (:run (unless (rest clause) (reject-by-usage definition clause))
      (check-runs definition clause))
-    (:thinking (unless (= 2 (length clause)) (reject definition clause)))
+    (:thinking (unless (= 2 (length clause)) (reject-by-usage definition clause)))
     ((:until :success) (check-test definition clause))
     ((:measure :each-tick)
      (check-each definition clause (lambda (part) (typep part 'named-form)))
@@ -288,20 +288,20 @@ CLAUSES vary, and what the clause KEY names."
 (defun check-whole (definition name clauses)
   (check-clauses definition clauses)
   (dolist (clause clauses) (check-clause definition clause))
-  (flet ((given-p (key) (nth-value 1 (clause-called key clauses))))
+  (flet ((given-p (key) (nth-value 1 (clause-arguments key clauses))))
     (unless (or (given-p :robots) (member :robots (varied-names clauses)))
       (reject-clause definition (list name +more+) "a clause (:robots name...)"))
     (unless (given-p :run) (reject-clause definition (list name +more+) "a clause (:run form...)")))
-  (when (and (clause-called :thinking clauses) (member :thinking (varied-names clauses)))
+  (when (and (clause-arguments :thinking clauses) (member :thinking (varied-names clauses)))
     (reject-clause definition (find :thinking clauses :key #'first)
                    "no such clause where :thinking varies"))
-  (dolist (part (clause-called :vary clauses))
+  (dolist (part (clause-arguments :vary clauses))
     (when (find-if (lambda (case) (intersection (part-names part) (mapcar #'first (rest case))))
-                   (clause-called :conditions clauses))
+                   (clause-arguments :conditions clauses))
       (reject-clause definition part "something that the :conditions do not vary already")))
   (check-column-names definition clauses)
   (doubt-unnamed :measure clauses)
   (doubt-unnamed :each-tick clauses)
-  (doubt-nested-run (clause-called :run clauses))
-  (doubt-truth-of-plan (first (last (clause-called :run clauses))))
+  (doubt-nested-run (clause-arguments :run clauses))
+  (doubt-truth-of-plan (first (last (clause-arguments :run clauses))))
   (doubt-unused clauses))

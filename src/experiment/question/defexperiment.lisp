@@ -1,4 +1,4 @@
-;;;; defexperiment.lisp -- DEFEXPERIMENT: an experiment from its text.
+;;;; defexperiment.lisp -- DEFEXPERIMENT.
 
 (in-package :ars-magna.experiment)
 
@@ -7,45 +7,46 @@
 ;;; Expanding.
 
 (defun value-form (name form)
-  "Return the form of the value that FORM gives to what is called NAME: a thinking mode that is a
-list needs no quote."
+  "Return the form for the value FORM of the factor NAME. A thinking mode that is a list needs no
+quote."
   (if (and (eq :thinking name) (thinking-mode-p form)) `',form form))
 
 (defun values-form (part)
-  "Return the form of the list of values in PART of :vary; of a design, of the bounds of ranges."
+  "Return the form for the list of values in PART of :vary; for a design, of bounds of ranges."
   (cond ((design-part-p part)
          `(list ,@(loop for (nil low high) in (design-ranges part) collect `(list ,low ,high))))
         ((eq :in (second part)) (third part))
         (t `(list ,@(loop for form in (rest part) collect (value-form (first part) form))))))
 
 (defun parts-form (parts value-of)
-  "Return the form of a list of lists (part value) for PARTS; VALUE-OF returns a part's value form."
+  "Return the form for lists (part value) of PARTS. VALUE-OF returns the form for a part's value."
   `(list ,@(loop for part in parts collect `(list ',part ,(funcall value-of part)))))
 
 (defun function-form (clauses forms)
-  "Return a function of the variables that CLAUSES vary, which evaluates FORMS; NIL if there are
-none."
+  "Return the form for a function that evaluates FORMS, with the variables that CLAUSES vary as
+parameters; NIL without FORMS."
   (let ((variables (varied-variables clauses)))
     (and forms
          `(lambda ,variables
             (declare (ignorable ,@(remove-if #'special-p variables))
-                     (special ,@(remove-if-not #'variable-name-p (clause-called :robots clauses))))
+                     (special ,@(remove-if-not #'variable-name-p
+                                               (clause-arguments :robots clauses))))
             ,@forms))))
 
 (defun named-functions-form (key clauses)
-  `(list ,@(loop for (name form) in (clause-called key clauses)
+  `(list ,@(loop for (name form) in (clause-arguments key clauses)
                  collect `(list ',name ,(function-form clauses (list form))))))
 
 (defun clean-p (clauses)
-  (multiple-value-bind (rest given) (clause-called :clean clauses)
+  (multiple-value-bind (rest given) (clause-arguments :clean clauses)
     (and given (or (null rest) (first rest)))))
 
 (defun thinking-form (clauses)
-  (multiple-value-bind (rest given) (clause-called :thinking clauses)
+  (multiple-value-bind (rest given) (clause-arguments :thinking clauses)
     (if given (value-form :thinking (first rest)) :free)))
 
 (defun deciding-text (clauses)
-  "Return those of CLAUSES that decide a trial, whatever varies."
+  "Return the CLAUSES, apart from factors, that affect the outcome of a trial."
   (loop for key in '(:robots :parameters :clean :thinking :seed :limit :run :until :success
                      :measure :each-tick)
         for clause = (find key clauses :key #'first)
@@ -54,21 +55,21 @@ none."
 (defun definition-form (name documentation clauses form)
   `(define-experiment ',name
      :documentation ,documentation
-     :robots ',(clause-called :robots clauses)
-     :parameters ,(parts-form (clause-called :parameters clauses) #'second)
+     :robots ',(clause-arguments :robots clauses)
+     :parameters ,(parts-form (clause-arguments :parameters clauses) #'second)
      :clean ,(clean-p clauses)
      :thinking ,(thinking-form clauses)
-     :factors ,(parts-form (clause-called :vary clauses) #'values-form)
-     :cases (list ,@(loop for (name . parts) in (clause-called :conditions clauses)
+     :factors ,(parts-form (clause-arguments :vary clauses) #'values-form)
+     :cases (list ,@(loop for (name . parts) in (clause-arguments :conditions clauses)
                           collect `(list ',name ,(parts-form parts (lambda (part)
                                                                      (apply #'value-form part))))))
      ,@(loop for key in '(:trials :seed :limit :time-limit)
-             for value = (first (clause-called key clauses))
+             for value = (first (clause-arguments key clauses))
              when value append (list key value))
      :variables ',(varied-variables clauses)
-     :run ,(function-form clauses (clause-called :run clauses))
-     :until ,(function-form clauses (clause-called :until clauses))
-     :success ,(function-form clauses (clause-called :success clauses))
+     :run ,(function-form clauses (clause-arguments :run clauses))
+     :until ,(function-form clauses (clause-arguments :until clauses))
+     :success ,(function-form clauses (clause-arguments :success clauses))
      :measures ,(named-functions-form :measure clauses)
      :series ,(named-functions-form :each-tick clauses)
      :form ',form
@@ -129,8 +130,9 @@ tells what is kept."
 ;;; Evaluating.
 
 (defun check-value (definition part value)
-  "Signal MALFORMED-DEFINITION unless VALUE, of PART, can be had by what varies there."
-  (let* ((name (first part)) (parameter (and (not (surrounding-p name)) (parameter-called name))))
+  "Signal MALFORMED-DEFINITION unless the factor of PART can have VALUE."
+  (let* ((name (first part))
+         (parameter (and (not (keyword-factor-p name)) (parameter-called name))))
     (cond ((eq :robots name) (check-robots definition part (ensure-list value)))
           ((eq :thinking name)
            (unless (thinking-mode-p value)
@@ -164,7 +166,7 @@ tells what is kept."
                      (format nil "robots of one map, not of ~{~(~A~)~^ and ~}" maps)))))
 
 (defun equal-in-table-p (text other)
-  "True if TEXT and OTHER, of a table, are the same text or the same number, such as 1 and 1.0."
+  "True if TEXT and OTHER, cells of a table, are equal texts or numbers, such as 1 and 1.0."
   (or (string= text other)
       (let ((number (number-in text)) (other-number (number-in other)))
         (and number other-number (= number other-number)))))
@@ -186,7 +188,7 @@ tells what is kept."
   (check-values-differ definition part (mapcar #'value-text values)))
 
 (defun axis-from (definition part values)
-  "Return the axis that PART, of :vary, makes of VALUES, as VALUES-FORM has them."
+  "Return the axis for PART of :vary. VALUES are the value of its VALUES-FORM."
   (cond ((design-part-p part)
          (let ((choices (design-choices definition part values)))
            (dolist (choice choices)
@@ -199,7 +201,7 @@ tells what is kept."
                  (loop for value in values collect (list (list (first part) value)))))))
 
 (defun settings-from (definition settings)
-  "Return lists (name value) for SETTINGS, lists (part value) of a definition."
+  "Return lists (name value) for SETTINGS, lists (part value). Signals MALFORMED-DEFINITION."
   (loop for (part value) in settings
         do (check-value definition part value)
         collect (list (first part) value)))
@@ -220,8 +222,8 @@ tells what is kept."
                         &rest options
                         &key robots parameters clean (thinking :free) factors cases
                         &allow-other-keys)
-  "Return an experiment called NAME; DEFINITION is what errors in it are said to be in. OPTIONS are
-also those slots of an experiment that are taken as they are."
+  "Return an experiment called NAME. Errors name DEFINITION. OPTIONS may also be the initial values
+of other slots of an experiment."
   (check-robots definition (list* :robots robots) robots)
   (check-value definition (list :thinking thinking) thinking)
   (let* ((axes (loop for (part values) in factors collect (axis-from definition part values)))
@@ -240,7 +242,7 @@ also those slots of an experiment that are taken as they are."
     experiment))
 
 (defun define-experiment (name &rest options)
-  "Define the experiment NAME by OPTIONS, those of EXPERIMENT-FROM; what DEFEXPERIMENT expands to.
-Return it."
+  "Define and return the experiment NAME. OPTIONS are those of EXPERIMENT-FROM. DEFEXPERIMENT
+expands to a call of this."
   (register *experiments* name
             (apply #'experiment-from name (title "defexperiment" name) options)))

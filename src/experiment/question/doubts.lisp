@@ -1,4 +1,4 @@
-;;;; doubts.lisp -- what is told of clauses of DEFEXPERIMENT that say what was hardly meant.
+;;;; doubts.lisp -- warnings about clauses of DEFEXPERIMENT that are valid but probably mistakes.
 
 (in-package :ars-magna.experiment)
 
@@ -13,15 +13,15 @@
   (dolist (name (varied-variables clauses))
     (unless (or (special-p name)
                 (loop for key in '(:run :until :success :measure :each-tick)
-                      thereis (mentioned-p name (clause-called key clauses))))
+                      thereis (mentioned-p name (clause-arguments key clauses))))
       (doubt-definition "~A is varied, but no form mentions it.~@[ Did you mean the parameter ~
                          ~A?~]"
                         name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
 
 (defun doubt-unnamed (key clauses)
-  "Warn of a call with a robot in the clause KEY of CLAUSES without a name before it."
-  (loop with robots = (clause-called :robots clauses)
-        for (name form) in (clause-called key clauses)
+  "Warn if a part (name form) of the clause KEY of CLAUSES looks like a call with a robot."
+  (loop with robots = (clause-arguments :robots clauses)
+        for (name form) in (clause-arguments key clauses)
         when (and (fboundp name) (symbolp form) (member form robots))
           do (doubt-definition "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
                                 it first: (~(~S~) (NAME (~A ~A)))."
@@ -30,14 +30,14 @@
 (defun doubt-nested-run (forms)
   "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
   (when (mentioned-p 'with-simulation forms)
-    (doubt-definition "a trial is a run of its own, and a with-simulation in it another one, which ~
-                       has the same seed in each trial, and of which measures see nothing. Leave ~
+    (doubt-definition "a trial is already a run. A with-simulation in it starts another one, with ~
+                       the same seed in each trial, and measures do not see it. Leave ~
                        with-simulation out: (run-plan ...) alone.")))
 
 ;;; A plan's name.
 
 (defun quoted-name (form)
-  "Return the symbol that FORM, 'NAME or #'NAME, is of, or NIL."
+  "Return the symbol NAME if FORM is 'NAME or #'NAME; else NIL."
   (and (typep form '(cons (member quote function) (cons symbol null))) (second form)))
 
 (defun run-plan-text (name)
@@ -45,7 +45,7 @@
                runs nothing" name))
 
 (defun check-runs (definition clause)
-  "Signal MALFORMED-DEFINITION if CLAUSE, :run, has no more than the name of a plan."
+  "Signal MALFORMED-DEFINITION if CLAUSE, :run, is only the name of a plan."
   (let ((name (and (null (cddr clause)) (quoted-name (second clause)))))
     (when (and name (find-procedure name nil))
       (reject-clause definition clause (run-plan-text name))))
@@ -55,7 +55,7 @@
 ;;; Tests.
 
 (defun doubt-truth-of-plan (form)
-  "Warn if FORM, the last one of :run, is true if a plan's value is, as that of a failed one is."
+  "Warn if FORM, the last one of :run, tests the first value of a plan, which is true on failure."
   (when (and (typep form '(cons symbol (cons (cons symbol) (cons (eql t) (or null (cons null))))))
              (same-name-p 'if (first form))
              (same-name-p 'run-plan (first (second form))))
@@ -77,14 +77,14 @@
                  RUN-PLAN be the last form of :run: its second value says how it ended.")))
 
 (defun first-value-p (form)
-  "True if FORM gives the first value of :run, or of RUN-PLAN."
+  "True if FORM returns the first value of :run, or of RUN-PLAN."
   (flet ((call-p (form name) (and (typep form '(cons symbol)) (same-name-p name (first form)))))
     (or (call-p form 'run-plan)
         (and (or (call-p form 'first) (call-p form 'car))
              (call-p (second form) 'trial-values)))))
 
 (defun state-as-test-advice (form)
-  "Return in sentences that FORM compares the first value of a plan with how plans end; else NIL."
+  "Return advice if FORM compares the first value of a plan with :SUCCEEDED or :FAILED; else NIL."
   (block advice
     (map-comparisons (lambda (subject word comparison)
                        (declare (ignore comparison))
@@ -96,8 +96,8 @@
     nil))
 
 (defun check-test (definition clause)
-  "Signal MALFORMED-DEFINITION unless CLAUSE has one form, and warn if that is no test."
-  (unless (= 2 (length clause)) (reject definition clause))
+  "Signal MALFORMED-DEFINITION unless CLAUSE has one form; warn if that is always true or false."
+  (unless (= 2 (length clause)) (reject-by-usage definition clause))
   (let* ((test (second clause))
          (doubt (or (test-doubt test)
                     (test-advice test)
@@ -107,7 +107,7 @@
     (when doubt (doubt-definition "~A: ~(~S~): ~A" definition (first clause) doubt))))
 
 (defun doubt-quoted-measure (definition part)
-  "Warn if the form in PART, (name form), is quoted: the measure is that form then."
+  "Warn if the form in PART, (name form), is quoted: the measure would be the form itself."
   (let ((name (quoted-name (second part))))
     (when (or (typep (second part) '(cons (eql quote) (cons cons null)))
               (and name (fboundp name)))

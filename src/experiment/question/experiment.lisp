@@ -1,4 +1,4 @@
-;;;; experiment.lisp -- what an experiment is: its conditions, what a trial does, what it asks.
+;;;; experiment.lisp -- experiments: their conditions, their trials, the columns of their tables.
 
 (in-package :ars-magna.experiment)
 
@@ -6,48 +6,48 @@
 
 (addition experiment-p)
 
-;;; What varies is a factor: a parameter, a variable of the experiment's forms, the thinking mode,
-;;; or the robots, and with them the world. A condition gives each factor a value. Conditions are
-;;; all combinations of the factors' values, or a list of named cases, or each case with each
-;;; combination. What a design samples varies together: its factors are one axis. An axis is a list
-;;; (names choices): the names of factors that vary together, and lists of settings (name value).
+;;; A factor is something that varies: a parameter, a variable of the experiment's forms, the
+;;; thinking mode, or the robots, and with them the world. A condition gives each factor a value.
+;;; Conditions are all combinations of the factors' values, or a list of named cases, or each case
+;;; with each combination. All factors of a design vary together: they are one axis. An axis is a
+;;; list (names choices): names of factors that vary together, and lists of settings (name value).
 
 (define-record (trial-condition (:conc-name condition-) (:constructor %make-condition))
   "What the trials of one condition have in common."
-  (name "" string "what the condition is called, a string" :writable :export)
-  (texts '() list "how its values stand in a table" :writable)
+  (name "" string "the name of the condition, a string" :writable :export)
+  (texts '() list "the texts of its values in a table" :writable)
   (settings '() list "lists (factor-name value)" :writable)
   (robots '() list :writable)
   (thinking :free t :writable)
   (parameters #() simple-vector "the values of all parameters" :writable)
   (arguments '() list "the values of the variables of the experiment's forms, in order" :writable)
   (fingerprint nil (or null string)
-               "what decides its trials, as far as that has been looked up" :writable)
+               "the number that identifies its code and configuration, once computed" :writable)
   (variables '() list "lists (symbol value): users' special variables that its trials can reach, and
 their values" :writable)
-  (weak-parts (make-hash-table :test 'equal) hash-table "parts, as of a fingerprint, for what these
-hold weakly: the keys of a table" :writable))
+  (weak-parts (make-hash-table :test 'equal) hash-table "fingerprint parts for objects that these
+variables hold weakly: the keys of a table" :writable))
 
 (defmethod print-object ((condition trial-condition) stream)
   (print-unreadable-object (condition stream)
     (format stream "condition ~A" (condition-name condition))))
 
 (defun combinations (axes)
-  "Return all lists of settings of AXES, the last one varying fastest."
+  "Return all combinations of the settings of AXES, lists; the last axis varies fastest."
   (if (null axes)
       (list '())
       (loop with rest = (combinations (rest axes))
             for choice in (second (first axes))
             append (loop for others in rest collect (append choice others)))))
 
-(defun name-for (case-name settings)
-  "Return what the condition of CASE-NAME, or NIL, with the other SETTINGS is called."
+(defun make-condition-name (case-name settings)
+  "Return the name of the condition of CASE-NAME, or NIL, with the other SETTINGS."
   (let ((words (append (and case-name (list (string-downcase case-name)))
                        (loop for (name value) in settings
                              collect (format nil "~(~A~)=~A" name (value-text value))))))
     (if words (format nil "~{~A~^ ~}" words) "all")))
 
-;;; What a setting does.
+;;; Parameters.
 
 (defun parameter-called (name)
   "Return the parameter whose variable is the symbol NAME, or NIL."
@@ -55,8 +55,8 @@ hold weakly: the keys of a table" :writable))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 
 (defun parameters-with (settings clean)
-  "Return the values of all parameters, in a vector: as SETTINGS, lists (name value), say, the last
-one first, or as in a noiseless world if CLEAN is true, or else the manual's."
+  "Return a vector of the values of all parameters: from SETTINGS, lists (name value), where a later
+one wins; else without noise if CLEAN is true; else the manual's."
   (cl:map 'simple-vector
           (lambda (parameter)
             (let ((setting (find (parameter-symbol parameter) settings
@@ -70,10 +70,10 @@ one first, or as in a noiseless world if CLEAN is true, or else the manual's."
 ;;;; Experiments
 
 (define-record (experiment (:constructor %make-experiment))
-  "A question: what is done in a trial, under which conditions, and what is measured."
-  (name nil symbol "the symbol that the experiment is called" :writable :addition)
+  "An experiment: what a trial does, under which conditions, and what is measured."
+  (name nil symbol "the name of the experiment, a symbol" :writable :addition)
   (documentation nil (or null string)
-                 "what the experiment asks, a string, or NIL" :writable :export)
+                 "the question of the experiment, a string, or NIL" :writable :export)
   (package *package* package "the package in which the experiment was written" :writable :export)
   (robots '() list :writable)
   (thinking :free t :writable)
@@ -81,19 +81,19 @@ one first, or as in a noiseless world if CLEAN is true, or else the manual's."
   (cases '() list "lists (name settings), settings are lists (factor-name value)" :writable)
   (conditions '() list "a list of the experiment's conditions" :writable :addition)
   (trials 100 (integer 1)
-          "how many trials of each condition there are unless somebody says" :writable :addition)
+          "the default number of trials of each condition" :writable :addition)
   (seed 0 integer :writable)
-  (limit 100000 (integer 1) "for how many ticks a trial may go on" :writable :export)
-  (time-limit nil (or null real) "how many seconds a trial may take, or NIL" :writable)
+  (limit 100000 (integer 1) "the most ticks of a trial" :writable :export)
+  (time-limit nil (or null real) "the most seconds of a trial, or NIL" :writable)
   (run nil (or null function) "a function of the variables' values, or NIL" :writable)
   (until nil (or null function) "a function of the variables' values, or NIL" :writable)
   (success nil (or null function) "a function of the variables' values, or NIL" :writable)
   (measures '() list "what is measured at the end of a trial, lists (name function)" :writable)
   (series '() list "what is measured from tick to tick, lists (name function)" :writable)
   (variables '() list :writable)
-  (form '() list "all of its text" :writable)
-  (deciding '() list "what of it decides a trial" :writable)
-  (results nil t "what came of it when it was run last in this Lisp, or NIL" :writable))
+  (form '() list "the whole form" :writable)
+  (deciding '() list "the clauses that affect a trial" :writable)
+  (results nil t "the results of its last run in this Lisp, or NIL" :writable))
 
 (defmethod print-object ((experiment experiment) stream)
   (print-unreadable-object (experiment stream :type t)
@@ -104,11 +104,11 @@ one first, or as in a noiseless world if CLEAN is true, or else the manual's."
 ;;; Conditions.
 
 (defun condition-from (experiment settings case-name others clean parameters)
-  "Return the condition of EXPERIMENT with SETTINGS, those of CASE-NAME and OTHERS together, beside
-PARAMETERS, lists (name value), that all have."
+  "Return the condition of EXPERIMENT with SETTINGS: those of CASE-NAME and OTHERS. PARAMETERS are
+lists (name value) for all conditions."
   (let ((robots (second (assoc :robots settings))))
     (%make-condition
-     :name (name-for case-name others)
+     :name (make-condition-name case-name others)
      :texts (append (and (experiment-cases experiment) (list (string-downcase case-name)))
                     (loop for name in (factor-names experiment)
                           collect (value-text (second (assoc name settings)))))
@@ -133,27 +133,27 @@ PARAMETERS, lists (name value), that all have."
                      collect (condition-from experiment (append settings others) case others
                                              clean parameters))))
 
-(defun called (text things name)
-  "Return those of THINGS whose name, by the function NAME, is TEXT; if there are none, those that
-have it in their names."
+(defun find-by-name (text things name)
+  "Return the THINGS whose name, as the function NAME returns it, is TEXT; if there are none, those
+whose name contains TEXT."
   (or (remove text things :key name :test-not #'string-equal)
       (remove-if-not (lambda (thing) (search text (funcall name thing) :test #'char-equal))
                      things)))
 
 (addition find-condition)
 (defun find-condition (experiment designator)
-  "Return the condition of EXPERIMENT, or of the one so named, that DESIGNATOR means: a condition,
-its number, from 1, or what it is called, as far as that is unambiguous. Signals UNKNOWN-NAME."
+  "Return the condition of EXPERIMENT, or of the experiment with that name, for DESIGNATOR: a
+condition, its number, from 1, its name, or an unambiguous part of that. Signals UNKNOWN-NAME."
   (let* ((conditions (experiment-conditions (find-experiment experiment)))
          (text (if (typep designator '(or symbol string)) (string designator) ""))
-         (called (and (string/= text "") (called text conditions #'condition-name))))
+         (named (and (string/= text "") (find-by-name text conditions #'condition-name))))
     (cond ((member designator conditions) designator)
           ((and (integerp designator) (<= 1 designator (length conditions)))
            (nth (1- designator) conditions))
-          ((= 1 (length called)) (first called))
+          ((= 1 (length named)) (first named))
           (t (reject-name "condition" (if (symbolp designator) designator
                                           (princ-to-string designator))
-                          (mapcar #'condition-name (or called conditions)))))))
+                          (mapcar #'condition-name (or named conditions)))))))
 
 ;;; Trials.
 
@@ -162,13 +162,13 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
   (+ (experiment-seed experiment) trial))
 
 (defparameter *columns-before* '("experiment" "fingerprint" "condition")
-  "What stands in the table before what varies.")
+  "The columns of a table before the factors.")
 (defparameter *columns-between* '("seed" "trial" "outcome" "reason" "ticks")
-  "What stands between what varies and what is measured.")
+  "The columns of a table of rows between the factors and the measures.")
 (defparameter *columns-after* '("digest" "error")
-  "What stands after what is measured.")
+  "The columns of a table of rows after the measures.")
 (defparameter *series-columns* '("seed" "trial" "tick")
-  "What stands in the table of series between what varies and what is recorded.")
+  "The columns of a table of series between the factors and the recorded values.")
 
 (defun factor-columns (experiment)
   (append (and (experiment-cases experiment) (list "case"))
@@ -185,7 +185,7 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
   (append *columns-before* (factor-columns experiment) *series-columns*
           (part-columns (experiment-series experiment))))
 
-;;;; What an experiment asks
+;;;; The question of an experiment
 
 (defun first-sentence (text)
   (let* ((paragraph (search (format nil "~2%") text))
@@ -196,7 +196,7 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
     (if (and end (plusp end)) (subseq line 0 end) line)))
 
 (defun question-of (name)
-  "Return what the experiment that a table calls NAME asks, if that is known, or NIL."
+  "Return the question of the experiment called NAME in a table, or NIL if it is unknown."
   (let* ((experiment (find-experiment name nil))
          (text (and experiment (experiment-documentation experiment))))
     (and text (string/= "" (one-line text)) (first-sentence text))))

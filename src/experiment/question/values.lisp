@@ -1,27 +1,27 @@
-;;;; values.lisp -- what may stand in a table, and how it is written there.
+;;;; values.lisp -- which values a table may have, and how they are written.
 
 (in-package :ars-magna.experiment)
 
 (export '(number-in))
 
-;;; Whatever reads the table, R, pandas or sqlite, must take a number for a number. So floats have
-;;; no exponent marker of Lisp's, ratios become floats, truth is TRUE or FALSE, and lists are JSON.
+;;; R, pandas and sqlite must read numbers as numbers. So floats have no Lisp exponent marker,
+;;; ratios become floats, booleans are TRUE or FALSE, and lists are JSON.
 
 ;;; Reader and printer.
 
 (defun call-plainly (function &optional (package *package*))
-  "Call FUNCTION with the reader and the printer as they are in each trial, in PACKAGE."
+  "Call FUNCTION with the reader and printer variables as in each trial, in PACKAGE."
   (let ((*package* package) (*readtable* (global-value '*readtable*)) (*read-base* 10))
     (call-printing-plainly function)))
 
 ;;; Values.
 
 (defconstant +longest-text+ 500
-  "How many characters a text in a table has at most.")
+  "The maximum number of characters of a text in a table.")
 
 (defun address-end (text start)
-  "Return where the address ends that begins in TEXT at START, as in #<HASH-TABLE {10042BD5D3}>; NIL
-if none does."
+  "Return the end of the address that begins at START in TEXT, as in #<HASH-TABLE {10042BD5D3}>, or
+NIL if there is none."
   (let ((end (and (char= #\{ (char text start))
                   (position #\} text :start start))))
     (and end (> end (+ 6 start))
@@ -29,7 +29,7 @@ if none does."
          (1+ end))))
 
 (defun without-addresses (text)
-  "Return TEXT without where in memory objects happened to be."
+  "Return TEXT without memory addresses of objects."
   (if (find #\{ text)
       (with-output-to-string (out)
         (loop with i = 0
@@ -40,26 +40,26 @@ if none does."
       text))
 
 (defun writable-char-p (char)
-  "True if CHAR can be seen, and be written to a file."
+  "True if CHAR is visible and can be written to a file."
   (and (graphic-char-p char) (not (<= #xD800 (char-code char) #xDFFF))))
 
 (defun plain-text (text)
-  "Return TEXT on one line, of bounded length, with nothing in it but what can be seen and written,
-and is the same in each run."
+  "Return TEXT on one line, cut to +LONGEST-TEXT+, with only visible characters and no addresses, so
+that it is the same in each run."
   (cut (one-line (without-addresses (substitute-if-not #\Space #'writable-char-p text)))
        +longest-text+))
 
 (defun float-text (number)
-  "Return NUMBER, a finite float, in the fewest digits that stand for it alone."
+  "Return NUMBER, a finite float, as the shortest text that reads back as it."
   (let ((*read-default-float-format* (type-of number)))
     (prin1-to-string number)))
 
 (defun bare-text (object)
-  "Return OBJECT, a symbol, string or character, as people write it, without packages."
+  "Return OBJECT, a symbol, string or character, in lower case, without package and quotes."
   (format nil "~(~A~)" (safe-text object :escape nil)))
 
 (defun finite-value-p (value)
-  "True if VALUE is a number that a table can have."
+  "True if VALUE is a finite real number."
   (and (realp value) (finite-p value)))
 
 (defun plain-part-p (value)
@@ -69,7 +69,7 @@ and is the same in each run."
     (cons (and (proper-list-p value) (every #'plain-part-p value)))))
 
 (defun value-p (value)
-  "True if VALUE may stand in a table: a number, symbol, string, character, or list of such."
+  "True if a table may have VALUE: a number, symbol, string, character, or a list of these."
   (and (tree-p value) (plain-part-p value)))
 
 (defun integer-text (integer)
@@ -81,8 +81,7 @@ and is the same in each run."
     (ratio (float-text (float number 1d0)))
     (float (float-text number))))
 
-;; What reads tables, reads JSON as well; in Lisp's own way of writing lists nobody else finds the
-;; parts.
+;; Programs that read tables can take JSON lists apart, but not Lisp lists.
 (defun json-text (value)
   (typecase value
     (boolean (if value "true" "false"))
@@ -101,9 +100,9 @@ and is the same in each run."
     (string (plain-text value))
     (t (plain-text (bare-text value)))))
 
-;; A trial's own forms may set the printer's variables.
+;; Forms of a trial may set the printer's variables.
 (defun value-text (value)
-  "Return how VALUE stands in a table, whatever the reader and the printer are set to."
+  "Return the text for VALUE in a table, whatever the reader and the printer are set to."
   (case value
     ((t) "TRUE")
     ((nil) "FALSE")
@@ -113,11 +112,11 @@ and is the same in each run."
 ;;; Back from a table.
 
 (defun number-in (text)
-  "Return the number that TEXT, of a table, is, or NIL."
+  "Return the number that TEXT, a cell of a table, represents, or NIL."
   (and (csv-number-p text)
        (notany (lambda (char) (find char "/dDfFsS")) text)
        (char/= #\+ (char text 0))
-       ;; What begins with an exponent is a name.
+       ;; A symbol, such as e5, is no number.
        (let* ((*read-default-float-format* 'double-float) (*read-base* 10)
               (value (ignore-errors (values (read-from-string text)))))
          (and (realp value) value))))

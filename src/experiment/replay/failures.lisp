@@ -6,7 +6,7 @@
 ;;; error, are a group. An error in a continuation or kicker lets its trial go on; so a trial that
 ;;; succeeded may be in a group, too.
 
-(defun flaws-of (sample)
+(defun failure-groups (sample)
   "Return lists (trials outcome reason error) of the trials of SAMPLE that went wrong in the same
 way, the most frequent first."
   (let ((known (make-hash-table :test 'equal)) (keys '()))
@@ -20,12 +20,12 @@ way, the most frequent first."
                (push trial (gethash key known))))
     (stable-sort (loop for key in (reverse keys)
                        collect (cons (reverse (gethash key known)) key))
-                 #'> :key #'flaw-count)))
+                 #'> :key #'failure-count)))
 
-(defun flaw-count (flaw)
+(defun failure-count (flaw)
   (length (first flaw)))
 
-(defun flaw-plist (flaw sample)
+(defun failure-plist (flaw sample)
   (destructuring-bind (trials outcome reason error) flaw
     (let ((count (length trials)))
       (list :condition (sample-condition sample)
@@ -36,7 +36,7 @@ way, the most frequent first."
 
 ;;; Which results are meant.
 
-(defun existing-results (designator)
+(defun designated-results (designator)
   "Return the results that DESIGNATOR means: results, the name of a directory that has some, or an
 experiment that has been run here, or its name. Signals MISUSE and DAMAGED-TABLE."
   (let ((experiment (and (typep designator '(or symbol string experiment))
@@ -54,12 +54,12 @@ experiment that has been run here, or its name. Signals MISUSE and DAMAGED-TABLE
           (t (reject-argument "trial-failures" "results" designator
                               "results, an experiment, or the name of a directory")))))
 
-(defun samples-meant (results condition)
+(defun samples-matching (results condition)
   "Return those samples of RESULTS whose conditions are called CONDITION, or have that in their
 names; all if it is NIL. Signals UNKNOWN-NAME."
   (let ((samples (results-samples results)))
     (cond ((null condition) samples)
-          ((called (string condition) samples #'sample-condition))
+          ((find-by-name (string condition) samples #'sample-condition))
           (t (reject-name "condition" (string condition)
                           (mapcar #'sample-condition samples))))))
 
@@ -73,8 +73,8 @@ trial continue count, too. REPLAY-TRIAL opens a trial. Signals MISUSE, UNKNOWN-N
 DAMAGED-TABLE."
   (check-argument trial-failures condition (typep condition '(or string symbol))
                   "a string or symbol, or NIL")
-  (loop for sample in (samples-meant (existing-results results) condition)
-        append (loop for flaw in (flaws-of sample) collect (flaw-plist flaw sample))))
+  (loop for sample in (samples-matching (designated-results results) condition)
+        append (loop for flaw in (failure-groups sample) collect (failure-plist flaw sample))))
 
 ;;; Printing.
 
@@ -90,21 +90,21 @@ DAMAGED-TABLE."
     (format nil "~A~@[: ~A~]~@[; ~A~]" outcome
             (and (string/= "" reason) reason) (and (string/= "" error) error))))
 
-(defun print-flaws (sample stream)
-  (let* ((flaws (flaws-of sample)) (count (reduce #'+ flaws :key #'flaw-count)))
+(defun print-failure-groups (sample stream)
+  (let* ((flaws (failure-groups sample)) (count (reduce #'+ flaws :key #'failure-count)))
     (format stream "~A: ~D trials, ~:[~D with something wrong~;nothing wrong~]~%"
             (sample-condition sample) (length (sample-trials sample)) (zerop count) count)
     (dolist (flaw flaws)
-      (format stream "  ~5D  ~5,1F %  ~A~%                  ~A~%" (flaw-count flaw)
-              (* 100d0 (/ (flaw-count flaw) (length (sample-trials sample))))
+      (format stream "  ~5D  ~5,1F %  ~A~%                  ~A~%" (failure-count flaw)
+              (* 100d0 (/ (failure-count flaw) (length (sample-trials sample))))
               (flaw-text flaw) (example-text flaw sample)))))
 
 (addition print-failures)
 (defun print-failures (results &optional condition (stream *standard-output*))
   "Write to STREAM what TRIAL-FAILURES returns: for each condition how many trials went wrong in
 which way, and a line for the prompt that opens one of them. Return nothing."
-  (dolist (sample (samples-meant (existing-results results) condition) (values))
-    (print-flaws sample stream)))
+  (dolist (sample (samples-matching (designated-results results) condition) (values))
+    (print-failure-groups sample stream)))
 
 ;;;; Values over time
 
@@ -131,9 +131,9 @@ which way, and a line for the prompt that opens one of them. Return nothing."
   "Return the block in INDEX of the trial at PLACE of SAMPLE; NIL if it has no lines. Signals MISUSE
 if not all of them are there."
   (when (aref (sample-digests sample) place)
-    (or (whole-block (blocks-of index (row-key sample) (aref (sample-seeds sample) place)
-                                (aref (sample-trials sample) place))
-                     (1+ (aref (sample-ticks sample) place)))
+    (or (complete-block (blocks-of index (row-key sample) (aref (sample-seeds sample) place)
+                                   (aref (sample-trials sample) place))
+                        (1+ (aref (sample-ticks sample) place)))
         (reject-use "trial-series: not all lines of trial ~D of ~A are in series.csv. Run the ~
                      experiment again with that directory: it runs such trials again."
                     (aref (sample-trials sample) place) (sample-condition sample)))))
@@ -159,9 +159,9 @@ from 1, its name, or a part of that. Each call reads all of series.csv. Signals 
 directory, no such file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
   (check-argument trial-series trial (and (integerp trial) (<= 0 trial +largest+))
                   "the number of a trial; they count from 1")
-  (let* ((results (existing-results results))
+  (let* ((results (designated-results results))
          (file (series-file (directory-of-series results)))
-         (sample (the-meaning results condition))
+         (sample (designated-sample results condition))
          (place (place-of-trial sample trial))
          (index (index-series (list file) (header-of file *series-layout*)))
          (block (block-of-trial index sample place)))

@@ -1,32 +1,32 @@
-;;;; replaying.lisp -- REPLAY-TRIAL: a trial run again, in the open.
+;;;; replaying.lisp -- REPLAY-TRIAL: running a trial again where you can watch it.
 
 (in-package :ars-magna.experiment)
 
 (export '(run-again call-aside trial-words *trial-replayed* await-time row-of-trial
           row-differences measured))
 
-;;; Workers run trials in threads of their own, without output. Here a trial runs where you see its
-;;; output and can stop it between two ticks. It takes the same course, as variables have their
-;;; top-level values as in a worker, whatever this thread has bound. Functions that look at the
-;;; trial are called aside: with the reader, printer and dice from outside, and the debugger.
+;;; Workers run trials in their own threads, without output. Here a trial runs in your thread: you
+;;; see its output and can stop it between two ticks. It takes the same course, as variables have
+;;; their top-level values, as in a worker, whatever this thread has bound. Functions that inspect
+;;; the trial are called aside: with the reader, printer, dice and debugger from outside the trial.
 
 (defparameter *surroundings*
   (list *lisps-dice*
         '*package* '*readtable* '*read-default-float-format* '*read-base* '*print-base*
         '*print-radix* '*print-case* '*print-pretty* '*print-readably* '*print-escape*
         '*print-circle* '*print-length* '*print-level* '*print-array* '*print-gensym* '*asker*)
-  "Variables with one value for a trial and another for functions that look at it.")
+  "Variables with one value for a trial and another for functions that inspect it.")
 
 (defstruct (outside (:constructor make-outside (values hook)) (:copier nil))
-  "What *SURROUNDINGS* and the debugger's hook are outside of a trial."
+  "The values of *SURROUNDINGS* and the debugger's hook outside of a trial."
   (values '() :type list)
   (hook nil :read-only t))
 
-(defvar *outside* nil "That of the trial that is run again here, or NIL.")
+(defvar *outside* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
 
 (defun call-aside (function)
-  "Call FUNCTION, which looks at the trial that is run again here, aside: it sees its own values of
-*SURROUNDINGS* and keeps what it sets of them. Its errors are no errors of the trial."
+  "Call FUNCTION, which inspects the trial that this thread runs again, with the values of
+*SURROUNDINGS* from outside; keep what it sets. Its errors are not errors of the trial."
   (let ((outside *outside*))
     (progv *surroundings* (outside-values outside)
       (let ((*aside-p* t))
@@ -36,13 +36,13 @@
             (setf (outside-values outside) (mapcar #'symbol-value *surroundings*))))))))
 
 (defun call-from-outside (function)
-  "Call FUNCTION, which runs a trial, and may call others aside."
+  "Call FUNCTION, which runs a trial and may use CALL-ASIDE."
   (let ((*outside* (make-outside (mapcar #'symbol-value *surroundings*) (debugger-hook))))
     (unwind-protect (funcall function)
       (mapc #'set *surroundings* (outside-values *outside*)))))
 
 (defun call-as-in-worker (function)
-  "Call FUNCTION with the variables of simulations as threads find them. Entering a
+  "Call FUNCTION with the global values of *SIMULATION-VARIABLES*, as in a new thread. Entering a
 debugger without a user is an error of the trial."
   (progv *simulation-variables* (mapcar #'global-value *simulation-variables*)
     (let ((*asker* nil))
@@ -52,16 +52,16 @@ debugger without a user is an error of the trial."
 
 (defun run-to-end (experiment result then)
   (keep-history)
-  (conduct-to-end experiment result)
+  (complete-trial experiment result)
   (setf (simulation-gate (current-simulation))
         (lambda (simulation)
-          (reject-use "The trial is over, at tick ~D; no more ticks of it pass."
+          (reject-use "The trial is over, at tick ~D; no more of its ticks can pass."
                       (simulation-tick simulation))))
   (funcall then result))
 
 (defun run-again (experiment condition trial &key gate (then #'identity) journal)
-  "Run TRIAL of CONDITION of EXPERIMENT as RUN-TRIAL does, but in the open. Call THEN with the
-result where the trial has ended, before its simulation is gone. Return the result."
+  "Run TRIAL of CONDITION of EXPERIMENT as RUN-TRIAL does, but in this thread and with output. When
+it has ended, call THEN with the result while its simulation still exists. Return the result."
   (let ((result (make-result condition trial (trial-seed experiment trial)))
         (begun-p nil))
     (flet ((run ()
@@ -84,10 +84,10 @@ result where the trial has ended, before its simulation is gone. Return the resu
 
 ;;;; REPLAY-TRIAL
 
-;;; How time passes: at the gate, between two ticks.
+;;; Pace and steps: waiting at the gate, between two ticks.
 
 (defun await-time (due simulation)
-  "Wait until the time DUE, in seconds; answer what other threads ask of SIMULATION meanwhile."
+  "Wait until the time DUE, in seconds; serve other threads' requests to SIMULATION meanwhile."
   (loop with never = (make-semaphore "never")
         for left = (- due (seconds-now))
         do (answer-questions (timeline-custody (simulation-timeline simulation)))
@@ -95,7 +95,7 @@ result where the trial has ended, before its simulation is gone. Return the resu
         do (wait-a-while never (min left 0.02))))
 
 (defun paced-gate (rate)
-  "Return a gate by which RATE ticks a second pass. It opens a display first, if it can."
+  "Return a gate that lets RATE ticks a second pass. It opens a display first, if there is one."
   (let ((due nil))
     (lambda (simulation)
       (unless due
@@ -109,15 +109,15 @@ result where the trial has ended, before its simulation is gone. Return the resu
       1)))
 
 (defun asked-to-stop-p (step simulation)
-  "Call STEP, or ask the user if that is T. True if SIMULATION is to go no further."
+  "Call STEP with SIMULATION, or ask the user if STEP is T. True if the trial is to stop."
   (call-aside (lambda ()
                 (if (functionp step)
                     (eq :stop (funcall step simulation))
                     (not (y-or-n-p "Tick ~D. Let the next one pass?"
                                    (simulation-tick simulation)))))))
 
-(defun looking-gate (until rate step stop)
-  "Return a gate for REPLAY-TRIAL; STOP is a function that leaves the trial."
+(defun replay-gate (until rate step stop)
+  "Return a gate for these arguments of REPLAY-TRIAL. STOP is a function that leaves the trial."
   (let ((pace (and rate (paced-gate rate))))
     (lambda (simulation)
       (let ((left (if until (- until (simulation-tick simulation)) most-positive-fixnum)))
@@ -126,7 +126,7 @@ result where the trial has ended, before its simulation is gone. Return the resu
         (when pace (funcall pace simulation))
         (if (or pace step) 1 left)))))
 
-;;; Against the table.
+;;; Comparison with the table.
 
 (defun row-of-trial (experiment condition trial directory)
   "Return the texts of the row of TRIAL of CONDITION of EXPERIMENT in DIRECTORY. Signals MISUSE if
@@ -143,7 +143,7 @@ there is none."
                 (native-name (directory-called directory)))))
 
 (defun row-differences (experiment result parts row directory)
-  "Return in words, in a list, in what RESULT differs from ROW, which is in DIRECTORY."
+  "Return a list of texts on how RESULT of EXPERIMENT differs from ROW, which is in DIRECTORY."
   (loop for column in (columns experiment)
         for now in (result-texts experiment result)
         for then in row
@@ -159,23 +159,23 @@ there is none."
 ;;; The whole.
 
 (defun keep-journal (journal)
-  "Return the journal of the current simulation, if JOURNAL is true; save it if that is a name."
+  "Return the journal of the current simulation if JOURNAL is true; save it if that is a name."
   (when journal
     (when (typep journal '(or string pathname)) (save-journal journal))
     (end-of-journal (current-simulation))))
 
 (defvar *trial-replayed* nil
-  "The trial that REPLAY-TRIAL runs in this thread, in words, or NIL.")
+  "The TRIAL-WORDS of the trial that REPLAY-TRIAL runs in this thread, or NIL.")
 
 (defun trial-words (experiment condition trial)
-  "Return in words, as one types it at the prompt, TRIAL of CONDITION of EXPERIMENT."
+  "Return the prompt line that opens TRIAL of CONDITION of EXPERIMENT."
   (format nil "trial ~(~A~) ~D ~D" (experiment-name experiment)
           (1+ (position condition (experiment-conditions experiment)))
           trial))
 
 (defun run-replaying (experiment condition trial until rate step journal then)
-  "Run TRIAL of CONDITION of EXPERIMENT; the other arguments are those of REPLAY-TRIAL. Return its
-result, whether it was stopped, and its journal, if JOURNAL is true."
+  "Run TRIAL of CONDITION of EXPERIMENT; the other arguments are those of REPLAY-TRIAL. Return the
+result, whether the trial was stopped, and its journal if JOURNAL is true."
   (let ((*trial-replayed* (trial-words experiment condition trial)) (stopped-p nil) (kept nil))
     (labels ((look-around ()
                (call-aside (lambda ()
@@ -188,7 +188,7 @@ result, whether it was stopped, and its journal, if JOURNAL is true."
                  (throw 'stopped result))))
       (let ((result (catch 'stopped
                       (run-again experiment condition trial
-                                 :gate (looking-gate until rate step #'stop)
+                                 :gate (replay-gate until rate step #'stop)
                                  :journal (and journal t)
                                  :then (lambda (result)
                                          (declare (ignore result))
@@ -196,14 +196,14 @@ result, whether it was stopped, and its journal, if JOURNAL is true."
         (values result stopped-p kept)))))
 
 (defun measured (experiment result)
-  "Return lists (name value) of what was measured in RESULT, of EXPERIMENT."
+  "Return lists (name value) of the measures in RESULT, of EXPERIMENT."
   (loop with shared = (make-hash-table :test 'equal)
         for (name) in (experiment-measures experiment)
         for text in (result-measures result)
         collect (list name (value-in text shared))))
 
 (defun recorded (result)
-  "Return what was recorded in RESULT from tick to tick: lists (tick value...)."
+  "Return the series in RESULT: lists (tick value...)."
   (loop with shared = (make-hash-table :test 'equal)
         for (tick . texts) in (result-series result)
         collect (cons tick (loop for text in texts collect (value-in text shared)))))

@@ -1,18 +1,18 @@
-;;;; repeatable.lisp -- whether trials come out again as their rows say.
+;;;; repeatable.lisp -- checking that trials run again give the rows in the table.
 
 (in-package :ars-magna.experiment)
 
-;;; A fingerprint is a guess at what decides a trial. What it misses, such as what trials leave to
-;;; each other, is found by running one of them again, before an experiment goes on and at its end.
+;;; A fingerprint can miss something that affects a trial, such as data that trials share. So trials
+;;; are run again and compared with their rows, before an experiment is resumed and at its end.
 
-(defvar *directory-given-p* t "True if the rows are kept in a directory that the user has given.")
+(defvar *directory-given-p* t "True if the user has given the directory of the rows.")
 
-(defun way-to-begin-again ()
+(defun restart-advice ()
   (if *directory-given-p* "begin in another directory" "run the experiment again"))
 
 (defun differing-column (columns texts others)
-  "Return the name of the first of COLUMNS in which the rows TEXTS and OTHERS differ, and both texts
-there."
+  "Return a list: the first of COLUMNS in which the rows TEXTS and OTHERS differ, the text there in
+OTHERS, and that in TEXTS."
   (loop for column in columns
         for text in texts
         for other in others
@@ -32,29 +32,29 @@ there."
     result))
 
 (defun check-repeatable (experiment texts)
-  "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS comes out otherwise now. See
-TEXTS-WITH-MARK."
+  "Signal MISUSE if the trial of EXPERIMENT with the row TEXTS gives another row now. TEXTS are from
+TEXTS-WITH-CHECKSUM."
   (let* ((condition (condition-of-texts experiment texts))
          (columns (append (columns experiment) '("series, by its check sum,")))
          (trial (parse-integer (nth (1+ (seed-column columns)) texts)))
          (result (run-by-worker experiment condition trial))
-         (again (texts-with-mark (result-texts experiment result) experiment
-                                 (series-text experiment result))))
+         (again (texts-with-checksum (result-texts experiment result) experiment
+                                     (series-text experiment result))))
     (unless (equal texts again)
       (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently now: ~
                    ~{its ~A is ~A, and ~A in the table~}. Either the row has been changed, or ~
-                   something that is not in the fingerprint decides the trial, such as an object ~
-                   or closure that trials change, the clock, a file, or a function of SBCL's that ~
-                   another version of it has otherwise. Mend that, and ~A."
+                   something that is not in the fingerprint affects the trial, such as an object ~
+                   or closure that trials change, the clock, a file, or a function of SBCL that ~
+                   differs in another version. Correct that, and ~A."
                   trial (condition-name condition) (differing-column columns texts again)
-                  (way-to-begin-again)))))
+                  (restart-advice)))))
 
 (defparameter *seconds-for-checks* 10
-  "For how long trials that have rows are run again before an experiment goes on.")
+  "For how long trials that have rows are run again before an experiment is resumed.")
 
-(defun check-samples (experiment rows seconds)
-  "Signal MISUSE if one of ROWS, of different conditions of EXPERIMENT, comes out otherwise now. At
-least one is tried, and others as long as less than SECONDS have passed."
+(defun check-rows-repeatable (experiment rows seconds)
+  "Signal MISUSE if a trial of ROWS, of different conditions of EXPERIMENT, gives another row now.
+Check at least one, and more until SECONDS have passed."
   (loop with begun = (real-microseconds)
         for texts in rows
         do (check-repeatable experiment texts)
@@ -102,26 +102,25 @@ a function; or NIL."
               (remove-duplicates (mapcar #'part-name changed) :test #'string=)
               (and *directory-given-p* (native-name directory))
               (sharing-advice changed condition)
-              (way-to-begin-again)))
+              (restart-advice)))
 
 (defun call-noting-refusal (function directory)
-  "Call FUNCTION. If it signals MISUSE, the text in DIRECTORY says from then on that the rows beside
-it were refused."
+  "Call FUNCTION. If it signals MISUSE, record in DIRECTORY that its rows were refused."
   (handler-bind ((misuse (lambda (condition)
                            (note-refusal directory (princ-to-string condition)))))
     (funcall function)))
 
 (defun check-run-again (store parts seconds)
-  "Signal MISUSE if what was kept in STORE, in so many SECONDS, cannot be had again: if its
-experiment, of PARTS, is no longer what it was, or a trial comes out otherwise. This takes a
-twentieth of that time, or one trial."
+  "Signal MISUSE if the experiment of STORE no longer has the fingerprint PARTS, or a trial gives
+another row now. SECONDS is the duration of the run; this check takes a twentieth of it, or one
+trial."
   (let ((experiment (store-experiment store)))
     (check-unchanged experiment parts (store-path store))
     (call-noting-refusal
      (lambda ()
-       (check-samples experiment
-                      (loop for condition in (experiment-conditions experiment)
-                            for texts = (gethash condition (store-samples store))
-                            when texts collect texts)
-                      (/ seconds 20)))
+       (check-rows-repeatable experiment
+                              (loop for condition in (experiment-conditions experiment)
+                                    for texts = (gethash condition (store-samples store))
+                                    when texts collect texts)
+                              (/ seconds 20)))
      (store-path store))))

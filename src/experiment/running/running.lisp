@@ -1,4 +1,4 @@
-;;;; running.lisp -- RUN-EXPERIMENT: from a question to a table.
+;;;; running.lisp -- RUN-EXPERIMENT.
 
 (in-package :ars-magna.experiment)
 
@@ -8,24 +8,24 @@
 
 ;;; Rows that exist already.
 
-(defun samples-among (conditions &rest tables)
-  "Return what TABLES have for CONDITIONS, each once, those of the first table first."
+(defun rows-to-check (conditions &rest tables)
+  "Return the values in TABLES for CONDITIONS, each once, those of the first table first."
   (remove nil (remove-duplicates
                (loop for table in tables
                      append (loop for condition in conditions collect (gethash condition table)))
                :test #'eq :from-end t)))
 
-(defun rows-there (experiment parts directory)
-  "Return the presence of rows of EXPERIMENT in DIRECTORY, and a list of the texts of the last and,
-after these, the first of each condition. PARTS are those of the fingerprints of its conditions.
-Signals MISUSE for rows of other code."
+(defun find-existing-rows (experiment parts directory)
+  "Return the presence of rows of EXPERIMENT in DIRECTORY, and a list of the texts of the last row
+of each condition, then of the first. PARTS are those of the fingerprints of its conditions. Signals
+MISUSE for rows with other fingerprints."
   (let ((firsts (make-hash-table :test 'eq)) (lasts (make-hash-table :test 'eq))
         (columns (columns experiment)))
     (multiple-value-bind (presence series)
         (present-rows experiment directory
                       (lambda (condition texts)
                         (declare (ignore texts))
-                        (reject-foreign experiment condition parts directory))
+                        (reject-foreign-rows experiment condition parts directory))
                       (lambda (condition texts)
                         (unless (timed-out-p texts columns)
                           (unless (gethash condition firsts)
@@ -33,8 +33,8 @@ Signals MISUSE for rows of other code."
                           (setf (gethash condition lasts) texts))))
       (values presence
               (mapcar (lambda (texts)
-                        (texts-with-mark texts experiment (series-text-there series texts)))
-                      (samples-among (experiment-conditions experiment) lasts firsts))))))
+                        (texts-with-checksum texts experiment (existing-series-text series texts)))
+                      (rows-to-check (experiment-conditions experiment) lasts firsts))))))
 
 ;;; Looking at intervals.
 
@@ -43,14 +43,14 @@ Signals MISUSE for rows of other code."
 ;;; share 1 / (K (K + 1)) of the allowed error. The shares add up to 1, so all looks together have
 ;;; no more than the whole (Bonferroni's inequality). The interval at the last look can be reported.
 
-(defconstant +first-look+ 50 "After how many trials intervals are looked at first.")
+(defconstant +first-look+ 50 "The number of trials at the first look at intervals.")
 
 (defun count-at-look (look)
-  "Return after how many trials of each condition the LOOK-th look is, from 1."
+  "Return the number of trials of each condition at the LOOK-th look, from 1."
   (* +first-look+ (expt 2 (1- look))))
 
 (defun confidence-at-look (look)
-  "Return the confidence of the intervals of the LOOK-th look, if that of all is to be .95."
+  "Return the confidence of intervals at the LOOK-th look, for .95 over all looks."
   (- 1d0 (sequential-level look :level .05d0)))
 
 (defun count-successes (experiment trials directory)
@@ -85,10 +85,10 @@ Signals MISUSE for rows of other code."
          (*progress* progress))
     (when (plusp missing)
       (run-queue experiment queue store progress workers)
-      (tell-progress progress t))))
+      (report-progress progress t))))
 
 (defun run-until-narrow (experiment width most directory store workers time-limit stream)
-  "Run trials until each interval is at most WIDTH wide, or there are MOST of each condition."
+  "Run trials until each interval is at most WIDTH wide, or each condition has MOST trials."
   (loop with conditions = (experiment-conditions experiment)
         for look from 1
         for trials = (count-at-look look)
@@ -101,7 +101,7 @@ Signals MISUSE for rows of other code."
 ;;; The whole.
 
 (defparameter *most-trials* 1000000
-  "How many trials of a condition are run at most to make its interval narrow, unless one says.")
+  "The default for the most trials of a condition if :until is given.")
 
 (defun put-in-order (experiment directory)
   (let ((file (series-file directory)))
@@ -114,9 +114,9 @@ Signals MISUSE for rows of other code."
 (defun run-in (experiment directory trials until shard workers time-limit stream)
   (let ((parts (prepare-experiment experiment)))
     (when (existing-path (rows-file directory)) (check-not-refused directory))
-    (multiple-value-bind (presence samples) (rows-there experiment parts directory)
-      (check-samples experiment samples *seconds-for-checks*)
-      (note-damaged-description directory)
+    (multiple-value-bind (presence samples) (find-existing-rows experiment parts directory)
+      (check-rows-repeatable experiment samples *seconds-for-checks*)
+      (warn-if-damaged directory)
       (save-description experiment parts trials until directory)
       (call-with-store
        (lambda (store)

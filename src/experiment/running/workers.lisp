@@ -1,4 +1,4 @@
-;;;; workers.lisp -- running trials by several threads, and saying how far it has come.
+;;;; workers.lisp -- running trials in several threads, and reporting progress.
 
 (in-package :ars-magna.experiment)
 
@@ -7,20 +7,20 @@
 (addition processors)
 
 (defun processors ()
-  "Return how many processors this machine lets us use, 1 if that cannot be told."
+  "Return the number of processors that this process may use, or 1 if it is unknown."
   (let ((text (nth-value 1 (run-command "nproc" '() :output :string))))
     (max 1 (or (and text (parse-integer text :junk-allowed t)) 1))))
 
 (defun await-result (channel left)
-  "Take a result from CHANNEL if there is one soon. Return how many are LEFT then, and the result."
+  "Wait a moment for a result from CHANNEL. Return how many are LEFT then, and the result or NIL."
   (multiple-value-bind (trouble there-p) (lparallel:try-receive-result channel :timeout 0.2)
     (values (if there-p (1- left) left) trouble)))
 
 (defconstant +patience+ 10
-  "For how many fifths of a second threads that are to end may go on with what they do.")
+  "For how many fifths of a second threads are waited for before they are ended.")
 
 (defun end-workers (channel left)
-  "Wait a moment for LEFT threads that have not answered by CHANNEL to end, then end them."
+  "Wait a moment for the LEFT threads that CHANNEL has no result of, then end them."
   (loop repeat +patience+
         while (plusp left)
         do (setf left (await-result channel left)))
@@ -29,12 +29,12 @@
     (lparallel:end-kernel :wait t)))
 
 (defun call-by-workers (function count &key (pulse (constantly nil)) (stop (constantly nil)))
-  "Call FUNCTION in each of COUNT threads, with its number from 1, and wait until all have returned.
-PULSE, a function, is called here now and then. If this is left, STOP is called, which should let
-them return; those that do not are ended. What FUNCTION signals is signalled here."
+  "Call FUNCTION in each of COUNT threads with the thread's number, from 1, and wait until all have
+returned. Call the function PULSE now and then meanwhile. At the end, also after a THROW, call STOP,
+which should let them return; those that do not are ended. Errors of FUNCTION are signalled here."
   (let* ((lparallel:*kernel* (lparallel:make-kernel
                               count :name "trials"
-                              ;; Threads that are ended would say so.
+                              ;; Threads that are ended would print a message.
                               :bindings `((*standard-output* . ,*nowhere*)
                                           (*error-output* . ,*nowhere*))))
          (channel (lparallel:make-channel))
@@ -56,24 +56,24 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
       (funcall stop)
       (end-workers channel left))))
 
-;;;; Saying how far an experiment has come
+;;;; Progress
 
-;;; On a terminal there is one line that changes; elsewhere a line now and then.
+;;; On a terminal one line is updated; elsewhere a line is printed now and then.
 
 (defun seconds-since (moment)
-  "Return how many seconds ago MOMENT was, as REAL-MICROSECONDS told it."
+  "Return the seconds since MOMENT, a value of REAL-MICROSECONDS."
   (/ (- (real-microseconds) moment) 1d6))
 
 (defstruct (progress (:constructor make-progress
                                (stream terminal-p total workers
                                 &aux (under-way (make-array (1+ workers) :initial-element nil))))
                      (:copier nil))
-  "How far an experiment of TOTAL trials has come, and where that is reported."
+  "The progress of an experiment of TOTAL trials, and the STREAM to report it to, or NIL."
   (stream nil :read-only t)
   (terminal-p nil :read-only t)
   (total 0 :type integer)
   (done 0 :type atomic-count)
-  ;; By worker: what it is at, a list (condition trial moment seed), or NIL.
+  ;; By worker: its current trial, a list (condition trial moment seed), or NIL.
   (under-way #() :type simple-vector :read-only t)
   (begun (real-microseconds) :type integer)
   (told (real-microseconds) :type integer))
@@ -94,14 +94,15 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
             (and (plusp rate) (rate-text rate))
             (and (plusp rate) (< done total) (duration-text (/ (- total done) rate))))))
 
-(defconstant +long+ 10 "After how many seconds a trial is named that is not over.")
-(defconstant +longer+ 5 "How many times as long as those before it a trial must take to be named.")
+;; A trial is named if it takes longer than both.
+(defconstant +long+ 10 "A number of seconds.")
+(defconstant +longer+ 5 "A multiple of the average duration of trials before it.")
 
 (defun trials-under-way (progress)
   (sort (remove nil (coerce (progress-under-way progress) 'list)) #'< :key #'third))
 
-(defun usual-seconds (progress)
-  "Return how long the trials of PROGRESS that are over have taken on average, in seconds."
+(defun average-seconds (progress)
+  "Return the average duration, in seconds, of the trials of PROGRESS that have ended."
   (let ((workers (1- (length (progress-under-way progress))))
         (spent (reduce #'+ (trials-under-way progress)
                        :key (lambda (trial) (seconds-since (third trial))))))
@@ -111,24 +112,24 @@ them return; those that do not are ended. What FUNCTION signals is signalled her
            (progress-done progress)))))
 
 (defun longest-under-way (progress)
-  "Return in words which trial of PROGRESS has been under way longest, if that is long, and much
-longer than others took; or NIL."
+  "Return a text on the trial of PROGRESS that has been running longest, if that is long, and much
+longer than others took; else NIL."
   (let ((oldest (first (trials-under-way progress))))
     (when oldest
       (destructuring-bind (condition trial moment &optional seed) oldest
-        (when (> (seconds-since moment) (max +long+ (* +longer+ (usual-seconds progress))))
+        (when (> (seconds-since moment) (max +long+ (* +longer+ (average-seconds progress))))
           (format nil "trial ~D of ~A~@[, seed ~D,~] has been under way for ~A" trial
                   (condition-name condition) seed (duration-text (seconds-since moment))))))))
 
-(defvar *progress* nil "How far the experiment that runs in this thread has come, or NIL.")
+(defvar *progress* nil "The progress of the experiment that runs in this thread, or NIL.")
 
 (defun trial-under-way ()
-  "Return in words which trial of the experiment that runs in this thread has been under way
-longest, if that is long; or NIL."
+  "Return a text on the trial, of the experiment that runs in this thread, that has been running
+longest, if that is long; else NIL."
   (and *progress* (longest-under-way *progress*)))
 
-(defun tell-progress (progress &optional last)
-  "Say how far PROGRESS has come, if it is time to, or this is the LAST time."
+(defun report-progress (progress &optional last)
+  "Print PROGRESS if the last time is long enough ago, or this is the LAST time."
   (let ((stream (progress-stream progress)))
     (when (and stream
                (or last
@@ -144,11 +145,11 @@ longest, if that is long; or NIL."
 
 ;;;; Trials that do not return, or end their thread
 
-;;; A worker's thread may be ended in three ways: by the trial itself, which is that trial's error;
-;;; when the run is stopped; and when this Lisp is left. In the last two nothing is held up.
+;;; A worker's thread may be ended by the trial itself, which is that trial's error; or because the
+;;; run is stopped or this Lisp exits. The last two are not intercepted.
 
 (defun call-catching-thread-end (function stopping-p)
-  "Call FUNCTION in a worker. True if it has ended this thread, which goes on then, unless the
+  "Call FUNCTION in a worker. If it ends this thread, keep the thread and return true, unless the
 function STOPPING-P returns true."
   (let ((returned-p nil))
     (block call
@@ -159,7 +160,7 @@ function STOPPING-P returns true."
           (return-from call t))))))
 
 (defun call-within (function seconds)
-  "Call FUNCTION, but leave it after so many SECONDS, unless these are NIL. True if it was left."
+  "Call FUNCTION. After SECONDS, or never if NIL, leave it and return true."
   (block call
     (let ((open-p t))
       (flet ((leave () (when open-p (return-from call t))))
@@ -170,9 +171,8 @@ function STOPPING-P returns true."
     nil))
 
 (defun run-guarded (experiment condition trial stopping-p &optional seconds)
-  "Run TRIAL of CONDITION of EXPERIMENT in a worker's thread, for at most so many SECONDS, unless
-these are NIL. Return its result, whatever the trial does to the thread unless the function
-STOPPING-P returns true."
+  "Run TRIAL of CONDITION of EXPERIMENT in a worker's thread, for at most SECONDS, or NIL. Return
+its result, even if the trial ends the thread, unless the function STOPPING-P returns true."
   (let* ((seed (trial-seed experiment trial)) (late-p nil)
          (result (make-result condition trial seed)))
     (if (call-catching-thread-end
@@ -182,17 +182,17 @@ STOPPING-P returns true."
                          seconds)))
          stopping-p)
         (note-error result "The trial has ended the thread that it ran in.")
-        ;; How far it has come differs from run to run, so the row does not have that.
+        ;; Its progress differs from run to run, so it is not in the row.
         (when late-p
           (setf result (make-result condition trial seed)
                 (result-outcome result) "timeout"
                 (result-ticks result) nil)))
     result))
 
-;;;; Which trials are to be run
+;;;; The queue of trials
 
-;;; Trials come by number, and for each number all conditions, so a run stopped early has equally
-;;; many of each. Workers take one after the other from the queue. A shard (index . count) has the
+;;; Trials are ordered by number, then by condition, so a run stopped early has as many of each
+;;; condition. Workers take one after the other from the queue. A shard (index . count) has the
 ;;; trials whose numbers leave INDEX when divided by COUNT; (0 . 1) has all.
 
 (defstruct (queue (:constructor make-queue (conditions last presence shard time-limit))
@@ -202,10 +202,10 @@ STOPPING-P returns true."
   (last 0 :type integer :read-only t)
   (presence nil :type hash-table :read-only t)
   (shard nil :type list :read-only t)
-  ;; How many seconds each may take, or NIL.
+  ;; The most seconds of a trial, or NIL.
   (time-limit nil :type (or null real) :read-only t)
   (lock (make-lock "trials") :read-only t)
-  ;; What comes next.
+  ;; The next trial: its number, and the conditions that it has yet to run under.
   (trial 0 :type integer)
   (left '() :type list)
   (closed-p nil :type boolean))
@@ -214,7 +214,7 @@ STOPPING-P returns true."
   (= (car shard) (mod trial (cdr shard))))
 
 (defun step-queue (queue)
-  "Return the next trial of QUEUE, present or not, as a condition and a number, or NIL."
+  "Return the next trial of QUEUE, with or without a row, as a condition and a number; or NIL."
   (when (null (queue-left queue))
     (setf (queue-trial queue)
           (loop for trial from (1+ (queue-trial queue)) to (queue-last queue)
@@ -225,7 +225,7 @@ STOPPING-P returns true."
   (values (pop (queue-left queue)) (queue-trial queue)))
 
 (defun next-trial (queue)
-  "Return a trial to be run now, as a condition and a number, or NIL if there is none left."
+  "Return the next trial of QUEUE without a row, as a condition and a number; or NIL."
   (with-lock ((queue-lock queue))
     (unless (queue-closed-p queue)
       (loop (multiple-value-bind (condition trial) (step-queue queue)
@@ -234,12 +234,12 @@ STOPPING-P returns true."
                      (return (values condition trial)))))))))
 
 (defun count-in-shard (last shard)
-  "Return how many numbers from 1 to LAST are of trials in SHARD."
+  "Return the number of trials from 1 to LAST in SHARD."
   (destructuring-bind (index . count) shard
     (- (floor (- last index) count) (floor (- index) count))))
 
 (defun count-missing (queue)
-  "Return how many trials there are in QUEUE, of which none has been taken."
+  "Return the number of trials in QUEUE, of which none has been taken yet."
   (let ((last (queue-last queue)) (shard (queue-shard queue)))
     (loop for condition in (queue-conditions queue)
           for bits = (bits-of condition (queue-presence queue))
@@ -250,7 +250,7 @@ STOPPING-P returns true."
 ;;; Running them.
 
 (defun run-and-keep (experiment condition trial queue store progress worker)
-  "Run TRIAL of CONDITION, which is of QUEUE, keep what comes of it in STORE, and tell PROGRESS."
+  "Run TRIAL of CONDITION, from QUEUE, append its row to STORE, and update PROGRESS."
   (let ((begun (real-microseconds)))
     (setf (svref (progress-under-way progress) worker)
           (list condition trial begun (trial-seed experiment trial)))
@@ -260,7 +260,7 @@ STOPPING-P returns true."
     (setf (svref (progress-under-way progress) worker) nil)
     (atomic-incf (progress-done progress))))
 
-(defun work-off (experiment queue store progress worker)
+(defun run-queued-trials (experiment queue store progress worker)
   (flet ((work ()
            (loop (multiple-value-bind (condition trial) (next-trial queue)
                    (unless condition (return))
@@ -270,10 +270,9 @@ STOPPING-P returns true."
        (call-plainly (lambda () (call-with-own-lisps-dice #'work)))))))
 
 (defun run-queue (experiment queue store progress workers)
-  "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more, and
-those under way are given a moment."
-  (call-by-workers (lambda (worker) (work-off experiment queue store progress worker))
+  "Run the trials of QUEUE in WORKERS threads. If this is left, no more trials are started, and
+running ones have a moment to end."
+  (call-by-workers (lambda (worker) (run-queued-trials experiment queue store progress worker))
                    workers
-                   :pulse (lambda () (tell-progress progress))
-                   ;; No trial is started any more.
+                   :pulse (lambda () (report-progress progress))
                    :stop (lambda () (setf (queue-closed-p queue) t))))

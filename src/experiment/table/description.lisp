@@ -1,13 +1,13 @@
-;;;; description.lisp -- the text beside a table: how to repeat it, and what decides it.
+;;;; description.lisp -- experiment.txt: how to repeat an experiment, and what decides its trials.
 
 (in-package :ars-magna.experiment)
 
 (export '(experiment-file form-in-package))
 
-;;; None of it decides a trial, so it is in no fingerprint.
+;;; Origins. They do not affect trials, so they are not in fingerprints.
 
 (defun libraries-of (system)
-  "Return the names of the libraries that the system called SYSTEM stands on, through its core."
+  "Return the names of the libraries that SYSTEM, a system's name, depends on, through its core."
   (loop for name in (remove-if-not #'stringp (asdf:system-depends-on (asdf:find-system system)))
         if (string= "ars-magna" (asdf:primary-system-name name))
           append (libraries-of name)
@@ -19,33 +19,33 @@
              for library = (asdf:registered-system name)
              collect (format nil "~A~@[ ~A~]" name
                              (and library (asdf:component-version library)))))
-  "The names of the libraries that the simulator is built with, with their versions.")
+  "The names and versions of the libraries that the simulator is built with.")
 
-(defun git-says (directory &rest arguments)
-  "Return what git, called with ARGUMENTS, says of DIRECTORY, without spaces around it; NIL if there
-is no git, or DIRECTORY is in no tree of it."
+(defun git-output (directory &rest arguments)
+  "Return the trimmed output of git with ARGUMENTS in DIRECTORY; NIL if there is no git, or it
+fails, as outside of a work tree."
   (multiple-value-bind (status text)
       (run-command "git" (list* "-C" (native-name directory) arguments) :output :string)
     (and (eql 0 status) (string-trim '(#\Space #\Newline) text))))
 
 (defun commit-text (directory)
-  "Return the commit that DIRECTORY is at, and whether its files have changed since; or NIL."
-  (let ((commit (git-says directory "rev-parse" "HEAD")))
+  "Return the commit of DIRECTORY, and whether its files have changed since, as a text; or NIL."
+  (let ((commit (git-output directory "rev-parse" "HEAD")))
     (and commit
          (format nil "commit ~A~@[~A~]" commit
-                 (and (string/= "" (or (git-says directory "status" "--porcelain"
-                                                 "--untracked-files=no" "--" ".")
+                 (and (string/= "" (or (git-output directory "status" "--porcelain"
+                                                   "--untracked-files=no" "--" ".")
                                        ""))
                       ", and changes since")))))
 
 (defun experiment-file (experiment)
-  "Return what the system calls the file that EXPERIMENT is from, or NIL."
+  "Return the native name of the file with EXPERIMENT, or NIL."
   (let ((entry (lookup-entry (experiment-name experiment) *experiments*)))
     (and entry (source-file (entry-source entry)))))
 
 (defun origin-lines (experiment)
   (let* ((file (experiment-file experiment))
-         ;; The program may have been carried to where there are no sources.
+         ;; A saved program may run where there are no sources.
          (system (asdf:registered-system "ars-magna"))
          (home (and system (asdf:system-source-directory system)))
          (commits (list (and file
@@ -61,11 +61,11 @@ is no git, or DIRECTORY is in no tree of it."
 
 ;;;; The text
 
-;;; It is for people, and nothing is read back but the parts of the fingerprints, to say which of
-;;; them have changed, and until when trials were added.
+;;; The text is for people. Only some of it is read back: the parts of the fingerprints and the
+;;; experiment's form, to report changes, the order of conditions, and the option --until.
 
 (defun form-in-package (form package)
-  "Return FORM as its author, in PACKAGE, would write it."
+  "Return the text of FORM, in lower case, as written in PACKAGE."
   (printing-plainly ()
     (let ((*package* package) (*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 90))
       (prin1-to-string form))))
@@ -81,8 +81,8 @@ is no git, or DIRECTORY is in no tree of it."
             name (and until (value-text until)) trials)))
 
 (defun write-description (experiment parts trials until stream)
-  "Write to STREAM all that decides EXPERIMENT with TRIALS, or UNTIL intervals are narrow, and what
-it is run with. PARTS are those of the fingerprints of its conditions, in order."
+  "Write the description of EXPERIMENT to STREAM. TRIALS and UNTIL are the arguments of its run.
+PARTS are lists of the parts of its conditions' fingerprints, in order."
   (format stream "The experiment ~(~A~).~@[~%~A~]~2%~A~%"
           (experiment-name experiment) (experiment-documentation experiment)
           (repetition-text experiment trials until))
@@ -97,7 +97,7 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
         do (format stream "~%~A~%= ~A~%~{  ~A~%~}" (condition-fingerprint condition)
                    (condition-name condition) (mapcar #'part-text its))))
 
-;;; The last line has a check sum of all before it.
+;;; The last line has a checksum of all lines before it.
 
 (defparameter *check-title* "Check sum: ")
 
@@ -105,7 +105,7 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
   (format nil "~A~8,'0X~%" *check-title* (text-checksum text)))
 
 (defun description-text (directory)
-  "Return the text in DIRECTORY, or NIL if there is none that can be read."
+  "Return the text of experiment.txt in DIRECTORY, or NIL if it cannot be read."
   (ignore-errors (file-text (description-file directory))))
 
 (defun whole-description-p (text)
@@ -113,22 +113,22 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
     (and place
          (string= (check-line (subseq text 0 place)) (subseq text place)))))
 
-(defun note-damaged-description (directory)
+(defun warn-if-damaged (directory)
   (let ((file (description-file directory)))
     (unless (or (not (existing-path file))
                 (whole-description-p (description-text directory)))
       (warn "~A is damaged or has been changed: its last line is no check sum of the others. The ~
-             rows beside it are read all the same. To run the experiment again with that ~
-             directory writes the file anew."
+             rows beside it are read all the same. If you run the experiment again with that ~
+             directory, the file is written anew."
             (native-name file)))))
 
 (defun description-lines (directory)
-  "Return the lines of the text in DIRECTORY; NIL if there is none."
+  "Return the lines of experiment.txt in DIRECTORY; NIL if there is none."
   (let ((text (description-text directory)))
     (and text (uiop:split-string text :separator '(#\Newline)))))
 
 (defun until-described (directory)
-  "Return how wide the text in DIRECTORY says intervals were to be, or NIL."
+  "Return the width of intervals given by --until in experiment.txt in DIRECTORY, or NIL."
   (let* ((command (find-if (lambda (line) (starts-with-subseq "  ./cli/ars-magna experiment" line))
                            (description-lines directory)))
          (place (and command (search "--until " command)))
@@ -147,18 +147,18 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
                      (write-string (check-line text) stream))
                    file "the description" :remedy "remove it, or give another directory"))
 
-;;; Rows that were refused stay so, whoever reads them later.
+;;; Refused rows. Later readers of the table must know about them.
 
 (defparameter *refusal-title* "Refused: ")
 
 (defun refusal-in (directory)
-  "Return why the rows in DIRECTORY were refused when they were run, or NIL if they were not."
+  "Return the reason why the rows in DIRECTORY were refused after their run, or NIL."
   (let ((line (find-if (lambda (line) (starts-with-subseq *refusal-title* line))
                        (description-lines directory))))
     (and line (subseq line (length *refusal-title*)))))
 
 (defun note-refusal (directory reason)
-  "Let the text in DIRECTORY say that the rows beside it were refused, for REASON, a text."
+  "Record in experiment.txt in DIRECTORY that the rows beside it were refused for REASON, a text."
   (let* ((text (description-text directory))
          (place (and text (search *check-title* text :from-end t))))
     (when place
@@ -175,8 +175,8 @@ it is run with. PARTS are those of the fingerprints of its conditions, in order.
 ;;; What has changed.
 
 (defun parts-described (condition directory)
-  "Return the lines for the parts of what is called CONDITION in the text in DIRECTORY; NIL if there
-are none."
+  "Return the lines for the parts of the condition named CONDITION in experiment.txt in DIRECTORY;
+NIL if there are none."
   (let ((lines (description-lines directory))
         (title (format nil "= ~A" condition)))
     (loop for line in (rest (member title lines :test #'string=))
@@ -191,7 +191,7 @@ are none."
         unless (string= "" line) collect (string-trim " " line)))
 
 (defun changed-parts (before now)
-  "Return in words, in a list, which of the parts in the lines BEFORE and NOW are not in both."
+  "Return a list of names of the parts in only one of BEFORE and NOW, lists of lines."
   (flet ((without-number (line) (subseq line 0 (position #\Space line :from-end t))))
     (remove-duplicates (mapcar #'without-number
                                (append (set-difference before now :test #'string=)
@@ -199,21 +199,20 @@ are none."
                        :test #'string= :from-end t)))
 
 (defun conditions-described (directory)
-  "Return the names of the conditions in the text in DIRECTORY, in order; NIL if there is none."
+  "Return the names of the conditions in experiment.txt in DIRECTORY, in order."
   (loop for line in (description-lines directory)
         when (starts-with-subseq "= " line) collect (subseq line 2)))
 
 (defun changes-since (condition parts directory)
-  "Return in words, in a list, what of PARTS, of CONDITION, is not as the text in DIRECTORY says."
+  "Return a list of names of the PARTS of CONDITION that differ from experiment.txt in DIRECTORY."
   (let ((before (parts-described (condition-name condition) directory)))
     (and before (changed-parts before (mapcar #'part-text parts)))))
 
-(defun reject-foreign (experiment condition parts directory)
-  "Say that DIRECTORY has rows of CONDITION of EXPERIMENT that cannot be gone on with. PARTS are
+(defun reject-foreign-rows (experiment condition parts directory)
+  "Signal MISUSE: DIRECTORY has rows of CONDITION of EXPERIMENT with another fingerprint. PARTS are
 those of the fingerprints of all conditions."
   (let ((its (nth (position condition (experiment-conditions experiment)) parts)))
-    (reject-use "~A has rows of the condition ~A that other code or another configuration has ~
-                 made~@[; changed since: ~{~A~^, ~}~]. Give another directory, or delete these ~
-                 rows."
+    (reject-use "~A has rows of the condition ~A from other code or another configuration~@[; ~
+                 changed since: ~{~A~^, ~}~]. Give another directory, or delete these rows."
                 (native-name directory) (condition-name condition)
                 (changes-since condition its directory))))

@@ -1,27 +1,27 @@
-;;;; directory.lisp -- the directory of an experiment: its table, and what is kept beside it.
+;;;; directory.lisp -- the directory of an experiment: writing its table and the other files.
 
 (in-package :ars-magna.experiment)
 
 (export '(ensure-store-directory))
 
-;;; rows.csv has a row for each trial and nothing that differs from run to run; series.csv, if the
-;;; experiment has :each-tick, lines for each tick of each trial; machine.csv says how long each
-;;; trial took, and where; experiment.txt how to repeat it all. One process at a time writes there:
-;;; it holds the lock of the file `.lock'.
+;;; rows.csv has a row for each trial and nothing that differs from run to run. series.csv, if the
+;;; experiment has :each-tick, has a line for each tick of each trial. machine.csv says how long
+;;; each trial took, and where; experiment.txt how to repeat the experiment. One process at a time
+;;; writes there: it holds the lock of the file `.lock'.
 
 (defstruct (store (:constructor make-store (path experiment)) (:copier nil))
-  "The directory PATH in which rows of EXPERIMENT are kept, while they are written."
+  "The directory PATH, while rows of EXPERIMENT are written to it."
   (path nil :type pathname :read-only t)
   (experiment nil :type experiment :read-only t)
   (lock (make-lock "rows") :read-only t)
   (rows nil)
   (series nil)
   (machine nil)
-  ;; The texts of the first row of each condition that was kept, by condition. See TEXTS-WITH-MARK.
+  ;; By condition, the texts of the first row that was kept. See TEXTS-WITH-CHECKSUM.
   (samples (make-hash-table :test 'eq) :read-only t))
 
 (defun ensure-store-directory (name)
-  "Return the path of the directory NAME, made if there is none. Signals MISUSE."
+  "Return the path of the directory NAME, created if necessary. Signals MISUSE."
   (let ((path (directory-called name)))
     (handler-case (progn (make-directories path) path)
       (error () (reject-use "~A cannot be made; give the name of a directory that can be."
@@ -31,7 +31,7 @@
 (defvar *stores-lock* (make-lock "directories of experiments"))
 
 (defun call-with-directory (function path)
-  "Call FUNCTION while nobody else writes to the directory PATH. Signals MISUSE if somebody does."
+  "Call FUNCTION with the directory PATH locked. Signals MISUSE if another run writes to it."
   (flet ((reject ()
            (reject-use "Another run writes to ~A. Wait for its end, or give another directory."
                        (native-name path))))
@@ -53,7 +53,7 @@
         (setf *stores-in-use* (remove path *stores-in-use* :test #'equal))))))
 
 (defun call-with-temporary-directory (function)
-  "Call FUNCTION with the path of a new directory, which is gone afterwards."
+  "Call FUNCTION with the path of a new directory, and delete that afterwards."
   (let ((path (loop for number from 0
                     for path = (directory-called (format nil "~Atrials-~D-~D/"
                                                          (native-name (uiop:temporary-directory))
@@ -64,9 +64,9 @@
 
 ;;; Writing.
 
-(defun cut-broken-line (file columns)
-  "Cut off what a process that was killed has begun to write to FILE, a table with COLUMNS. True if
-anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as it was."
+(defun remove-incomplete-line (file columns)
+  "Remove an incomplete last line, as a killed process leaves it, from FILE, a table with COLUMNS.
+True if any lines are left. Signals DAMAGED-TABLE, and leaves FILE unchanged, if it is none."
   (when (existing-path file)
     (check-beginning file columns)
     (let ((end (map-lines (constantly nil) file)))
@@ -75,8 +75,8 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
       (plusp end))))
 
 (defun open-table (file columns)
-  "Return a stream that appends to the table FILE, which is begun with COLUMNS if it has no lines."
-  (let ((new (not (cut-broken-line file columns)))
+  "Return a stream that appends to the table FILE. If that has no lines, COLUMNS are written first."
+  (let ((new (not (remove-incomplete-line file columns)))
         (stream (call-writing
                  (lambda ()
                    (check-unprotected file)
@@ -88,11 +88,10 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
 
 (defparameter *machine-columns*
   '("condition" "seed" "trial" "milliseconds" "worker" "process" "host")
-  "The columns of the table of what differs from run to run.")
+  "The columns of machine.csv.")
 
 (defun open-machine-table (directory)
-  "Return a stream that appends to the table of what differs from run to run. Signals
-DAMAGED-TABLE."
+  "Return a stream that appends to machine.csv in DIRECTORY. Signals DAMAGED-TABLE."
   (let ((file (machine-file directory)))
     (handler-case (open-table file *machine-columns*)
       (damaged-table (condition)
@@ -115,7 +114,7 @@ DAMAGED-TABLE."
         (when stream (ignore-errors (close stream)))))))
 
 (defun write-table-line (line stream &optional (finish #'finish-output))
-  "Write LINE to STREAM, a table, and FINISH that. Signals DAMAGED-TABLE if that cannot be."
+  "Write LINE to STREAM, a table, then call FINISH with STREAM. Signals DAMAGED-TABLE."
   (handler-case (progn (write-string line stream)
                        (funcall finish stream))
     (stream-error (condition)
@@ -123,10 +122,10 @@ DAMAGED-TABLE."
                     "no more can be written (~A). What is there is kept; go on once there is room."
                     (unwritten-reason condition)))))
 
-;; The series comes first: where there is a row, all of its series is there.
+;; The series is written first, so that a trial with a row has all of its series.
 (defun keep-row (store result milliseconds worker)
-  "Append to STORE the row for RESULT, which took MILLISECONDS of WORKER, and its series. They are
-there for good when this returns."
+  "Append the row and the series of RESULT, which took MILLISECONDS of WORKER, to STORE, and finish
+output."
   (let* ((experiment (store-experiment store))
          (texts (result-texts experiment result))
          (line (csv-line texts))
@@ -138,12 +137,12 @@ there for good when this returns."
         (when (store-series store) (write-table-line series (store-series store)))
         (write-table-line line (store-rows store))
         (write-table-line machine-line (store-machine store)
-                          ;; What was quick is written together.
+                          ;; Lines of fast trials are written together.
                           (if (> milliseconds 1) #'finish-output #'identity))
         (unless (or (gethash condition (store-samples store))
                     (string= "timeout" (result-outcome result)))
           (setf (gethash condition (store-samples store))
-                (texts-with-mark texts experiment series)))))))
+                (texts-with-checksum texts experiment series)))))))
 
 (defun machine-texts (result milliseconds worker)
   (list (condition-name (result-condition result))
@@ -151,7 +150,7 @@ there for good when this returns."
         (float-text (/ (round milliseconds 1/1000) 1000d0))
         (integer-text worker) (integer-text (process-number)) (machine-instance)))
 
-;;; What is there: the presence of rows is a table from conditions to bits, one for each trial.
+;;; Existing rows. Their presence is a table from conditions to bits, one for each trial.
 
 (defun bits-of (condition presence)
   (or (gethash condition presence)
@@ -170,13 +169,13 @@ there for good when this returns."
     (setf (aref bits trial) 1)))
 
 (defun condition-of-texts (experiment texts)
-  "Return the condition of EXPERIMENT that the row TEXTS is of, or NIL if it has none like that."
+  "Return the condition of EXPERIMENT with the name in the row TEXTS, or NIL."
   (find (third texts) (experiment-conditions experiment)
         :key #'condition-name :test #'string=))
 
 (defun check-row (experiment condition texts file number)
-  "Signal DAMAGED-TABLE unless TEXTS, the line NUMBER of FILE, can be a row of CONDITION, or NIL if
-EXPERIMENT has none of its name."
+  "Signal DAMAGED-TABLE unless TEXTS, line NUMBER of FILE, can be a row of CONDITION of EXPERIMENT,
+or of a former condition if that is NIL."
   (let* ((seed (seed-column (columns experiment)))
          (trial (parse-integer (nth (1+ seed) texts))))
     (unless (string= (first texts) (string-downcase (experiment-name experiment)))
@@ -192,14 +191,14 @@ EXPERIMENT has none of its name."
                   (trial-seed experiment trial) (nth seed texts)))))
 
 (defun present-rows (experiment directory foreign &optional (sample (constantly nil)))
-  "Return the presence of the rows in DIRECTORY, of trials of EXPERIMENT, whose series are there as
-well, and the index of these. FOREIGN is called with the condition and the texts of a row of another
-fingerprint, SAMPLE with those of all that are present. What a process that was killed has begun to
-write is cut off. Signals DAMAGED-TABLE."
+  "Return the presence of rows of EXPERIMENT in DIRECTORY that have all of their series, and the
+index of the series. Call FOREIGN with the condition and the texts of each row with another
+fingerprint, and SAMPLE with those of each present row. Remove an incomplete last line. Signals
+DAMAGED-TABLE."
   (let ((presence (make-hash-table :test 'eq)) (file (rows-file directory))
-        (series (series-there experiment directory))
+        (series (index-existing-series experiment directory))
         (place (1+ (seed-column (columns experiment)))))
-    (when (cut-broken-line file (columns experiment))
+    (when (remove-incomplete-line file (columns experiment))
       (do-rows (texts file start number)
         (let ((condition (condition-of-texts experiment texts)))
           (when (and condition (string/= (second texts) (condition-fingerprint condition)))

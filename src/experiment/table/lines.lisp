@@ -1,14 +1,14 @@
-;;;; lines.lisp -- the lines of a table on disk, and putting them in order.
+;;;; lines.lisp -- reading the lines of a table, and sorting them.
 
 (in-package :ars-magna.experiment)
 
-;;; A file is read as octets, a character each, so that a line's place in it is known; and a line at
-;;; a time, so that a table may be larger than memory. The last line counts only if it is whole:
-;;; what a process that was killed has written is cut there.
+;;; A file is read as octets, a character each, so that the position of a line is known; and line by
+;;; line, so that a table may be larger than memory. A last line without an end, as a killed process
+;;; leaves it, does not count.
 
 (defun map-lines (function path)
-  "Call FUNCTION with each whole line of the file PATH, of octets, where it begins, and its number
-from 1. Return where the last one ends."
+  "Call FUNCTION with each complete line of the file PATH, as octets, its position, and its number
+from 1. Return the position after the last one."
   (with-open-file (in path :external-format :latin-1)
     (loop with start = 0
           for number from 1
@@ -18,7 +18,7 @@ from 1. Return where the last one ends."
                (incf start (1+ (length line)))))))
 
 (defun first-line (file)
-  "Return the first line of FILE, of octets, and whether its end is missing; NIL if it is empty."
+  "Return the first line of FILE, as octets, and true if its end is missing; NIL if FILE is empty."
   (with-open-file (in file :external-format :latin-1) (read-line in nil nil)))
 
 (defun header-of (file &optional (layout *rows-layout*))
@@ -32,7 +32,7 @@ from 1. Return where the last one ends."
       columns)))
 
 (defun check-beginning (file columns)
-  "Signal DAMAGED-TABLE unless FILE begins as a table with COLUMNS does, as far as it goes."
+  "Signal DAMAGED-TABLE unless FILE is empty or its first line, or a part of it, is COLUMNS."
   (multiple-value-bind (line cut-off-p) (first-line file)
     (let* ((header (string-right-trim '(#\Newline) (csv-line columns)))
            (text (and line (line-text line))))
@@ -44,8 +44,8 @@ from 1. Return where the last one ends."
                         (cut text 200) header))))))
 
 (defun map-rows (function file)
-  "Call FUNCTION with the texts of each row of the table FILE, where its line begins, and the number
-of that. Signals DAMAGED-TABLE."
+  "Call FUNCTION with the texts of each row of the table FILE, and the position and number of its
+line. Signals DAMAGED-TABLE."
   (let ((columns (header-of file)))
     (map-lines (lambda (line start number)
                  (when (> number 1)
@@ -55,7 +55,7 @@ of that. Signals DAMAGED-TABLE."
                file)))
 
 (defmacro do-rows ((texts file &optional (start (gensym)) (number (gensym))) &body body)
-  "Run BODY with the TEXTS of each row of the table FILE, the line NUMBER, which begins at START."
+  "Run BODY with the TEXTS of each row of the table FILE, in line NUMBER, which begins at START."
   `(map-rows (lambda (,texts ,start ,number)
                (declare (ignorable ,start ,number))
                ,@body)
@@ -64,15 +64,15 @@ of that. Signals DAMAGED-TABLE."
 ;;; Order: by condition, and within that by trial.
 
 (defstruct (row-group (:conc-name group-) (:constructor make-group (key)) (:copier nil))
-  "The rows of a condition: KEY is what they have before the column of the seed. RANK says where
-they stand among the others."
+  "The rows of a condition. KEY is the list of their texts before the seed. RANK is their position
+among the groups."
   (key '() :type list :read-only t)
   (rank 0 :type fixnum))
 
 (defstruct (indexed-row (:conc-name indexed-)
                         (:constructor make-indexed-row (group trial file start number))
                         (:copier nil))
-  "Where the row of a trial begins, in which of several files and on which line."
+  "The place of the row of a trial: the file, the position and the number of the line."
   (group nil :type row-group :read-only t)
   (trial 0 :type integer :read-only t)
   (file nil :read-only t)
@@ -80,8 +80,8 @@ they stand among the others."
   (number 0 :type fixnum :read-only t))
 
 (defun index-rows (files)
-  "Return a vector of the rows in FILES, tables with the same columns, in no order, and a list of
-their groups."
+  "Return an unsorted vector of the rows in FILES, tables with the same columns, and a list of their
+groups."
   (let ((groups (make-hash-table :test 'equal))
         (rows (make-array 1000 :adjustable t :fill-pointer 0))
         (columns (header-of (first files))))
@@ -99,15 +99,14 @@ their groups."
     (values rows (hash-table-values groups))))
 
 (defun group-before-p (a b)
-  "True if the rows of the group A come before those of B: by experiment, and then by what varies."
+  "True if the rows of the group A come before those of B: by experiment, then by factors."
   (flet ((texts (group)
            (destructuring-bind (experiment fingerprint condition &rest texts) (group-key group)
              (append (list experiment) texts (list condition fingerprint)))))
     (texts-before-p (texts a) (texts b))))
 
 (defun rank-groups (groups order)
-  "Give GROUPS their ranks: those of the conditions in ORDER, a list of names, by that, and then the
-others."
+  "Set the ranks of GROUPS: first conditions in ORDER, a list of names, then the others."
   (flet ((place (group) (or (position (third (group-key group)) order :test #'string=)
                             (length order))))
     (loop for group in (stable-sort (sort (copy-list groups) #'group-before-p) #'< :key #'place)
@@ -119,11 +118,11 @@ others."
     (or (< rank other)
         (and (= rank other) (< (indexed-trial a) (indexed-trial b))))))
 
-;;; Which rows belong together.
+;;; Whether rows belong together.
 
 (defun check-groups (groups)
-  "Signal MISUSE unless GROUPS are of one experiment, and each of their conditions has one
-fingerprint and one value of each thing that varies."
+  "Signal MISUSE unless GROUPS are of one experiment, and each condition has one fingerprint and one
+value of each factor."
   (let ((conditions (make-hash-table :test 'equal)) (fingerprints (make-hash-table :test 'equal))
         (experiment (and groups (first (group-key (first groups))))))
     (dolist (group groups)
@@ -151,13 +150,13 @@ fingerprint and one value of each thing that varies."
 ;;; Writing them in order.
 
 (defun call-replacing-table (function file &optional (check #'identity))
-  "Call FUNCTION with a stream to a file that takes the place of the table FILE, once CHECK has been
-called with its path. Signals DAMAGED-TABLE if that cannot be written; FILE is then as it was."
+  "Call FUNCTION with a stream to a new file, then CHECK with its path; then replace the table FILE
+by it. If it cannot be written signals DAMAGED-TABLE and leaves FILE unchanged."
   (call-writing (lambda () (call-replacing-file function file :check check))
                 file "it cannot be written anew (~A). It is as it was."))
 
 (defun call-with-line-reader (function files)
-  "Call FUNCTION with a function that returns the line in one of FILES that begins at a place."
+  "Call FUNCTION with a function of one of FILES and a position; it returns the line there."
   (let ((streams (make-hash-table :test 'eq)))
     (unwind-protect
          (progn
@@ -175,18 +174,17 @@ called with its path. Signals DAMAGED-TABLE if that cannot be written; FILE is t
 (defun reject-conflict (row other)
   (reject-table (indexed-file row) (indexed-number row)
                 "this row and line ~D of ~A are of one trial and differ. Something outside of ~
-                 the experiment decides its trials; no table can have both."
+                 the experiment affects its trials; no table can have both."
                 (indexed-number other) (native-name (indexed-file other))))
 
 (defun in-order-p (rows)
-  "True if ROWS, a vector, are in order, and no two are of one trial."
+  "True if ROWS, a vector, are sorted, and no two are of one trial."
   (loop for index from 1 below (length rows)
         always (row-before-p (aref rows (1- index)) (aref rows index))))
 
 (defun write-rows (rows line-of out)
-  "Write the lines of ROWS, in order, to OUT, one for each trial. LINE-OF returns the line of a file
-that begins at a place. Signals DAMAGED-TABLE if two of one trial differ. Return how many were
-written."
+  "Write the lines of ROWS, which are sorted, to OUT, one for each trial, and return their number.
+LINE-OF is as in CALL-WITH-LINE-READER. Signals DAMAGED-TABLE if two of one trial differ."
   (loop with last = nil and last-line = nil and count = 0
         for row across rows
         for line = (funcall line-of (indexed-file row) (indexed-start row))
@@ -198,10 +196,9 @@ written."
         finally (return count)))
 
 (defun write-in-order (files file order &optional (check #'identity))
-  "Write the rows of FILES, tables, to FILE, in order, and each once; FILE may be one of them. ORDER
-is a list of the names of conditions. Before it takes the place of FILE, CHECK is called with the
-path of the new table. Return how many rows there are. Signals DAMAGED-TABLE and MISUSE; then FILE
-is as it was."
+  "Write the rows of FILES, tables, to FILE, sorted and each once; FILE may be one of them. Return
+the number of rows. ORDER is a list of names of conditions. CHECK is called with the path of the new
+table before it replaces FILE. Signals DAMAGED-TABLE and MISUSE, and leaves FILE unchanged then."
   (multiple-value-bind (rows groups) (index-rows files)
     (check-groups groups)
     (rank-groups groups order)

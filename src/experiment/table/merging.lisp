@@ -1,4 +1,4 @@
-;;;; merging.lisp -- one table of several: of shards, of machines, of earlier runs.
+;;;; merging.lisp -- merging tables of shards, machines or earlier runs.
 
 (in-package :ars-magna.experiment)
 
@@ -16,7 +16,7 @@
     (when files (write-series-in-order files rows (series-file target)))))
 
 (defun join-machine-tables (directories target)
-  "Put the tables of what differs from run to run into one, in any order."
+  "Concatenate the files machine.csv of DIRECTORIES in TARGET."
   (let ((files (remove-if-not #'existing-path (mapcar #'machine-file directories))))
     (when files
       (call-replacing-table
@@ -31,10 +31,10 @@
 
 (addition merge-results)
 (defun merge-results (directories &key (to (first directories)))
-  "Put the tables in DIRECTORIES, of one experiment, together in the directory TO, in order and each
-trial once. Return the results. Signals DAMAGED-TABLE if two rows of one trial differ, or its series
-do or are missing, and MISUSE if their fingerprints differ; TO is then as it was. If none of the
-directories has series of a condition, TO has none of it."
+  "Merge the tables in DIRECTORIES, of one experiment, in the directory TO, sorted and each trial
+once. Return the results. Signals DAMAGED-TABLE if two rows of one trial differ, or its series do or
+are missing, and MISUSE if fingerprints differ; TO is unchanged then. If none of the directories has
+series of a condition, TO has none of it."
   (check-argument merge-results directories
                   (and (consp directories) (proper-list-p directories)
                        (every (lambda (name) (typep name '(or string pathname))) directories))
@@ -60,8 +60,8 @@ directories has series of a condition, TO has none of it."
 
 ;;;; Shards
 
-;;; Shard I of N keeps its table in a directory shard-I-of-N below that of the whole, where all of
-;;; them are put together. What there is of any of them counts as there.
+;;; Shard I of N keeps its table in a directory shard-I-of-N below that of the experiment, where all
+;;; are merged. Rows in any of these directories count as existing.
 
 (defun shard-directory (directory index count)
   "Return the name of the directory of the shard INDEX of COUNT below DIRECTORY."
@@ -69,7 +69,7 @@ directories has series of a condition, TO has none of it."
                         (format nil "shard-~D-of-~D/" index count))))
 
 (defun directories-with-rows (directory)
-  "Return the names of DIRECTORY and the directories of shards below it, those that have rows."
+  "Return the names of those of DIRECTORY and the directories of shards below it that have rows."
   (let* ((path (directory-called directory))
          (shards (remove-if-not (lambda (path)
                                   (starts-with-subseq "shard-"
@@ -89,26 +89,26 @@ directories has series of a condition, TO has none of it."
     count))
 
 (defun count-rows (directory)
-  "Return how many rows there are in DIRECTORY and the shards below it, those of one trial once for
-each table that has it."
+  "Return the number of rows in DIRECTORY and the shards below it. A trial counts once for each
+table that has it."
   (loop for directory in (directories-with-rows directory)
         sum (1- (count-whole-lines (rows-file (directory-called directory))))))
 
-;;; What is there, and what is missing.
+;;; Existing and missing rows.
 
 (defun trials-in-shard-p (shard trials)
-  "True if there are any of TRIALS trials, from 1, in SHARD, a cons (index . count)."
+  "True if SHARD, a cons (index . count), has any of the trials from 1 to TRIALS."
   (<= 1 (if (zerop (car shard)) (cdr shard) (car shard)) trials))
 
-(defun map-rows-there (function experiment directory)
-  "Call FUNCTION with the condition, the number of the trial and the fingerprint of each row in
-DIRECTORY and the shards below it that is of EXPERIMENT, the name of the directory it is in, and
-whether its series is there. Tables with other columns have none."
+(defun map-existing-rows (function experiment directory)
+  "Call FUNCTION for each row of EXPERIMENT in DIRECTORY and the shards below it. Its arguments are
+the condition, the trial's number, the fingerprint, the name of the directory, and whether the
+series is complete. Tables with other columns are skipped."
   (let* ((columns (columns experiment)) (seed (seed-column columns)))
     (dolist (name (directories-with-rows directory))
       (let* ((file (rows-file (directory-called name)))
              (own-p (equal columns (header-of file)))
-             (series (and own-p (series-there experiment (directory-called name)))))
+             (series (and own-p (index-existing-series experiment (directory-called name)))))
         (when own-p
           (do-rows (texts file)
             (let ((condition (condition-of-texts experiment texts)))
@@ -117,15 +117,16 @@ whether its series is there. Tables with other columns have none."
                          (second texts) name (series-complete-p series texts))))))))))
 
 (defun missing-shards (experiment trials count directory)
-  "Return the numbers, from 0, of those of COUNT shards of TRIALS trials of each condition of
-EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
+  "Return the sorted indices, from 0, of those of COUNT shards that lack rows of the first TRIALS
+trials of each condition of EXPERIMENT in DIRECTORY and the shards below it."
   (prepare-experiment experiment)
   (let ((presence (make-hash-table :test 'eq)) (missing (make-array count :element-type 'bit)))
-    (map-rows-there (lambda (condition trial fingerprint directory complete-p)
-                      (declare (ignore directory))
-                      (when (and complete-p (string= fingerprint (condition-fingerprint condition)))
-                        (note-present condition trial presence)))
-                    experiment directory)
+    (map-existing-rows (lambda (condition trial fingerprint directory complete-p)
+                         (declare (ignore directory))
+                         (when (and complete-p
+                                    (string= fingerprint (condition-fingerprint condition)))
+                           (note-present condition trial presence)))
+                       experiment directory)
     (loop for trial from 1 to trials
           do (unless (every (lambda (condition) (present-p condition trial presence))
                             (experiment-conditions experiment))
@@ -134,13 +135,14 @@ EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
           when (plusp (aref missing shard)) collect shard)))
 
 (defun check-same-code (experiment directory)
-  "Signal MISUSE if there are rows in DIRECTORY or the shards below it that EXPERIMENT, as it is
-now, could not be gone on with, and DAMAGED-TABLE if they have other columns."
+  "Signal MISUSE if rows in DIRECTORY or the shards below it have other fingerprints than EXPERIMENT
+now, and DAMAGED-TABLE if they have other columns."
   (let ((parts (prepare-experiment experiment)))
     (dolist (name (directories-with-rows directory))
       (check-beginning (rows-file (directory-called name)) (columns experiment)))
-    (map-rows-there (lambda (condition trial fingerprint name complete-p)
-                      (declare (ignore trial complete-p))
-                      (unless (string= fingerprint (condition-fingerprint condition))
-                        (reject-foreign experiment condition parts (directory-called name))))
-                    experiment directory)))
+    (map-existing-rows (lambda (condition trial fingerprint name complete-p)
+                         (declare (ignore trial complete-p))
+                         (unless (string= fingerprint (condition-fingerprint condition))
+                           (reject-foreign-rows experiment condition parts
+                                                (directory-called name))))
+                       experiment directory)))

@@ -1,17 +1,17 @@
-;;;; results.lisp -- a table in memory: what came of the trials of each condition.
+;;;; results.lisp -- results: a table in memory, with a sample for each condition.
 
 (in-package :ars-magna.experiment)
 
-;;; Text becomes what it stands for: numbers, T and NIL, :NONE where nothing was measured, and else
-;;; strings, of which equal ones are the same.
+;;; Cells become numbers, T and NIL, :NONE where nothing was measured, or strings; equal strings are
+;;; shared.
 
 (addition sample-p)
 (define-record (sample (:constructor make-sample (experiment fingerprint condition texts measures)))
-  "What came of the trials of one condition, in order of their numbers: vectors of equal length."
-  (experiment "" string "what the experiment is called, a string" :addition)
+  "The trials of one condition, in order of their numbers: vectors of equal length."
+  (experiment "" string "the name of the experiment, a string" :addition)
   (fingerprint "" string)
-  (condition "" string "what the condition is called, a string" :addition)
-  (texts '() list "the values of what varies, strings as they stand in the table" :addition)
+  (condition "" string "the name of the condition, a string" :addition)
+  (texts '() list "the values of the factors, strings as in the table" :addition)
   (seeds (column) t)
   (trials (column) t
           "a vector of the numbers of the trials; the other vectors are in its order" :addition)
@@ -19,24 +19,23 @@
             "a vector of \"success\", \"failure\", \"limit\", \"error\" and \"timeout\"" :addition)
   (reasons (column) t "a vector of strings that say why trials failed" :addition)
   (ticks (column) t
-         "a vector of the ticks that passed in each trial; :NONE where its time was up" :addition)
+         "a vector of the ticks that passed in each trial; :NONE for timeouts" :addition)
   (measures '() list "a list of a vector for each measure")
   (digests (column) t
            "a vector of integers, or NIL; trials whose digests are equal have been the same run")
   (errors (column) t
-          "a vector of what errors there were, strings; \"\" where there was none" :addition))
+          "a vector of the texts of errors, \"\" where there was none" :addition))
 
 (addition results-p)
 (define-record (results (:constructor %make-results (columns)))
-  "What came of an experiment: a sample for each condition, in order."
+  "The results of an experiment: a sample for each condition, in order."
   (columns '() list)
-  (samples '() list "a list of what came of the trials of each condition" :writable :addition)
+  (samples '() list "a list of samples, one for each condition" :writable :addition)
   (directory nil (or null pathname)
-             "the path of the directory where the table is, or NIL" :writable :addition)
-  (until nil (or null real) "how wide intervals were to be, if trials were added until they were so
-narrow; or NIL" :writable)
-  (conditions '() list "the names of the conditions that the experiment has now; NIL if that is not
-known" :writable))
+             "the path of the directory with the table, or NIL" :writable :addition)
+  (until nil (or null real) "until which width of intervals trials were added, or NIL" :writable)
+  (conditions '() list "the names of the experiment's present conditions, or NIL if not known"
+   :writable))
 
 (defun column ()
   (make-array 16 :adjustable t :fill-pointer 0))
@@ -61,18 +60,18 @@ known" :writable))
 
 (addition results-factors results-measures)
 (defun results-factors (results)
-  "Return the names of what varies in RESULTS, a list of strings, in the order of SAMPLE-TEXTS."
+  "Return the names of the factors of RESULTS, a list of strings, in the order of SAMPLE-TEXTS."
   (columns-between (results-columns results) "condition" "seed"))
 
 (defun results-measures (results)
-  "Return the names of what RESULTS have measures of, a list of strings."
+  "Return the names of the measures of RESULTS, a list of strings."
   (measure-columns-of (results-columns results)))
 
 (addition sample-measure)
 (defun sample-measure (results sample measure)
-  "Return a vector of what was measured as MEASURE, a string or symbol, in the trials of SAMPLE, one
-of those of RESULTS: numbers, T, NIL, strings, and :NONE where nothing was. MEASURE may be ticks,
-too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
+  "Return a vector of the values of MEASURE, a string or symbol, in the trials of SAMPLE, one of the
+samples of RESULTS: numbers, T, NIL, strings, and :NONE for no value. MEASURE may be ticks, too.
+Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (check-argument sample-measure measure (typep measure '(or string symbol))
                   "the name of a measure, a string or symbol")
   (let ((place (position (string measure) (results-measures results) :test #'string-equal)))
@@ -84,7 +83,7 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 ;;; Reading.
 
 (defun value-in (text shared)
-  "Return what TEXT, of a table, stands for; strings are those in the table SHARED."
+  "Return the value of TEXT, a cell of a table. Equal strings are shared by the hash table SHARED."
   (cond ((string= text "") :none)
         ((string= text "TRUE") t)
         ((string= text "FALSE") nil)
@@ -95,7 +94,7 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (or (gethash text shared) (setf (gethash text shared) text)))
 
 (defun digest-in (text)
-  "Return a number for the digest in TEXT, of a table, or NIL. Sixty bits of it are enough."
+  "Return the low 60 bits of the digest in TEXT, a cell of a table, or NIL if that is empty."
   (and (string/= text "") (ldb (byte 60 0) (parse-integer text :radix 16))))
 
 (defun note-row (sample texts measures shared)
@@ -113,20 +112,20 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
     (vector-push-extend (shared-text (nth (1+ measures) rest) shared) (sample-errors sample))))
 
 (defun row-key (sample)
-  "Return the texts that the rows of SAMPLE have before the column of the seed."
+  "Return the texts before the seed in rows of SAMPLE."
   (list* (sample-experiment sample) (sample-fingerprint sample) (sample-condition sample)
          (sample-texts sample)))
 
-(defun of-sample-p (sample texts)
+(defun row-of-sample-p (sample texts)
   (every #'string= (row-key sample) texts))
 
 (defun last-trial (sample)
   (let ((count (length (sample-trials sample))))
     (if (zerop count) -1 (aref (sample-trials sample) (1- count)))))
 
-;; A table is in order unless the run that writes it goes on, or was killed.
+;; A table is sorted unless the run that writes it continues, or was killed.
 (defun results-in-order (file)
-  "Return the results in the table FILE; NIL if it is not in order."
+  "Return the results in the table FILE; NIL if it is not sorted."
   (let* ((columns (header-of file))
          (results (%make-results columns))
          (seed (seed-column columns))
@@ -134,8 +133,8 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
          (shared (make-hash-table :test 'equal))
          (samples '()))
     (do-rows (texts file)
-      (unless (and samples (of-sample-p (first samples) texts))
-        (when (some (lambda (sample) (of-sample-p sample texts)) samples)
+      (unless (and samples (row-of-sample-p (first samples) texts))
+        (when (some (lambda (sample) (row-of-sample-p sample texts)) samples)
           (return-from results-in-order nil))
         (push (make-sample (first texts) (second texts) (third texts) (subseq texts 3 seed)
                            (loop repeat measures collect (column)))
@@ -160,7 +159,7 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
                                 the directory that it is in"))
 
 (defun existing-table (directory)
-  "Return the path of DIRECTORY, in which there is a table. Signals MISUSE."
+  "Return the path of DIRECTORY. Signals MISUSE unless it has a table."
   (let ((path (directory-called directory)))
     (check-files-plain path)
     (unless (existing-path (rows-file path))
@@ -168,7 +167,7 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
         (when advice (reject-use "~A is no directory of an experiment: ~A." directory advice)))
       (reject-use "There is no rows.csv in ~A. Give the directory of an experiment."
                   (native-name path)))
-    (note-damaged-description path)
+    (warn-if-damaged path)
     (when (refusal-in path)
       (warn "The rows in ~A were refused when they were run: ~A" (native-name path)
             (refusal-in path)))
@@ -176,8 +175,8 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 
 (addition read-results)
 (defun read-results (directory)
-  "Return the results in DIRECTORY, where RUN-EXPERIMENT or MERGE-RESULTS has left them. Signals
-MISUSE if there are none, and DAMAGED-TABLE."
+  "Return the results in DIRECTORY, as kept by RUN-EXPERIMENT or MERGE-RESULTS. Signals MISUSE if
+there are none, and DAMAGED-TABLE."
   (check-argument read-results directory (typep directory '(or string pathname))
                   "the name of a directory")
   (let ((path (existing-table directory)))

@@ -1,4 +1,4 @@
-;;;; rows.lisp -- rows of a table: what they say of a trial, and what they must be.
+;;;; rows.lisp -- rows of a table: how they are made and checked.
 
 (in-package :ars-magna.experiment)
 
@@ -8,7 +8,7 @@
   (format nil "~@[~16,'0X~]" (result-digest result)))
 
 (defun trial-texts (experiment result)
-  "Return the texts that say of which trial of EXPERIMENT RESULT is: each line begins with them."
+  "Return the texts, up to the trial's number, with which each line of RESULT of EXPERIMENT begins."
   (let ((condition (result-condition result)))
     (append (list (string-downcase (experiment-name experiment))
                   (condition-fingerprint condition)
@@ -27,11 +27,10 @@
           (list (result-digest-text result)
                 (result-error result))))
 
-;;; What was recorded from tick to tick.
+;;; Lines of series.
 
 (defun series-text (experiment result)
-  "Return the lines of the table of series for RESULT, of a trial of EXPERIMENT; empty if it has
-none."
+  "Return the lines of RESULT, of EXPERIMENT, for the table of series; \"\" if it has none."
   (let* ((line (csv-line (trial-texts experiment result)))
          (beginning (substitute #\, #\Newline line :start (1- (length line)))))
     (with-output-to-string (out)
@@ -39,14 +38,14 @@ none."
             do (write-string beginning out)
                (write-string (csv-line (cons (integer-text tick) texts)) out)))))
 
-(defun texts-with-mark (texts experiment series)
-  "Return TEXTS, of a row of EXPERIMENT, and if that records anything the check sum of SERIES, the
-trial's lines."
+(defun texts-with-checksum (texts experiment series)
+  "Return TEXTS, of a row of EXPERIMENT; if that records series, with the checksum of SERIES, the
+trial's lines, at the end."
   (if (experiment-series experiment)
       (append texts (list (format nil "~8,'0X" (text-checksum series))))
       texts))
 
-;;;; What a row and a header must be, whoever has written them
+;;;; Checking headers and rows
 
 (define-condition damaged-table (ars-magna-error)
   ((file :initarg :file :reader damaged-table-file)
@@ -69,8 +68,8 @@ trial's lines."
 (defun call-writing (function file
                      &optional (trouble "it cannot be written (~A). Is it, or its directory, ~
                                          read-only?"))
-  "Call FUNCTION, which opens or changes FILE. If the system refuses, signal DAMAGED-TABLE, which
-says TROUBLE, with the reason."
+  "Call FUNCTION, which opens or changes FILE. If the system refuses, signal DAMAGED-TABLE with
+TROUBLE and the reason."
   (handler-case (funcall function)
     (ars-magna-error (condition) (error condition))
     (error (condition) (reject-table file nil trouble (unwritten-reason condition)))))
@@ -78,12 +77,12 @@ says TROUBLE, with the reason."
 ;;; The header.
 
 (defparameter *rows-layout* (list *columns-between* *columns-after*)
-  "What stands in a table of rows from the seed on, before and after what is measured.")
+  "The columns of a table of rows from the seed on, before and after the measures.")
 (defparameter *series-layout* (list *series-columns* '())
-  "The same of a table of series.")
+  "The same for a table of series.")
 
 (defun table-columns-p (columns layout)
-  "True if COLUMNS are those of a table of an experiment with LAYOUT."
+  "True if COLUMNS can be those of an experiment's table with LAYOUT."
   (destructuring-bind (between after) layout
     (let ((seed (position "seed" columns :test #'string=)))
       (and seed
@@ -94,14 +93,13 @@ says TROUBLE, with the reason."
            (equal after (last columns (length after)))))))
 
 (defun check-header-line (line file)
-  "Signal DAMAGED-TABLE if LINE, the first of FILE, shows that a program has saved it in a way of
-its own."
+  "Signal DAMAGED-TABLE if LINE, the first of FILE, has a carriage return or a byte order mark."
   (when (or (find #\Return line) (eql 0 (search (format nil "~C~C~C" (code-char #xEF)
                                                         (code-char #xBB) (code-char #xBF))
                                                 line)))
-    (reject-table file 1 "an editor or spreadsheet has saved this with line ends or marks of its ~
-                          own. Take the table as it was; or save it as plain UTF-8 with line feeds ~
-                          only.")))
+    (reject-table file 1 "an editor or spreadsheet has saved this with other line ends or with a ~
+                          byte order mark. Use the original table; or save it as plain UTF-8 with ~
+                          line feeds only.")))
 
 (defun seed-column (columns)
   (position "seed" columns :test #'string=))
@@ -109,8 +107,7 @@ its own."
 ;;; Rows.
 
 (defun timed-out-p (texts columns)
-  "True if the row TEXTS, of a table with COLUMNS, is of a trial whose time was up: it cannot be had
-again."
+  "True if the row TEXTS, of a table with COLUMNS, is a timeout, which may not be repeatable."
   (string= "timeout" (nth (position "outcome" columns :test #'string=) texts)))
 
 (defun hexadecimal-p (text)
@@ -119,13 +116,13 @@ again."
        (loop for char across text always (digit-char-p char 16))))
 
 (defun integer-in (text)
-  "Return the integer that TEXT is, as a table has it, or NIL."
+  "Return the integer that TEXT, a cell of a table, represents, or NIL."
   (and (plusp (length text))
        (every #'digit-char-p (string-left-trim "-" text))
        (ignore-errors (parse-integer text))))
 
 (defun check-cells (cells columns file number)
-  "Signal DAMAGED-TABLE unless CELLS, from the seed's on, of the line NUMBER of FILE, can be so."
+  "Signal DAMAGED-TABLE unless CELLS, those from the seed on in line NUMBER of FILE, are valid."
   (flet ((check (test column)
            (unless test
              (reject-row file number "~A cannot be the ~A of a trial."
@@ -133,14 +130,14 @@ again."
                               (append (make-list (seed-column columns)) cells))
                          column))))
     (unless (every (lambda (cell) (every #'writable-char-p (the simple-string cell))) cells)
-      (reject-row file number "This is no row: it has bytes that are no text."))
+      (reject-row file number "This is no row: it has bytes that are not text."))
     (destructuring-bind (seed trial outcome reason ticks &rest rest) cells
       (declare (ignore reason))
       (check (integer-in seed) "seed")
       (check (typep (integer-in trial) `(integer 1 ,+largest+)) "trial")
       (check (member outcome '("success" "failure" "limit" "error" "timeout") :test #'string=)
              "outcome")
-      ;; Earlier versions wrote 0 for a trial whose time was up.
+      ;; Earlier versions wrote 0 for a timeout.
       (check (or (typep (integer-in ticks) `(integer 0 ,+largest+))
                  (and (string= "" ticks) (string= "timeout" outcome)))
              "ticks")
@@ -148,15 +145,15 @@ again."
         (check (or (string= "" digest) (hexadecimal-p digest)) "digest")))))
 
 (defun line-text (line)
-  "Return the text that LINE, whose characters are octets, stands for."
+  "Return the text of LINE, whose characters are octets."
   (declare #.*hot* (type (simple-array character (*)) line))
   (if (every (lambda (char) (< (char-code char) 128)) line)
       line
       (decoded line)))
 
 (defun cells-of-line (line columns file number)
-  "Return the texts of LINE, of octets, which is the line NUMBER of FILE, a table of rows or series
-with COLUMNS. Signals DAMAGED-TABLE."
+  "Return the cells of LINE, of octets, the line NUMBER of FILE, a table of rows or series with
+COLUMNS. Signals DAMAGED-TABLE."
   (let ((texts (handler-case (csv-texts (line-text line))
                  (broken-line () '()))))
     (unless (= (length texts) (length columns))
@@ -178,15 +175,15 @@ with COLUMNS. Signals DAMAGED-TABLE."
 (defun lock-file (directory) (file-in directory ".lock"))
 
 (defun check-plain (file)
-  "Signal DAMAGED-TABLE if what is called FILE, if anything, is no file of bytes."
-  (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that there is not")
+  "Signal DAMAGED-TABLE if FILE exists and is not a plain file."
+  (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that does not exist")
                        ((and (probe-file file) (not (plain-file-p file)))
                         "it is a directory, pipe, socket or device"))))
     (when trouble
       (reject-table file nil "~A. Remove it, or give another directory." trouble))))
 
 (defun check-files-plain (directory)
-  "Signal DAMAGED-TABLE if what is called like a file of DIRECTORY is no file of bytes."
+  "Signal DAMAGED-TABLE if one of the files of DIRECTORY exists and is not a plain file."
   (mapc #'check-plain (list (rows-file directory) (series-file directory) (machine-file directory)
                             (description-file directory))))
 

@@ -1,16 +1,16 @@
-;;;; series.lisp -- the table of series: the lines of each trial, and their order.
+;;;; series.lisp -- reading and sorting tables of series.
 
 (in-package :ars-magna.experiment)
 
-;;; A trial's lines are written at one stroke, so they stand together: a block. What was killed may
-;;; have left the beginning of another one. The index has one object for each block, not for each
-;;; line. Most lines begin as the one before does, up to the tick, and are not taken apart.
+;;; All lines of a trial are written at once, so they are adjacent: a block. A killed process may
+;;; leave an incomplete block. The index has one object for each block, not for each line. Most
+;;; lines begin like the previous one, up to the tick, and need not be parsed.
 
 (defstruct (series-block (:conc-name block-)
                          (:constructor make-series-block (file start number seed first))
                          (:copier nil))
-  "COUNT consecutive lines of a trial, with the ticks from FIRST on: in which of several files they
-begin and end, and on which line."
+  "COUNT consecutive lines of a trial, with the ticks from FIRST on: their file, the positions of
+start and end, and the number of the first line."
   (file nil :read-only t)
   (start 0 :type integer :read-only t)
   (end 0 :type integer)
@@ -20,7 +20,7 @@ begin and end, and on which line."
   (count 0 :type fixnum))
 
 (defstruct (series-index (:constructor make-series-index (columns)) (:copier nil))
-  "The blocks in tables of series with COLUMNS: by what they have before the seed, and by trial."
+  "The blocks in tables of series with COLUMNS, by the list of texts before the seed, and by trial."
   (columns '() :type list :read-only t)
   (groups (make-hash-table :test 'equal) :read-only t))
 
@@ -29,7 +29,7 @@ begin and end, and on which line."
       (setf (gethash key (series-index-groups index)) (make-hash-table))))
 
 (defun blocks-of (index key seed trial)
-  "Return the blocks in INDEX of TRIAL with SEED, whose row has KEY before the seed's column."
+  "Return the blocks in INDEX of TRIAL with SEED, of the rows that have KEY before the seed."
   (let ((group (gethash key (series-index-groups index))))
     (and group
          (remove seed (gethash trial group) :key #'block-seed :test-not #'=))))
@@ -42,7 +42,7 @@ begin and end, and on which line."
 ;;; Lines.
 
 (defun map-commas (function line start)
-  "Call FUNCTION with the place of each comma in LINE from START on that is not in quotes."
+  "Call FUNCTION with the position of each comma in LINE from START on that is not in quotes."
   (declare #.*hot* (type (simple-array character (*)) line) (type fixnum start)
            (type function function))
   (loop with quoted-p = nil
@@ -68,7 +68,7 @@ begin and end, and on which line."
              always (char= char other))))
 
 (defun tick-in-line (line start)
-  "Return the number of the tick in the cell of LINE that begins at START, or NIL."
+  "Return the tick in the cell of LINE that begins at START, or NIL."
   (let ((end (position #\, line :start start)))
     (and end (integer-in (subseq line start end)))))
 
@@ -76,8 +76,7 @@ begin and end, and on which line."
 
 (defstruct (series-scan (:conc-name scan-) (:constructor make-series-scan (index file))
                         (:copier nil))
-  "How far the table FILE has been read into INDEX: the BLOCK at hand, and the BEGINNING of its
-lines."
+  "The state of reading FILE into INDEX: the current BLOCK and the BEGINNING of its lines."
   (index nil :type series-index :read-only t)
   (file nil :read-only t)
   (beginning "" :type (simple-array character (*)))
@@ -90,7 +89,7 @@ lines."
          (eql (+ (block-first block) (block-count block)) (tick-in-line line (length beginning))))))
 
 (defun check-series-cells (texts seed file number)
-  "Signal DAMAGED-TABLE unless TEXTS, from SEED on, of the line NUMBER of FILE, can be so."
+  "Signal DAMAGED-TABLE unless TEXTS, from SEED on, of line NUMBER of FILE, are valid."
   (loop for text in (nthcdr seed texts)
         for column in *series-columns*
         for least in (list most-negative-fixnum 1 0)
@@ -133,28 +132,28 @@ lines."
                      (when (> number 1) (note-series-line scan line start number)))
                    file)))))
 
-;;;; The table: what is there, and putting it in order
+;;;; Finding and sorting the lines of trials
 
-;;; A trial is sampled at tick 0 and after each tick, so its row says how many lines it has. A row
-;;; whose lines are not all there counts as missing: its trial is run again. Lines of trials without
-;;; a row are dropped when the table is put in order.
+;;; A trial is sampled at tick 0 and after each tick, so its row determines its number of lines. A
+;;; row with missing lines counts as missing: its trial is run again. Lines of trials without a row
+;;; are dropped when the table is sorted.
 
 (defun count-expected (texts seed)
-  "Return how many lines the trial has whose row is TEXTS, with SEED the column of the seed. None if
-the row says nothing of how it ended, as its time was up or it ended its thread."
+  "Return the number of lines of the trial with the row TEXTS, with SEED the column of the seed. It
+is 0 if the row has no digest, as after a timeout or the end of the thread."
   (if (string= "" (first (last texts 2)))
       0
       (1+ (parse-integer (nth (+ 4 seed) texts)))))
 
-(defun whole-block (blocks count)
-  "Return one of BLOCKS that has the COUNT lines of a trial, or NIL."
+(defun complete-block (blocks count)
+  "Return one of BLOCKS that has all COUNT lines of a trial, or NIL."
   (find-if (lambda (block) (and (zerop (block-first block)) (= count (block-count block)))) blocks))
 
 (defun block-of-row (index texts)
-  (whole-block (blocks-of-row index texts)
-               (count-expected texts (seed-column (series-index-columns index)))))
+  (complete-block (blocks-of-row index texts)
+                  (count-expected texts (seed-column (series-index-columns index)))))
 
-(defun series-there (experiment directory)
+(defun index-existing-series (experiment directory)
   "Return the index of the series of EXPERIMENT in DIRECTORY; NIL if it records none. Signals
 DAMAGED-TABLE."
   (and (experiment-series experiment)
@@ -162,7 +161,7 @@ DAMAGED-TABLE."
                      (series-columns experiment))))
 
 (defun series-complete-p (index texts)
-  "True if INDEX, or NIL if there are no series, has all lines of the trial whose row is TEXTS."
+  "True if INDEX has all lines of the trial with the row TEXTS, or is NIL: there are no series."
   (or (null index)
       (zerop (count-expected texts (seed-column (series-index-columns index))))
       (block-of-row index texts)))
@@ -170,7 +169,7 @@ DAMAGED-TABLE."
 ;;; Lines.
 
 (defun block-lines (block line-of)
-  "Return the lines of BLOCK, of octets. LINE-OF returns the line of a file that begins at a place."
+  "Return a list of the lines of BLOCK, as octets. LINE-OF is as in CALL-WITH-LINE-READER."
   (loop with start = (block-start block)
         repeat (block-count block)
         for line = (funcall line-of (block-file block) start)
@@ -180,8 +179,8 @@ DAMAGED-TABLE."
 (defun write-lines (lines out)
   (dolist (line lines) (write-line (line-text line) out)))
 
-(defun series-text-there (index texts)
-  "Return the lines that INDEX has of the trial whose row is TEXTS, one text."
+(defun existing-series-text (index texts)
+  "Return the lines in INDEX of the trial with the row TEXTS, as one string."
   (let ((block (and index (block-of-row index texts))))
     (with-output-to-string (out)
       (when block
@@ -193,7 +192,7 @@ DAMAGED-TABLE."
 (defun reject-other-block (block whole)
   (reject-table (block-file block) (block-number block)
                 "the lines of a trial that begin here differ from those that begin at line ~D of ~
-                 ~A. Something outside of the experiment decides its trials; no table can have ~
+                 ~A. Something outside of the experiment affects its trials; no table can have ~
                  both."
                 (block-number whole) (native-name (block-file whole))))
 
@@ -211,20 +210,20 @@ DAMAGED-TABLE."
               (nth (1+ seed) texts) (third texts)
               (native-name (uiop:pathname-directory-pathname rows))))
 
-(defun chosen-block (index texts line-of)
+(defun select-block (index texts line-of)
   (let ((whole (block-of-row index texts)))
     (when whole
       (dolist (block (blocks-of-row index texts) whole)
         (unless (eq block whole) (check-same-lines block whole line-of))))))
 
-;; There may be rows of conditions for which nothing was recorded, from before there was the clause.
-(defun chosen-blocks (rows index line-of)
+;; Conditions may have rows without series, from before the clause :each-tick was added.
+(defun select-blocks (rows index line-of)
   "Return a vector of the blocks in INDEX of the trials in the table ROWS, in its order. Signals
-MISUSE if one has none, but others of its condition have."
+MISUSE if a trial has none, but others of its condition have."
   (let ((blocks (make-array 1000 :adjustable t :fill-pointer 0))
         (seed (seed-column (series-index-columns index))))
     (do-rows (texts rows)
-      (let ((block (chosen-block index texts line-of)))
+      (let ((block (select-block index texts line-of)))
         (cond (block (vector-push-extend block blocks))
               ((series-complete-p index texts))
               ((gethash (subseq texts 0 seed) (series-index-groups index))
@@ -232,7 +231,7 @@ MISUSE if one has none, but others of its condition have."
     blocks))
 
 (defun blocks-in-place-p (blocks file)
-  "True if FILE has BLOCKS, in order, and nothing else."
+  "True if FILE has exactly BLOCKS, in this order."
   (let ((place (1+ (length (first-line file)))))
     (and (loop for block across blocks
                always (and (eq file (block-file block)) (= place (block-start block)))
@@ -247,14 +246,14 @@ MISUSE if one has none, but others of its condition have."
                         file))
 
 (defun write-series-in-order (files rows file)
-  "Write what FILES, tables of series, have of the trials in the table ROWS to FILE, in the order of
-ROWS and each line once; FILE may be one of them. Signals DAMAGED-TABLE and MISUSE; then FILE is as
-it was."
+  "Write the lines in FILES, tables of series, of trials in the table ROWS to FILE, in the order of
+ROWS and each once; FILE may be one of them. Signals DAMAGED-TABLE and MISUSE, and leaves FILE
+unchanged then."
   (let* ((columns (header-of (first files) *series-layout*))
          (index (index-series files columns)))
     (call-with-line-reader
      (lambda (line-of)
-       (let ((blocks (chosen-blocks rows index line-of)))
+       (let ((blocks (select-blocks rows index line-of)))
          (unless (and (equal files (list file)) (blocks-in-place-p blocks (first files)))
            (write-blocks blocks columns line-of file))))
      files)))

@@ -1,39 +1,39 @@
-;;;; data.lisp -- values of any kind that are data, and a number for what they are.
+;;;; data.lisp -- digests of values that are data.
 
 (in-package :ars-magna.experiment)
 
-;;; Data are numbers, names, characters, strings, paths, and conses, arrays, hash tables and users'
-;;; structures of such. Of other parts, such as functions and objects of classes, only the type
-;;; counts. A part that is in itself counts by how far above itself it is, so that the number does
+;;; Data are numbers, symbols, characters, strings, paths, and conses, arrays, hash tables and
+;;; users' structures of these. Of other parts, such as functions and class instances, only the
+;;; type counts. A part that contains itself counts by its distance to itself. So the digest does
 ;;; not depend on the order of a table.
 
-(defconstant +deepest-data+ 2000 "How deep parts count that stand in data.")
-(defconstant +largest-data+ 1000000 "How many conses, arrays, tables and structures data have.")
-(defconstant +most-elements+ 20000000 "How many elements of arrays data have.")
+(defconstant +deepest-data+ 2000 "Parts of data that are nested deeper do not count.")
+(defconstant +largest-data+ 1000000 "The most conses, arrays, tables and structures in data.")
+(defconstant +most-elements+ 20000000 "The most elements of arrays in data.")
 
 (defun plain-structure-p (value)
-  "True if VALUE is of a user's DEFSTRUCT or DEFINE-CONDITION; not a fluent, thing or the like."
+  "True if VALUE is of a user's DEFSTRUCT or DEFINE-CONDITION, and not a fluent, thing or the like."
   (and (typep value '(or structure-object condition))
        (null (kind-of value))
        (users-symbol-p (type-of value))))
 
 (defun structure-values (structure)
-  "Return what the slots of STRUCTURE hold, a list; of a condition, those that are bound."
+  "Return a list of the values of the bound slots of STRUCTURE, a structure or condition."
   (loop for slot in (class-slot-names (class-of structure))
         when (slot-boundp structure slot) collect (slot-value structure slot)))
 
 (deftype plain-atom ()
   '(or number symbol character string bit-vector pathname))
 
-;; What is in a weak table depends on when garbage is collected. See WEAK-NUMBERS.
+;; The contents of a weak table depend on garbage collection. See WEAK-NUMBERS.
 (deftype compound ()
   '(or cons array (and hash-table (not (satisfies weak-table-p))) (satisfies plain-structure-p)))
 
 ;;; Walking.
 
 (defstruct (walk (:constructor make-walk (digest atom)) (:copier nil))
-  "A way through data: what it meets is added to DIGEST, and ATOM is called with what has no parts.
-PATH are the compound parts that it is in, by how deep they are."
+  "A walk through data: each part is added to DIGEST, and ATOM is called with parts that have no
+parts. PATH maps the compounds around the current part to their depths."
   (digest nil :type digest :read-only t)
   (atom nil :type function :read-only t)
   (path (make-hash-table :test 'eq) :read-only t)
@@ -51,13 +51,13 @@ PATH are the compound parts that it is in, by how deep they are."
     (fixnum (mark-word 1 walk) (mark-word atom walk))
     (double-float (mark-word 2 walk) (mark-word (double-to-bits atom) walk))
     (plain-atom (mark-text (prin1-to-string atom) walk))
-    ;; It is no data: its type counts.
+    ;; Not data: only the type counts.
     (t (mark-text (prin1-to-string (if (functionp atom) 'function (class-name (class-of atom))))
                   walk)))
   (funcall (walk-atom walk) atom))
 
 (defun count-compound (walk)
-  "Leave WALK if it has met more than data may have."
+  "Count a compound, and leave WALK if the data are too large."
   (when (or (minusp (decf (walk-compounds walk)))
             (minusp (walk-elements walk)))
     (throw 'too-large nil)))
@@ -83,7 +83,7 @@ PATH are the compound parts that it is in, by how deep they are."
              (remhash value (walk-path walk))))))
 
 (defun walk-list (list depth walk)
-  "Enter the conses of LIST into WALK. Its tails are as deep as it is."
+  "Add the conses of LIST to WALK. All tails have the depth of LIST."
   (mark-word 5 walk)
   (loop for rest = list then (cdr rest)
         while (and (consp rest) (not (gethash rest (walk-path walk))))
@@ -104,12 +104,12 @@ PATH are the compound parts that it is in, by how deep they are."
     (walk-value (row-major-aref array index) (1+ depth) walk)))
 
 (defun walk-table (table depth walk)
-  "Enter the hash TABLE into WALK, the same whatever was entered into it first."
+  "Add the hash TABLE to WALK, independent of the order of its entries."
   (mark-text (prin1-to-string (hash-table-test table)) walk)
   (dolist (number (sort (entry-numbers table depth walk) #'<)) (mark-word number walk)))
 
 (defun entry-numbers (table depth walk &optional (test (constantly t)))
-  "Return a list of a number for each entry of the hash TABLE whose key TEST is true of."
+  "Return a list with a number for each entry of the hash TABLE whose key passes TEST."
   (let* ((digest (walk-digest walk)) (before (digest-value digest)))
     (prog1 (loop for key being the hash-keys of table using (hash-value value)
                  when (funcall test key)
@@ -119,36 +119,36 @@ PATH are the compound parts that it is in, by how deep they are."
                    and collect (digest-value digest))
       (setf (digest-value digest) before))))
 
-;;; What is known of a value.
+;;; Digests.
 
 (defun call-walking (value atom)
-  "Call ATOM with each part of VALUE that has no parts. Return a number for VALUE as it is; NIL if
-it is too large."
+  "Call ATOM with each part of VALUE that has no parts. Return a digest of VALUE; NIL if it is too
+large."
   (let ((walk (make-walk (make-digest) atom)))
     (catch 'too-large
       (call-plainly (lambda () (walk-value value 0 walk)) (find-package :keyword))
       (digest-value (walk-digest walk)))))
 
 (defun data-number (value)
-  "Return a number for VALUE as it is, with the packages of names; NIL if it is too large."
+  "Return a digest of VALUE, including the packages of symbols; NIL if it is too large."
   (call-walking value #'identity))
 
-;;; What is held weakly may be gone at any time, so it is no data. But what a trial adds there,
-;;; another trial may find. Under a key that was made in the trial, no other finds anything.
+;;; Weakly held objects can disappear at any time, so they are not data. But a trial can find what
+;;; another trial added, unless its key was made in that trial.
 
 (defun weak-p (object)
   (or (weak-pointer-p object)
       (and (hash-table-p object) (weak-table-p object))))
 
 (defun lasting-key-p (key table)
-  "True if an object made elsewhere may be the same key of the hash TABLE as KEY."
+  "True if another trial can make an object that is the same key of the hash TABLE as KEY."
   (typecase key
     (symbol (symbol-package key))
     ((or string cons) (and (not (member (hash-table-test table) '(eq eql))) (value-p key)))
     (t (value-p key))))
 
 (defun weak-numbers (object atom)
-  "Return a list of numbers for what OBJECT, which is weak, holds now. ATOM is called as by
+  "Return a list of digests of what OBJECT, a weak pointer or table, holds now. ATOM is called as by
 CALL-WALKING."
   (if (weak-pointer-p object)
       (let ((target (weak-value object)))
@@ -161,8 +161,8 @@ CALL-WALKING."
                         (find-package :keyword))))))
 
 (defun no-data-p (value)
-  "True if VALUE is NIL or an empty hash table, as often stands where data are to be kept later; or
-no data at all."
+  "True if VALUE is not data, or is NIL or an empty hash table, which often stand where data are
+kept later."
   (or (null value)
       (and (hash-table-p value) (zerop (hash-table-count value)))
       (not (typep value '(or plain-atom compound)))))

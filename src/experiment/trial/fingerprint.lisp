@@ -1,4 +1,4 @@
-;;;; fingerprint.lisp -- one number for all that decides the trials of a condition.
+;;;; fingerprint.lisp -- one number for everything that decides the trials of a condition.
 
 (in-package :ars-magna.experiment)
 
@@ -9,7 +9,7 @@
     '("src/host/" "src/basics/" "src/definitions/" "src/copying/" "src/geometry/"
       "src/nisp/" "src/world/" "src/time/" "src/robot/" "src/command/" "src/run/"
       "rpl/fluents/" "rpl/tasks/" "rpl/language/" "rpl/constructs/" "rpl/robot/")
-    "The folders of the simulator whose code decides what becomes of a run.")
+    "The folders of the simulator whose code affects runs.")
 
   (defun digest-of-folders (root)
     "Return one number for all code in *DECIDING-FOLDERS* under ROOT."
@@ -19,7 +19,7 @@
                                                                  (merge-pathnames folder root)))
                          sum (file-digest file))))))
 
-;; All these files are compiled before this one, and it is compiled again when one of them is.
+;; These files are compiled before this one, and when one is recompiled, so is this one.
 (defparameter *simulator-digest*
   (macrolet ((digest ()
                (digest-of-folders
@@ -30,19 +30,18 @@
 (defparameter *simulator-version*
   (macrolet ((version () (asdf:component-version (asdf:find-system "ars-magna"))))
     (version))
-  "The version that the system's definition gives.")
+  "The version in the system definition.")
 
-;;;; Which code of users a function can reach
+;;;; Which users' code a function can reach
 
-;;; From a function one reaches what its compiled code refers to; from a symbol the function, macro
-;;; and value that it names, and whatever definitions are called so; from a plan the words of its
-;;; text. What belongs to the simulator and to Lisp is known by its locked package and left alone.
-;;; What is looked up in other ways, by a name put together from pieces, or as a function in a table
-;;; or structure, is not reached.
+;;; A function leads to what its compiled code refers to. A symbol leads to the function, macro and
+;;; value that it names, and to all definitions of that name. A plan leads to the symbols of its
+;;; source. Symbols of the simulator and of Lisp, which are in locked packages, are skipped. What is
+;;; looked up in other ways is missed: by a computed name, or as a function in a table or structure.
 
 (defstruct (reach (:constructor make-reach ()) (:copier nil))
-  "What has been reached: definitions, lists (kind name number); the files that it is from; special
-variables; such lists for what variables hold weakly."
+  "What has been reached. PARTS are lists (kind name number), FILES the files they are from,
+VARIABLES special variables. WEAK-PARTS are such lists for what variables hold weakly."
   (seen (make-hash-table :test 'eq) :read-only t)
   (parts '() :type list)
   (files '() :type list)
@@ -53,16 +52,16 @@ variables; such lists for what variables hold weakly."
   (pushnew (list kind name number) (reach-parts reach) :test #'equal))
 
 (defun note-file (file written reach)
-  "Note that something reached is from FILE, which was loaded as WRITTEN at that time, if known."
+  "Note that something reached is from FILE, loaded when its write date was WRITTEN, or NIL."
   (let ((known (find file (reach-files reach) :key #'first :test #'string=)))
     (cond ((null known) (push (list file written) (reach-files reach)))
           (written (setf (second known) written)))))
 
-;;; What was typed has no file. Of a function nothing is left then but what it does. So each counts
-;;; as itself: typed anew, it is another, and in another Lisp, too.
+;;; Functions typed at the prompt have no file, and no source is left. So each has a number of its
+;;; own: typed again, or in another Lisp, it is a different function.
 
 (defvar *typed-functions* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "Numbers of functions that were typed.")
+  "Numbers of functions that were typed at the prompt.")
 
 ;;; Visiting.
 
@@ -70,7 +69,7 @@ variables; such lists for what variables hold weakly."
   (not (shiftf (gethash object (reach-seen reach)) t)))
 
 (defun visit-function (function name reach)
-  "Visit FUNCTION, called NAME, or NIL if it is only a part of another."
+  "Visit FUNCTION. NAME is its name, or NIL if it is part of another function."
   (when (first-visit-p function reach)
     (cond ((typep function 'generic-function)
            (dolist (method (code-references function)) (visit-function method name reach)))
@@ -87,8 +86,8 @@ variables; such lists for what variables hold weakly."
                    reach))))
 
 (defun note-function (function name reach)
-  "Note FUNCTION, which is called NAME, if its file does not say all: it was not defined so, but put
-there, as by a trial, or it has closed over something."
+  "Note FUNCTION, the definition of NAME, if its file does not determine it: it was set in another
+way, as by a trial, or it is a closure."
   (let ((own-name (nth-value 2 (function-lambda-expression function)))
         (values (closed-over function)))
     (unless (or (typep function 'generic-function)
@@ -96,14 +95,14 @@ there, as by a trial, or it has closed over something."
       (note-part :function (qualified name) (data-number values) reach))))
 
 (defun note-weak (object symbol reach)
-  "Note what OBJECT, which is in the value of the variable SYMBOL, holds if it is weak."
+  "Note what OBJECT, a part of the value of the variable SYMBOL, holds weakly."
   (when (and (weak-p object) (first-visit-p object reach))
     (dolist (number (weak-numbers object (lambda (atom) (note-weak atom symbol reach))))
       (setf (gethash (list :variable (qualified symbol) number) (reach-weak-parts reach)) t))))
 
 (defun visit-variable (symbol reach)
-  "Visit the variable SYMBOL and what is in its value, which is a part if it is data. NIL and an
-empty table count as no data, since they often stand where a table or structure is filled later."
+  "Visit the variable SYMBOL and its value, which is a part if it is data. NIL and an empty table
+are not, since they often stand where a table or structure is filled later."
   (unless (eq :global (variable-kind symbol)) (push symbol (reach-variables reach)))
   (let ((value (global-value symbol)))
     (flet ((visit-atom (atom)
@@ -115,7 +114,7 @@ empty table count as no data, since they often stand where a table or structure 
             (t (let ((number (call-walking value #'visit-atom)))
                  (when number (note-part :variable (qualified symbol) number reach))))))))
 
-;; What an experiment varies, and how often it is tried, decides no trial.
+;; Experiments are skipped: their factors and numbers of trials do not affect a trial.
 (defun visit-definition (entry reach)
   (let ((object (entry-object entry)))
     (when (and (not (experiment-p object)) (users-p entry) (first-visit-p entry reach))
@@ -130,10 +129,10 @@ empty table count as no data, since they often stand where a table or structure 
   (dolist (slot (class-slot-names (class-of object)))
     (let ((value (slot-value object slot)))
       (cond ((functionp value) (visit-function value nil reach))
-            ((consp value) (visit-holders value reach))))))
+            ((consp value) (visit-functions-in-list value reach))))))
 
-(defun visit-holders (list reach)
-  "Visit the functions in LIST, and those that structures in it hold, as methods do."
+(defun visit-functions-in-list (list reach)
+  "Visit the functions in LIST and in slots of structures in it, such as methods."
   (when (proper-list-p list)
     (dolist (element list)
       (cond ((functionp element) (visit-function element nil reach))
@@ -187,14 +186,14 @@ empty table count as no data, since they often stand where a table or structure 
 
 ;;;; The number
 
-;;; The parts of a fingerprint are lists (kind name number): the experiment's own text, the values
-;;; of the condition, the simulator, what the journal of such a run would have, and what the forms
-;;; can reach. Rows whose fingerprints are equal come from the same function of the seed, as far as
-;;; can be told; a second start of an experiment tries it on a trial that it finds. What else stands
-;;; in the files that those parts are from may decide them, too, but for other experiments.
+;;; The parts of a fingerprint are lists (kind name number): the experiment's text, the condition's
+;;; values, the simulator, the definitions that a journal of such a run would have, and what the
+;;; forms can reach. Rows with equal fingerprints should be equal functions of the seed; a resumed
+;;; experiment checks this with a trial. All other code in the files of these parts counts, too,
+;;; except other experiments.
 
 (defparameter *file-digests* (make-hash-table :test 'equal :synchronized t)
-  "Numbers of files by name: those that a saved Lisp was made of may be gone when it runs.")
+  "Digests of files by name. The files of a saved Lisp may be gone when it runs.")
 
 (defvar *digests-settled-p* nil
   "True in a Lisp that was saved with its experiments: later changes of their files do not count.")
@@ -203,8 +202,8 @@ empty table count as no data, since they often stand where a table or structure 
   (name-in-directory (native-path file)))
 
 (defun digest-of-file (file written)
-  "Return a number for the code in FILE, which was loaded as WRITTEN at that time. Signals MISUSE if
-it has been changed since."
+  "Return a digest of the code in FILE. Signals MISUSE if its write date is no longer WRITTEN, the
+one at which it was loaded, or NIL."
   (let ((now (ignore-errors (file-write-date (native-path file)))))
     (cond ((and *digests-settled-p* (gethash file *file-digests*)))
           ((and now (or (null written) (= now written)))
@@ -220,7 +219,7 @@ it has been changed since."
     (loop for (file written) in files
           for part = (find (short-name file) parts :key #'second :test #'string=)
           for number = (digest-of-file file written)
-          ;; Those of Lisp's own are not there.
+          ;; Source files of Lisp itself do not exist here.
           do (cond ((zerop number))
                    (part (setf (third part) (ldb (byte 64 0) (+ number (third part)))))
                    (t (push (list :file (short-name file) number) parts))))
@@ -237,7 +236,7 @@ it has been changed since."
                                  (condition-arguments condition))))))
 
 (defun definitions-in-trial (experiment condition)
-  "Return the definitions that the run of a trial of CONDITION begins with; see src/run."
+  "Return the definitions in use when a trial of CONDITION begins; see DEFINITIONS-OF."
   (call-in-trial (lambda () (definitions-of (current-simulation))) experiment condition 1))
 
 (defun reach-of (experiment condition definitions)
@@ -254,14 +253,13 @@ it has been changed since."
     reach))
 
 (defun fingerprint-parts (experiment condition)
-  "Return the parts of the fingerprint of CONDITION of EXPERIMENT, in order, and what its trials can
-reach."
+  "Return the sorted parts of the fingerprint of CONDITION of EXPERIMENT, and its reach."
   (let* ((definitions (definitions-in-trial experiment condition))
          (reach (reach-of experiment condition definitions)))
     (values
      (sort (remove-duplicates (append (configuration-parts experiment condition)
                                       (reach-parts reach)
-                                      ;; Manipulations, and what is undefined.
+                                      ;; Manipulations and undefined names have no entry.
                                       (remove :file (remove-if #'definition-entry definitions)
                                               :key #'first)
                                       (file-parts (reach-files reach)))
@@ -288,8 +286,7 @@ reach."
         (condition-weak-parts condition) (reach-weak-parts reach)))
 
 (defun prepare-condition (experiment condition)
-  "Give CONDITION of EXPERIMENT its fingerprint, and what else its trials need. Return the parts of
-the fingerprint."
+  "Set fingerprint and variables of CONDITION of EXPERIMENT. Return the parts of the fingerprint."
   (call-plainly
    (lambda ()
      (multiple-value-bind (parts reach) (fingerprint-parts experiment condition)
@@ -298,21 +295,20 @@ the fingerprint."
        parts))))
 
 (defun prepare-trials (experiment condition)
-  "Give CONDITION of EXPERIMENT what its trials need, but no fingerprint: its files may have been
-changed."
+  "Set the variables of CONDITION of EXPERIMENT, but no fingerprint: its files may have changed."
   (call-plainly
    (lambda ()
      (note-reach condition
                  (reach-of experiment condition (definitions-in-trial experiment condition))))))
 
 (defun prepare-experiment (experiment)
-  "Give the conditions of EXPERIMENT their fingerprints. Return the parts of each. Signals MISUSE if
-a file is not as it was loaded, and what the making of its worlds signals."
+  "Call PREPARE-CONDITION for all conditions of EXPERIMENT; return a list of the values. Signals
+MISUSE if a file has changed since it was loaded, and errors of making the worlds."
   (loop for condition in (experiment-conditions experiment)
         collect (prepare-condition experiment condition)))
 
 (defun settle-fingerprints ()
-  "Fix the fingerprints of the experiments' files as they are now, even if the files change later,
-for a Lisp that is saved with its contents. Signals MISUSE if a file is not as it was loaded."
+  "Keep the digests of experiments' files as they are now, for a Lisp that is saved, even if the
+files change later. Signals MISUSE if a file has changed since it was loaded."
   (mapc #'prepare-experiment (all-experiments))
   (setf *digests-settled-p* t))

@@ -1,15 +1,15 @@
-;;;; outcome.lisp -- what came of a trial, by what its forms return and record.
+;;;; outcome.lisp -- results of trials, from the values and records of their forms.
 
 (in-package :ars-magna.experiment)
 
 (export '(call-until-error))
 
-;;; An outcome is "success", "failure", "limit" (no more ticks were left), "error" (the trial's
-;;; own code broke off) or "timeout" (it took too long by the clock). A failure has a reason, a word
-;;; or two that others may share.
+;;; An outcome is "success", "failure", "limit" (no ticks were left), "error" (the trial's own code
+;;; signalled one) or "timeout" (it took too much real time). A failure has a short reason, which
+;;; several trials can share.
 
 (define-record (result (:constructor make-result (condition trial seed)))
-  "What came of a trial."
+  "The result of a trial."
   (condition nil trial-condition)
   (trial 0 integer "the number of the trial" :export)
   (seed 0 integer "the seed of the trial" :export)
@@ -17,14 +17,14 @@
            "\"success\", \"failure\", \"limit\", \"error\" or \"timeout\"" :writable :export)
   (reason "" string "why the trial failed, a string" :writable :export)
   (ticks 0 (or null integer)
-         "how many ticks passed, or NIL if the trial's time was up" :writable :export)
+         "how many ticks passed, or NIL for a timeout" :writable :export)
   (measures '() list :writable)
   (series '() list "what was recorded from tick to tick, lists (tick text...)" :writable)
   (digest nil (or null integer) "the digest of the state at the end, or NIL" :writable :export)
-  (error "" string "what error there was, a string; \"\" if none" :writable :export))
+  (error "" string "the text of the first error; \"\" if there was none" :writable :export))
 
 (defparameter *plan-states* '(:succeeded :failed :evaporated :deadlock :limit :stopped)
-  "What RUN-PLAN returns as its second value.")
+  "The second values of RUN-PLAN.")
 
 (defun success-p (outcome) (string= outcome "success"))
 
@@ -48,8 +48,7 @@
                    (if (and reason (typep reason '(or symbol string))) (value-text reason) "")))))
 
 (defun check-run-something (values)
-  "Signal MISUSE if VALUES, of :run, are a plan or the symbol that it is called by, and no tick has
-passed."
+  "Signal MISUSE if VALUES, of :run, are a plan or its name, and no tick has passed."
   (let* ((value (first values))
          (plan (and value
                     (null (rest values))
@@ -61,14 +60,14 @@ passed."
                   (procedure-name plan) (run-plan-text (procedure-name plan))))))
 
 (defun error-in-plan (values)
-  "Return the text of the error in Lisp code that let a plan fail, if VALUES are RUN-PLAN's and it
-did; else an empty one."
+  "Return the text of the Lisp error by which a plan failed, if VALUES are those of RUN-PLAN; else
+an empty one."
   (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
       (plain-text (failure-text (lisp-failure-condition (first values))))
       ""))
 
 (defun add-error (result text)
-  "Enter into RESULT that there was an error of which TEXT tells, unless there was one before."
+  "Set the error of RESULT to TEXT, unless it has one already."
   (when (string= "" (result-error result))
     (setf (result-error result) (plain-text text))))
 
@@ -77,9 +76,9 @@ did; else an empty one."
 (defun call-form (function condition)
   (apply (the function function) (condition-arguments condition)))
 
-(defun truth-of (clause function condition)
-  "Return what FUNCTION, of the form of CLAUSE, returns. Signals MISUSE if that is a fluent, or how
-a plan has failed."
+(defun checked-truth (clause function condition)
+  "Return the value of FUNCTION, of the form of CLAUSE. Signals MISUSE if it is a fluent or the
+failure of a plan."
   (let ((value (call-form function condition)))
     (when (fluent-p value)
       (reject-use "The value of ~(~S~) is the fluent ~A itself, which is true whatever its value ~
@@ -91,8 +90,8 @@ a plan has failed."
     value))
 
 (defun text-of-measure (clause name function condition)
-  "Return the text of what FUNCTION, called NAME in CLAUSE, returns. Signals WRONG-ARGUMENT if a
-table cannot have it."
+  "Return the text of the value of FUNCTION, the measure NAME in CLAUSE. Signals WRONG-ARGUMENT if a
+table cannot have that value."
   (let ((value (call-form function condition)))
     (unless (value-p value)
       (reject-argument clause name value "a number, symbol, string or list of them"))
@@ -102,8 +101,7 @@ table cannot have it."
   "True while a stopped trial is inspected: errors are then not the trial's.")
 
 (defun call-until-error (function)
-  "Call FUNCTION, which is not to end this Lisp. Return the condition with which it broke off, or
-NIL."
+  "Call FUNCTION, which may not exit this Lisp. Return the error that ended it, or NIL."
   (flet ((leave (condition)
            (unless *aside-p*
              (when (and *break-on-user-error* (not (typep condition 'storage-condition)))
@@ -115,7 +113,7 @@ NIL."
     nil))
 
 (defun trouble-text (function)
-  "Call FUNCTION. Return what is to be said if it breaks off, or NIL."
+  "Call FUNCTION. Return the text of the error that ended it, or NIL."
   (let ((trouble (catch 'broken-off
                    (restart-case (call-until-error function)
                      (abort () :report "End this trial." "aborted")))))
@@ -127,28 +125,27 @@ NIL."
 ;;;; What :each-tick records
 
 ;;; A sample is taken before the first tick and right after each tick, before :run or a plan's
-;;; caller goes on. The gate, which lets one tick pass at a time, leaves a question that is answered
-;;; once the tick is over, plans included. An observer would not do: it is called before plans act,
-;;; and where there is one, a plan that waits in vain might still be helped, so it is no deadlock.
+;;; caller continues. The gate, which lets one tick pass at a time, posts a question that is
+;;; answered at the end of the tick, after plans. An observer would not do: it is called before
+;;; plans run, and a run with one has no deadlocks, because the observer might set a fluent.
 
 (defstruct (sampler (:constructor make-sampler (experiment result)) (:copier nil))
-  "What takes the samples of a trial."
+  "The state of taking samples of a trial."
   (experiment nil :type experiment :read-only t)
   (result nil :type result :read-only t)
   ;; Lists (tick text...), the newest first.
   (samples '() :type list)
-  ;; What CL:RANDOM rolls meanwhile.
+  ;; The dice of CL:RANDOM while samples are taken.
   (dice (seeded-lisps-dice 0) :read-only t)
-  ;; What is to be said of the first error, or NIL.
+  ;; The text of the first error, or NIL.
   (trouble nil :type (or null string)))
 
 (defvar *sampler* nil "The sampler of the trial under way in this thread, or NIL.")
 
 ;;; One sample.
 
-(defun call-with-other-dice (function tick world)
-  "Call FUNCTION. What the dice of WORLD roll in it depends on what they were and on TICK. They are
-then as before."
+(defun call-with-temporary-dice (function tick world)
+  "Call FUNCTION with the dice of WORLD reseeded from their states and TICK; then restore them."
   (let* ((all (world-dice-set world))
          (states (loop for dice across all collect (dice-state dice))))
     (loop for dice across all
@@ -159,17 +156,17 @@ then as before."
             for state in states
             do (setf (dice-state dice) state)))))
 
-(defun call-rolling-apart (function sampler tick world)
-  "Call FUNCTION, which is to roll neither the dice of WORLD nor those of the trial's programs."
-  ;; The seed alone is that of the trial's programs.
+(defun call-with-sampling-dice (function sampler tick world)
+  "Call FUNCTION without changing the dice of WORLD or of the trial's programs."
+  ;; Not the seed alone: the trial's programs have that.
   (reseed-lisps-dice (+ (result-seed (sampler-result sampler)) (ash (1+ tick) 32))
                      (sampler-dice sampler))
   (rolling ((sampler-dice sampler))
-    (call-with-other-dice function tick world)))
+    (call-with-temporary-dice function tick world)))
 
 (defun sampled-text (sampler name function tick)
-  "Return the text of what FUNCTION, called NAME, returns at TICK. If it breaks off, return an empty
-one; of the first time SAMPLER keeps the error."
+  "Return the text of the value of FUNCTION, called NAME, at TICK; \"\" if it signals an error.
+SAMPLER keeps the first error."
   (let* ((text "")
          (condition (result-condition (sampler-result sampler)))
          (trouble (trouble-text
@@ -180,21 +177,21 @@ one; of the first time SAMPLER keeps the error."
             (format nil "Error in :each-tick ~(~A~) at tick ~D: ~A" name tick trouble)))
     text))
 
-;; A form may be left, as by THROW. Then the rest of its sample is empty.
+;; If a form is left by a THROW, the rest of the sample is empty.
 (defun take-sample (sampler simulation)
   (let* ((functions (experiment-series (sampler-experiment sampler)))
          (tick (simulation-tick simulation))
          (texts (make-list (length functions) :initial-element "")))
     (push (cons tick texts) (sampler-samples sampler))
-    (call-rolling-apart (lambda ()
-                          (loop for (name function) in functions
-                                for place on texts
-                                do (setf (first place)
-                                         (sampled-text sampler name function tick))))
-                        sampler tick (simulation-world simulation))))
+    (call-with-sampling-dice (lambda ()
+                               (loop for (name function) in functions
+                                     for place on texts
+                                     do (setf (first place)
+                                              (sampled-text sampler name function tick))))
+                             sampler tick (simulation-world simulation))))
 
 (defun drop-later-samples (sampler tick)
-  "Drop SAMPLER's samples of ticks after TICK, over which the trial has been rewound."
+  "Drop SAMPLER's samples of ticks after TICK, to which the trial has been rewound."
   (loop while (and (sampler-samples sampler)
                    (> (first (first (sampler-samples sampler))) tick))
         do (pop (sampler-samples sampler))))
@@ -210,7 +207,7 @@ one; of the first time SAMPLER keeps the error."
 ;;; All of them.
 
 (defun sampling-gate (sampler gate)
-  "Return a gate that lets one tick pass at a time, as far as GATE does, between samples."
+  "Return a gate that lets one tick pass at a time, if GATE allows it, and takes samples."
   (lambda (simulation)
     (sample-once sampler simulation)
     (let ((count (funcall gate simulation))
@@ -219,8 +216,8 @@ one; of the first time SAMPLER keeps the error."
       (min 1 count))))
 
 (defun call-sampling (function experiment result)
-  "Call FUNCTION, which runs the trial of RESULT in the current simulation. What EXPERIMENT wants is
-recorded at each tick, for NOTE-SERIES."
+  "Call FUNCTION, which runs the trial of RESULT in the current simulation, and record :each-tick of
+EXPERIMENT for NOTE-SERIES."
   (let ((*sampler* (and (experiment-series experiment) (make-sampler experiment result)))
         (simulation (current-simulation)))
     (when *sampler*
@@ -228,7 +225,7 @@ recorded at each tick, for NOTE-SERIES."
     (funcall function)))
 
 (defun note-series (result)
-  "Enter into RESULT what has been recorded of its trial, and the first error, if none came before."
+  "Set the series of RESULT; and its error, if it has none yet, to the first error of sampling."
   (when *sampler*
     (sample-once *sampler* (current-simulation))
     (setf (result-series result) (reverse (sampler-samples *sampler*)))

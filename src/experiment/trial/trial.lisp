@@ -5,15 +5,14 @@
 (export '(run-trial call-in-silence))
 
 ;;; A trial is a function of the code, its condition and its seed. So it begins with the manual's
-;;; parameters but where the experiment says otherwise, with Lisp's own dice made from the seed for
-;;; code that rolls them, and with settings of the reader and printer that do not depend on where it
-;;; is run.
+;;; parameters, except where the experiment sets them, with CL:RANDOM seeded by the trial's seed,
+;;; and with reader and printer variables that do not depend on where it runs.
 
-;;; Ticks. Who asks for more than there are is left.
+;;; Ticks. A trial that asks for more than the limit is left by a THROW.
 
 (defun limit-gate (limit next)
-  "Return a gate for a simulation that lets LIMIT ticks pass in all, and then leaves the trial. NEXT
-is a gate to ask besides, or NIL."
+  "Return a gate that lets LIMIT ticks of a simulation pass, and then leaves the trial. NEXT is a
+gate to call as well, or NIL."
   (lambda (simulation)
     (let ((left (- limit (simulation-tick simulation))))
       (unless (plusp left) (throw 'out-of-ticks nil))
@@ -21,10 +20,10 @@ is a gate to ask besides, or NIL."
 
 ;;; Surroundings.
 
-(defvar *nowhere* (make-broadcast-stream) "Where what trials write goes.")
+(defvar *nowhere* (make-broadcast-stream) "A stream that discards the output of trials.")
 
 (defun call-in-silence (function)
-  "Call FUNCTION; what it writes is lost, and what enters a debugger is an error."
+  "Call FUNCTION. Discard its output; entering the debugger is an error."
   (let* ((nobody (make-two-way-stream (make-concatenated-stream) *nowhere*))
          (*standard-output* *nowhere*) (*error-output* *nowhere*) (*trace-output* *nowhere*)
          (*query-io* nobody) (*debug-io* nobody) (*terminal-io* nobody)
@@ -34,11 +33,11 @@ is a gate to ask besides, or NIL."
                            (throw 'broken-off condition)))
       (funcall function))))
 
-;; Fluents and valves have states of their own in each trial, as in forks, whatever leads to them.
-;; Variables that trials can reach are bound, so no trial sees what another sets.
+;; Each trial has its own states of fluents and valves, as forks have. Variables that trials can
+;; reach are bound, so no trial sees what another sets.
 (defun call-in-trial (function experiment condition trial &key gate journal)
-  "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE, if given, is a
-gate to be asked besides that of the limit. With JOURNAL the simulation keeps one."
+  "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE is a gate to call
+besides that of the limit. If JOURNAL is true the simulation keeps a journal."
   (let ((seed (trial-seed experiment trial))
         (limit (experiment-limit experiment)))
     (call-plainly
@@ -59,19 +58,19 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
              :variables (remove-if-not #'variable-name-p (condition-robots condition)))))))
      (experiment-package experiment))))
 
-;;; What happens in it.
+;;; Running the forms.
 
-(defvar *trial-values* '() "What the form :run of the trial under way has returned, a list.")
+(defvar *trial-values* '() "A list of the values of :run in the current trial.")
 
 (addition trial-values)
 (defun trial-values ()
-  "Return a list of the values of the form :run of the trial at whose end we are: for :success and
-:measure. NIL if it did not return, and before it has."
+  "Return a list of the values of the form :run of the current trial, for :success and :measure; NIL
+before :run has returned, and if it did not return."
   *trial-values*)
 
 (defun run-forms (experiment condition)
-  "Do what EXPERIMENT says under CONDITION. Return the values of :run, or T if it has :until; NIL
-and :LIMIT if too few ticks were left."
+  "Evaluate :run and :until of EXPERIMENT under CONDITION. Return a list of the values of :run; (T)
+if there is an :until; (NIL :LIMIT) if the limit of ticks was reached."
   (catch 'out-of-ticks
     (return-from run-forms
       (let ((values (multiple-value-list (call-form (experiment-run experiment) condition))))
@@ -79,15 +78,15 @@ and :LIMIT if too few ticks were left."
         (signal-trouble *message-queue*)
         (check-run-something values)
         (when (experiment-until experiment)
-          (loop until (truth-of :until (experiment-until experiment) condition)
+          (loop until (checked-truth :until (experiment-until experiment) condition)
                 do (run-ticks 1))
           (setf values '(t)))
         values)))
   (list nil :limit))
 
 (defun run-noting-failures (experiment condition result)
-  "Return what RUN-FORMS returns; if a plan that was begun fails, and :run does not handle that,
-what RUN-PLAN would have returned of it. Enter it into RESULT as well."
+  "Return the value of RUN-FORMS. If a plan started by BEGIN-PLAN fails, and :run does not handle
+that, return the values that RUN-PLAN would have returned, and set the error of RESULT."
   (block run
     (handler-bind ((user-code-error
                      (lambda (error)
@@ -98,11 +97,11 @@ what RUN-PLAN would have returned of it. Enter it into RESULT as well."
       (run-forms experiment condition))))
 
 (defun decide-trial (experiment condition outcome reason)
-  "Return outcome and reason of a trial of CONDITION that so far are OUTCOME and REASON. What :run
-took for a success and :success does not is one that was only believed."
+  "Return the final outcome and reason of a trial of CONDITION; OUTCOME and REASON are those by
+:run. If only :run reports success, the trial failed: only-believed."
   (let ((success (experiment-success experiment)))
     (cond ((null success) (values outcome reason))
-          ((truth-of :success success condition) (values "success" ""))
+          ((checked-truth :success success condition) (values "success" ""))
           ((string= outcome "success") (values "failure" "only-believed"))
           (t (values outcome reason)))))
 
@@ -118,8 +117,8 @@ took for a success and :success does not is one that was only believed."
         (result-error result) (plain-text text)))
 
 (defun outcome-so-far (experiment values)
-  "Return outcome and reason of a trial of EXPERIMENT whose form :run returned VALUES. What does not
-say how a plan went is no success if a plan that was begun waits for what can never come."
+  "Return outcome and reason of a trial of EXPERIMENT by VALUES, those of :run. If they are not from
+RUN-PLAN, and a plan waits for something that can never happen, the trial failed: deadlock."
   (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
     (if (and (success-p outcome)
              (not (experiment-until experiment))
@@ -131,28 +130,28 @@ say how a plan went is no success if a plan that was begun waits for what can ne
                             reason)))))
 
 (defun unfinished-text (values)
-  "Return in a sentence that the plan whose task is the first of VALUES was not over, or NIL."
+  "Return a sentence if the first of VALUES is the task of a plan that has not ended; else NIL."
   (let ((task (first values)))
     (when (and (task-p task) (not (task-over-p task)))
       (format nil "The plan ~A was not over when :run returned. RUN-PLAN waits for its end; :until ~
                    and RUN-UNTIL let ticks pass." (task-label task)))))
 
 (defun no-ticks-text ()
-  "Return in a sentence that no tick has passed in this trial, and what was asked for, or NIL."
+  "Return a sentence if no tick has passed in this trial although commands were given; else NIL."
   (let ((undone (and (zerop (simulation-tick)) (undone-text (current-simulation)))))
     (and undone (format nil "No ticks have passed in the trial, so ~A" undone))))
 
 (defun note-unfinished (result values)
-  "Enter into RESULT, unless it is a success, which plan that was begun waits in vain, or did not
-end; or, in any case, that no tick has passed for what was asked for. VALUES are those of :run."
+  "Add an error to RESULT for a plan that can never continue or has not ended, unless it is a
+success; or else for commands without a tick. VALUES are those of :run."
   (let ((text (or (and (not (success-p (result-outcome result)))
                        (or (stranded-plan-text) (unfinished-text values)))
                   (no-ticks-text))))
     (when text (add-error result text))))
 
-(defun note-plans-passed-over (result values failed)
-  "Enter into RESULT, if it is a success, which of the tasks FAILED failed though VALUES, those of
-:run, do not say so: its failure is true, and may have been taken for a success."
+(defun note-unnoticed-failures (result values failed)
+  "If RESULT is a success, add an error for the first of the FAILED tasks whose failure is not the
+first of VALUES, those of :run: a failure is true, and may have been taken for a success."
   (let ((task (find (first values) failed :key #'task-result :test-not #'eq)))
     (when (and task (success-p (result-outcome result)))
       (add-error result
@@ -161,7 +160,7 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
                               true."
                          (task-label task) (failure-text (task-result task)))))))
 
-(defun conduct (experiment result)
+(defun evaluate-trial (experiment result)
   (let* ((condition (result-condition result))
          (*trial-values* '())
          (failed '())
@@ -171,12 +170,12 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
       (setf (values (result-outcome result) (result-reason result))
             (decide-trial experiment condition outcome reason))
       (add-error result (error-in-plan values))
-      (note-plans-passed-over result values (reverse failed))
+      (note-unnoticed-failures result values (reverse failed))
       (note-unfinished result values)
       (note-series result)
-      (measure experiment result))))
+      (take-measures experiment result))))
 
-(defun measure (experiment result)
+(defun take-measures (experiment result)
   (setf (result-measures result)
         (loop with condition = (result-condition result)
               for (name function) in (experiment-measures experiment)
@@ -192,19 +191,18 @@ end; or, in any case, that no tick has passed for what was asked for. VALUES are
   (let ((trouble (trouble-text function)))
     (when trouble (note-error result trouble))))
 
-(defun conduct-to-end (experiment result)
+(defun complete-trial (experiment result)
   (call-sampling (lambda ()
-                   (call-noting-errors (lambda () (conduct experiment result)) result)
+                   (call-noting-errors (lambda () (evaluate-trial experiment result)) result)
                    (note-end result))
                  experiment result))
 
 (defun run-trial (experiment condition trial &key gate)
-  "Run TRIAL, a number, of CONDITION of EXPERIMENT. Return its result. GATE is as for
-CALL-IN-TRIAL."
+  "Run TRIAL, a number, of CONDITION of EXPERIMENT; return its result. CALL-IN-TRIAL tells of GATE."
   (let ((result (make-result condition trial (trial-seed experiment trial))))
     (call-noting-errors
      (lambda ()
-       (call-in-trial (lambda () (conduct-to-end experiment result))
+       (call-in-trial (lambda () (complete-trial experiment result))
                       experiment condition trial :gate gate))
      result)
     result))
