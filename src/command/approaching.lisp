@@ -2,16 +2,16 @@
 
 (in-package :ars-magna.command)
 
-;;; The robot turns in place until it faces what the camera tracks, and then drives, making up each
-;;; tick for what that has moved sideways. It goes by the track, as the camera does, not by the
-;;; estimated angle that programs read. REACHED-P says when it has arrived. Losing the track ends
-;;; the approach; arriving ends the track. A false designator cannot be arrived at: the track is
-;;; lost there. Each step either takes the robot nearer to where it goes, or ends the approach.
+;;; The robot turns in place until it faces what the camera tracks, and then drives. In each tick it
+;;; corrects its heading if the goal has moved sideways. It uses the track, as the camera does, not
+;;; the estimated angle that programs read. REACHED-P says when it has arrived. Losing the track
+;;; ends the approach; arriving ends the track. A false designator cannot be reached: the track is
+;;; lost there. Each step either brings the robot nearer to its goal, or ends the approach.
 
 (define-constant +aim+ 1d-6
-  :documentation "Facing its goal as exactly as this, in radians, a robot sets out.")
+  :documentation "A robot that faces its goal to within this angle, in radians, starts to drive.")
 (defconstant +aiming-turns+ 3
-  "After so many turns that should have done it, a robot sets out wherever it faces.")
+  "After so many turns towards its goal, a robot starts to drive wherever it faces.")
 
 (defun angle-to-goal (robot designator)
   "Return the angle by which ROBOT has to turn to face DESIGNATOR where it was last seen."
@@ -34,7 +34,7 @@
             block)))
 
 (defun at-designator-p (robot designator &optional last-step block)
-  "True if ROBOT has arrived at what DESIGNATOR denotes, or seems to; see REACHED-P."
+  "True if ROBOT has arrived at what DESIGNATOR denotes or, if false, seems to; see REACHED-P."
   (multiple-value-bind (x y) (designator-position designator)
     (reached-p robot x y last-step block)))
 
@@ -61,7 +61,7 @@
 (define-step approach-on (operation (and (robot-p (operation-resource operation))
                                          (designator-p (operation-subject operation))
                                          (camera-p (first (operation-arguments operation)))))
-  "Go on for a tick to the designator that is the subject of OPERATION."
+  "Approach the designator that is the subject of OPERATION for a tick."
   (approach-step operation (operation-resource operation)
                  (first (operation-arguments operation)) (operation-subject operation))
   (unless (operation-finished-p operation) (once-more operation)))

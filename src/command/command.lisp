@@ -4,8 +4,8 @@
 
 (export '(command error-code *commands* command-shape trait-p))
 
-;;; A command is defined once (see define-command.lisp); its COMMAND object is what the prompt, the
-;;; journal and the plan language know of it.
+;;; A command is defined once (see define-command.lisp). Its COMMAND object has the data for the
+;;; prompt, the journal and the plan language.
 
 (define-record (parameter-spec (:conc-name spec-) (:constructor make-spec (name type text)))
   "One argument or result of a command."
@@ -39,15 +39,15 @@
   (results '() list "the specifications of what its continuation gets besides" :addition)
   (errors '() list "the command's own error codes; any can also end with :INTERRUPT" :addition)
   (expected '() list
-            "those of its error codes with which it has done what it is for, keywords" :export)
+            "those of its error codes, keywords, that are no failure" :export)
   (traits '() list "what it does, keywords of *COMMAND-TRAITS*")
   (echo '() list
-        "the names of the results that are arguments, and are told after an interruption, too")
+        "the names of the results that are also passed after an interruption")
   (delay nil function)
-  (instant-p nil boolean "the command is done in the tick after it was issued, whatever is issued
-with it" :export)
+  (instant-p nil boolean "the command has no delay: it ends in the tick after it was issued, even if
+another one follows it" :export)
   (report nil (or null function))
-  (guarded-p nil boolean "it is a user's: trouble in it is a message")
+  (guarded-p nil boolean "a user has defined it: errors in it become messages")
   (body nil function))
 
 (defmethod reference ((command command))
@@ -57,7 +57,7 @@ with it" :export)
   (print-unreadable-object (command stream :type t) (princ (command-name command) stream)))
 
 (defparameter *command-traits* '(:drives :turns :stops :asks :begins)
-  "What can be said of commands by :TRAITS, see DEFINE-COMMAND.")
+  "The keywords for :TRAITS in DEFINE-COMMAND.")
 
 (defun trait-p (trait command)
   "True if COMMAND has TRAIT, one of *COMMAND-TRAITS*."
@@ -66,11 +66,10 @@ with it" :export)
 (define-registry command "command" :object-p command-p :fixed t
   :aliases (lambda (command) (list (command-prompt-name command))))
 
-;; What other definitions in the same file may need, when that is compiled and there is no command
-;; yet.
+;; For other definitions in the same file, when that is compiled and the command does not exist.
 (defun command-shape (name)
-  "Return a list of what DEFINE-COMMAND said of the command NAME: its resource (variable type), its
-parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
+  "Return a list of the resource (variable type), the parameters (variable type text) and the
+sentence of the command NAME, as in its definition. Signals UNKNOWN-NAME."
   (or (get name 'command-shape)
       (find-command name)))
 
@@ -92,26 +91,25 @@ parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
     name))
 
 ;;; An operation has the name of a function that continues it, its step. A saved file may name
-;;; steps, and no other function. Our own steps trust their arguments, so DEFINE-STEP says what
-;;; these must be. A step passed to GO-ON in a user's program belongs to a user's command: it is
-;;; called with care, and checks its arguments.
+;;; steps, but no other function. Our own steps trust their arguments, so DEFINE-STEP states what
+;;; these must be. A step passed to GO-ON in a user's program belongs to a user's command, which
+;;; CALL-GUARDED calls.
 
 (defun note-step (step fits-p)
-  "Make the function STEP a step of each operation for which the function FITS-P is true; for those
-of users' commands, if it is :GUARDED."
+  "Make the function STEP a step of all operations for which the function FITS-P is true; :GUARDED
+means those of users' commands."
   (setf (get step 'step) fits-p)
   step)
 
 (defmacro define-step (name (operation needs) documentation &body body)
-  "Define the function NAME, a step of OPERATION, which runs BODY. It trusts that NEEDS, a form, is
-true, such as (robot-p (operation-resource operation)); an operation from a file is refused where
-that is false."
+  "Define the function NAME, a step of OPERATION, which runs BODY. It relies on NEEDS, a form such
+as (robot-p (operation-resource operation)). An operation from a file is refused if that is false."
   `(progn
      (note-step ',name (lambda (,operation) (declare (ignorable ,operation)) ,needs))
      (defun ,name (,operation) ,documentation ,@body)))
 
 (defun use-step (step)
-  "Return STEP, an argument of GO-ON. Signals an error for one of ours without a DEFINE-STEP."
+  "Return STEP, an argument of GO-ON. Signals an error if our own code has no DEFINE-STEP for it."
   (cond ((get step 'step) step)
         (*marking-p* (error "~S is not defined by DEFINE-STEP" step))
         (t (note-step step :guarded))))
@@ -132,7 +130,7 @@ that is false."
 (define-compiler-macro go-on-now (&whole form &rest arguments)
   (if (and (eq 'go-on-now (first form)) (rest arguments)) (using-step form) form))
 
-;;; What people want to know.
+;;; Facts about commands.
 
 (defun specification-text (specification)
   (format nil "~(~A~)~@[, ~A~]" (spec-name specification)

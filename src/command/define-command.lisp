@@ -52,8 +52,8 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
 (defun doubt-uncallable (name forms)
-  "Warn of those of FORMS, the arguments in a call of the command NAME, that are no calls, such as
-data that is not quoted, or (90 deg)."
+  "Warn of FORMS, arguments in a call of the command NAME, that cannot be called, such as data
+without a quote, or (90 deg)."
   (dolist (form forms)
     (typecase form
       ((cons (or keyword (cons (not (eql lambda)))))
@@ -66,13 +66,13 @@ data that is not quoted, or (90 deg)."
                          name (abridged form))))))
 
 (defun doubt-count (name parameters forms)
-  "Warn if FORMS, the arguments in a call of NAME, are not as many as PARAMETERS."
+  "Warn if the number of FORMS, the arguments in a call of NAME, does not fit PARAMETERS."
   (unless (<= (- (length parameters) 2) (length forms) (1- (length parameters)))
     (doubt-definition "~(~A~) takes ~(~:A~), not ~D argument~:P."
                       name parameters (length forms))))
 
 (defun returns-nothing-p (form)
-  "True if FORM is known to return nothing that can be called, and to do something, as to write."
+  "True if FORM is known for its effect, such as output, and returns nothing that can be called."
   (typecase form
     ((cons (member setf setq)) (constantp (first (last form))))
     ((cons symbol) (or (member (first form) '(out terpri fresh-line format error-set warning-set
@@ -80,8 +80,8 @@ data that is not quoted, or (90 deg)."
                        (get (first form) 'command-shape)))))
 
 (defun called-early-p (form count)
-  "True if FORM calls without arguments a user's function that could itself be a continuation, with
-COUNT arguments, and that is not known to return one."
+  "True if FORM calls, without arguments, a user's function that could itself be the continuation,
+with COUNT arguments, and that is not known to return one."
   (and (typep form '(cons symbol null))
        (users-symbol-p (first form))
        (fboundp (first form))
@@ -99,7 +99,7 @@ COUNT arguments, and that is not known to return one."
                         name (abridged form)))))
 
 (defparameter *command-families* '(:moving :looking :handling :manipulating :thinking)
-  "Where commands belong.")
+  "The families of commands.")
 
 (defun check-command-form (name resource parameters results options)
   (flet ((check (test clause expected)
@@ -135,7 +135,7 @@ COUNT arguments, and that is not known to return one."
 
 (defmacro define-command (name (operation resource &rest parameters) (&rest results)
                           (&rest options) sentence &body body)
-  "Define the function NAME, which issues a command, and all that is known of it.
+  "Define the function NAME, which issues a command, and all data about that command.
 
 OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each of PARAMETERS
 (variable type text) with a type of DEFINE-ARGUMENT-TYPE, each of RESULTS (name text). OPTIONS:
@@ -144,23 +144,22 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
                                        without it the command is done in the next tick
   (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a
                                        function of the operation, for the error message
-  (:expected keyword...)               those of its error codes that tell no failure, as the command
-                                       has done what it is for: plans need not look at them
-  (:report lambda-list form)           what the message of success says, from the results; the
-                                       resource is (operation-resource OPERATION) there
+  (:expected keyword...)               those of its error codes that are no failure: plans need not
+                                       check them
+  (:report lambda-list form)           the message of success, from the results; the resource is
+                                       (operation-resource OPERATION) there
   (:echo name...)                      those of RESULTS that the continuation gets after an
                                        interruption, too: parameters of the same names, or else
                                        the operation's subject, once it has begun
-  (:prompt name) (:prefix string)      unlike the rule of DEFAULT-PROMPT-NAME
+  (:prompt name) (:prefix string)      if not by the rule of DEFAULT-PROMPT-NAME
   (:occupies function)                 the name of a function of the resource that returns what the
                                        command occupies instead of it, such as the robot's mind
-  (:traits keyword...)                 what warnings and plans are to know: it :DRIVES, so that even
-                                       a tick of it is of use; it :TURNS from where its resource
-                                       faces; it :STOPS what its resource does; it :ASKS, so that
-                                       it is of no use unless its answer is waited for; it :BEGINS
-                                       what tells its continuation again at its end
-BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or
-later (reading 149)."
+  (:traits keyword...)                 for warnings and plans: it :DRIVES, so even one tick has an
+                                       effect; it :TURNS from where its resource faces; it :STOPS
+                                       what its resource does; it :ASKS, so it is useless until its
+                                       answer arrives; it :BEGINS something, and its continuation is
+                                       called again at the end of that
+BODY runs in a tick. OPERATION must end with SUCCEED or FAIL-WITH, now or later (reading 149)."
   (check-command-form name resource parameters results options)
   (let ((errors (option :errors options))
         (variables (mapcar #'first parameters))

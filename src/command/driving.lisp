@@ -3,8 +3,8 @@
 (in-package :ars-magna.command)
 
 ;;; Each movement begins after ROBOT-MOVE-DELAY*, takes at least a tick, and ends in the tick of its
-;;; last step, without braking. So it does when anything interrupts it but ROBOT-STOP, which lets
-;;; the robot coast. What is left of a movement, in ticks or metres, is negative if it goes
+;;; last step, without braking. An interruption ends it at once, too, but after ROBOT-STOP the robot
+;;; coasts. What is left of a movement, in ticks or metres, is negative if it goes
 ;;; backwards.
 
 (declaim (inline lessen drive-in-time drive-what-is-left drive-time-over-p))
@@ -30,7 +30,7 @@
     (drive-tick robot left)))
 
 (defun drive-time-over-p (operation)
-  "True if the robot of OPERATION, which has driven for a tick, is to drive no longer."
+  "True if nothing is left to drive for OPERATION."
   (zerop (operation-left operation)))
 
 (defmacro drive-on ((block operation &optional drive) &body body)
@@ -46,7 +46,7 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
            (unless (operation-finished-p ,operation) (once-more ,operation))))))
 
 (define-step drive-a-while (operation (robot-p (operation-resource operation)))
-  "Drive for a tick of the time that is left, and end OPERATION when that is over."
+  "Drive for a tick, and end OPERATION when its time is over."
   (drive-on (block operation drive-in-time)
     (cond (block (fail-with operation :robot-blocked))
           ((drive-time-over-p operation) (succeed operation)))))
@@ -89,7 +89,7 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
   "a number of metres, more than 0, at most a million")
 
 (define-step drive-the-rest (operation (robot-p (operation-resource operation)))
-  "Drive for a tick, no farther than the metres that are left, and end OPERATION when none are."
+  "Drive for a tick, and end OPERATION when no metres are left."
   (drive-on (block operation drive-what-is-left)
     (cond (block (fail-with operation :robot-blocked))
           ((drive-time-over-p operation) (succeed operation)))))
@@ -142,8 +142,8 @@ ticks."
     ()
     ((:family :moving) (:section "3.5") (:delay 1) (:traits :stops)
      (:report () "Robot stopped"))
-    "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first. Who stops it
-once more meanwhile does not prolong that."
+    "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first. Another
+ROBOT-STOP meanwhile does not prolong that."
   (when (zerop (operation-left operation))
     (setf (operation-left operation) (double braking*)))
   (cond ((and (operation-subject operation) (driving-p robot) (plusp braking*))
@@ -176,7 +176,7 @@ once more meanwhile does not prolong that."
                                (list (1+ heading) (1- heading))))
          (side (first (sort sides #'< :key (lambda (quarter) (distance-to-side robot quarter))))))
     (cond (side (values side heading))
-          ;; Ahead of the robot: turn right, so that it comes to lie at the left.
+          ;; Ahead of the robot: turn right, so that the wall is at the left.
           ((neighbour-wall-p robot heading) (values heading (1+ heading))))))
 
 (defun drive-along (operation robot side)

@@ -4,9 +4,8 @@
 
 (export '(trouble-p))
 
-;;; An error code is a word; people need a sentence and a remedy. This file has both, once for all
-;;; commands. Of several commands that end with the same code, each also has its own message (see
-;;; DEFINE-COMMAND).
+;;; An error code is only a word. This file has a sentence and a remedy for each, for all commands.
+;;; Commands that end with the same code also have their own messages (see DEFINE-COMMAND).
 
 (defparameter *meanings*
   '((:interrupt
@@ -20,12 +19,12 @@ designator was not local, or by an error in its own code, which an error message
 its methods want.")
     ;; Moving.
     (:robot-blocked
-     "A wall, or a thing that blocks movement, is where the robot was to go. It stands as near
-to it as it got."
+     "A wall, or a thing that blocks movement, is in the robot's way. The robot has stopped in
+front of it."
      "Look where the way is free, with MAP at the prompt or (camera-view ...), and turn before
 you go on; go-to and find-way go round what is known.")
     (:not-moving
-     "The robot's speed is 0, so that it would never arrive."
+     "The robot's speed is 0, so it would never arrive."
      "Give it a speed first: (robot-set-speed robot 0.8 nil).")
     (:negative-speed "A speed was below 0. The robot's speed is 0 now."
      "Give a speed from 0 to max-speed*. To go back, turn round.")
@@ -124,8 +123,8 @@ sentence or an empty string.")
 
 (addition error-code-meaning error-code-remedy)
 (defun error-code-meaning (code)
-  "Return what CODE, an error code such as :ROBOT-BLOCKED, means, a sentence; NIL if it is not one
-of the simulator's own."
+  "Return the meaning of CODE, an error code such as :ROBOT-BLOCKED, a sentence; NIL if it is not
+one of the simulator's own."
   (let ((meaning (assoc code *meanings*)))
     (and meaning (one-line (second meaning)))))
 

@@ -1,4 +1,4 @@
-;;;; failures.lisp -- whose command a robot carries out, and which failed last: for people.
+;;;; failures.lisp -- which command a robot carries out for whom, and which failed last.
 
 (in-package :ars-magna.command)
 
@@ -9,9 +9,8 @@
                                 (tick asked command resource arguments asker code text
                                  interrupter))
                             (:copier nil))
-  "That COMMAND, asked for after the tick ASKED by ASKER, ended in TICK with the error CODE, of
-which TEXT was the message. INTERRUPTER is a list (name asker) of what interrupted it, if that is
-known."
+  "COMMAND, issued by ASKER after the tick ASKED, ended in TICK with the error CODE and the message
+TEXT. INTERRUPTER is a list (name asker) of what interrupted it, if known."
   (tick 0 :type fixnum :read-only t)
   (asked 0 :type fixnum :read-only t)
   (command nil :type symbol :read-only t)
@@ -44,7 +43,7 @@ known."
                                    (interruption-by-asker interruption)))))))
 
 ;;; The newest request always wins, whether it comes from the prompt, a plan, a continuation or a
-;;; program. If several of them drive one robot, these functions show which one does now.
+;;; program. If several of them drive one robot, these functions show which one does so now.
 
 (defmethod request-name ((operation operation))
   (command-name (operation-command operation)))
@@ -53,7 +52,7 @@ known."
   (and (robot-p resource) (robot-mind resource)))
 
 (defun occupant (resource)
-  "Return the request that RESOURCE, a robot or part, carries out, also in the background; or NIL."
+  "Return the request that RESOURCE, a robot or part, carries out, or NIL; a track counts last."
   (let ((event (resource-event resource))
         (track (and (camera-p resource) (camera-tracking resource))))
     (cond ((typep event 'request) event)
@@ -61,7 +60,7 @@ known."
           ((mind-of resource) (occupant (mind-of resource))))))
 
 (defun newest-interruption (resource)
-  "Return the last interruption on RESOURCE, also of thoughts if it is a robot; or NIL."
+  "Return the last interruption on RESOURCE or, for a robot, its mind; or NIL."
   (first (stable-sort (loop for each in (list resource (mind-of resource))
                             when (and each (resource-interruption each)) collect it)
                       #'> :key #'interruption-tick)))
@@ -96,22 +95,22 @@ tick. THINK counts as a command of the robot. NIL if there was none."
             (interruption-tick interruption)))))
 
 (defun under-way-text (resource)
-  "Return in words what RESOURCE is doing, and for whom; NIL if nothing."
+  "Return a text on what RESOURCE is doing, and for whom; NIL if nothing."
   (multiple-value-bind (name asker) (under-way resource)
     (when name (format nil "~(~A~), for ~A" name asker))))
 
 (defun interruption-text (resource)
-  "Return the last interruption on RESOURCE in words; NIL if there was none."
+  "Return a text on the last interruption on RESOURCE; NIL if there was none."
   (let ((interruption (last-interruption resource)))
     (when interruption
       (format nil "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"
               (first interruption) (second interruption) (third interruption)
               (fourth interruption) (fifth interruption)))))
 
-;;; Which command failed last, in words.
+;;; Texts about the command that failed last.
 
 (defun argument-as-typed (argument)
-  "Return ARGUMENT of a command as one would type it in Lisp, as far as one can."
+  "Return ARGUMENT of a command as you would type it in Lisp, if possible."
   (typecase argument
     ((or robot part) (resource-form argument))
     (designator `(find-designator ,(robot-name (designator-robot argument))
@@ -145,7 +144,7 @@ NIL if none has failed. See WHY."
               :by by :by-for (and by (note-text by-asker)))))))
 
 (defun failure-sentences (resource)
-  "Return a list of sentences about the LAST-FAILURE of RESOURCE: what was asked for and when, the
+  "Return a list of sentences about the LAST-FAILURE of RESOURCE: what was issued and when, the
 result, what that means and what to try."
   (destructuring-bind (&key call for asked tick error text by by-for &allow-other-keys)
       (last-failure resource)

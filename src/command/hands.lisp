@@ -4,8 +4,8 @@
 
 (export '(check-grips grip-watched-p))
 
-;;; What the commands of hands, cameras and bins have in common. Preconditions are tested in the
-;;; order in which the manual lists the error codes.
+;;; Common to the commands of hands, cameras and bins. Preconditions are checked in the order in
+;;; which the manual lists the error codes.
 
 (define-argument-type 'destination
   (lambda (value) (or (storage-bin-p value) (designator-p value)))
@@ -15,7 +15,7 @@
   (world-dice (robot-world (part-robot part)) :handling))
 
 (defun destination-name (destination)
-  "Return what the bin, or the container that a designator denotes, is called."
+  "Return the name of DESTINATION, a bin, or of the container that it denotes."
   (cond ((storage-bin-p destination) (location-name destination))
         ((designator-denotation destination) (location-name (designator-denotation destination)))
         (t (princ-to-string destination))))
@@ -27,7 +27,7 @@
 ;;; Designators.
 
 (defun own-designator-p (resource designator)
-  "True if DESIGNATOR is valid and of the robot that RESOURCE, perhaps as a part, belongs to."
+  "True if DESIGNATOR is valid and belongs to the robot that is RESOURCE or has it as a part."
   (and (designator-valid-p designator)
        (eq (designator-robot designator) (resource-robot resource))))
 
@@ -37,7 +37,7 @@
     (and (thing-p denotation) denotation)))
 
 (defun perhaps-lose-designators (designator probability dice &key silently)
-  "Lose each designator on what DESIGNATOR denotes with PROBABILITY; if it is false, that one."
+  "Drop each designator of what DESIGNATOR denotes (or a false one itself) with PROBABILITY."
   (let ((thing (designator-thing designator)))
     (dolist (other (if thing
                        (designators-on (designator-robot designator) thing)
@@ -64,13 +64,13 @@
                   (thing-capacity container)))
        (<= size (+ (remaining-capacity container) 1d-9))))
 
-;;; A grip is only lost by what the world does to the thing held: kickers, manipulations, another
-;;; hand, destruction.
+;;; A grip is only lost by changes of the thing held: kickers, manipulations, another hand,
+;;; destruction.
 
 ;;; Grasping.
 
 (defun grasp-obstacle (hand camera designator)
-  "Return the error code that keeps HAND from trying to grasp, or NIL (reading 164)."
+  "Return the error code of what prevents HAND from grasping, or NIL (reading 164)."
   (cond ((hand-holding hand) :hand-grasping)
         ((not (and (eq (hand-robot hand) (camera-robot camera))
                    (eq (hand-location hand) (camera-location camera))))
@@ -134,7 +134,7 @@ designators invalid silently."
 ;;; Feeling.
 
 (defun answer (operation code)
-  "End OPERATION with CODE, which answers a question and is no failure."
+  "End OPERATION with CODE, which is an answer and no failure."
   (tell-of operation (error-text operation code))
   (setf (operation-finished-p operation) t)
   (notify operation code '()))
@@ -166,14 +166,14 @@ designators invalid silently."
     ((:family :handling) (:section "3.6") (:delay 1)
      (:errors (:grasp-lost (text-of "~A lost its grip"))
               (:not-grasping (text-of "~A is not holding anything"))))
-    "Watch the grip of HAND until that is lost, or any other command to HAND interrupts."
+    "Watch the grip of HAND until it is lost, or another command to HAND interrupts this one."
   (setf (operation-subject operation) (hand-holding hand))
   (if (hand-holding hand)
       (watch-grip operation)
       (fail-with operation :not-grasping)))
 
 (defun grip-watched-p (resource)
-  "True if RESOURCE carries out a HAND-TRACK that has begun and waits for something to happen."
+  "True if RESOURCE carries out a HAND-TRACK that has begun."
   (let ((operation (resource-event resource)))
     (and (operation-p operation)
          (eq 'watch-grip (operation-step operation)))))

@@ -24,7 +24,7 @@
         thereis (eq outer (hand-holding hand))))
 
 (defun try-hand-insertion (hand container)
-  "Move HAND into CONTAINER, NIL if it is not there. Return an error code or NIL (reading 155)."
+  "Move HAND into CONTAINER, or NIL for none. Return an error code or NIL (reading 155)."
   (cond ((null container) :hand-bump)
         ((location-closed-p container) :bin-closed)
         ((not (has-room-p container (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0)))

@@ -1,4 +1,4 @@
-;;;; issuing.lisp -- issue a command: refuse invalid calls, and warn about doubtful ones.
+;;;; issuing.lisp -- issue a command: refuse invalid calls, and warn about probable mistakes.
 
 (in-package :ars-magna.command)
 
@@ -42,7 +42,7 @@
 
 (defun doubt-continuation (command world continuation
                            &optional (told (continuation-arguments command)))
-  "Say once if CONTINUATION cannot be called with what COMMAND tells at its end, which is TOLD."
+  "Warn once if CONTINUATION cannot be called with TOLD, the names of what COMMAND passes to it."
   (let ((*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
@@ -58,16 +58,16 @@
 ;;; One simulation inside of another.
 
 (defun asked-elsewhere (world)
-  "Return the key for requests to WORLD in this tick from within a simulation of another world."
+  "Return the key for requests to WORLD in this tick from a simulation of another world."
   (list :asked-elsewhere (world-tick world)))
 
 (defun asked-elsewhere-p (world)
-  "True if a program has asked for something in WORLD inside of a simulation of another, since ticks
-of WORLD passed."
+  "True if a program has issued a request to WORLD inside a simulation of another world since the
+last tick of WORLD."
   (said-p (asked-elsewhere world) world))
 
 (defun note-asked-elsewhere (world)
-  "Remember if a program asks WORLD, which waits for ticks, inside of a simulation of another."
+  "Record that a program issues a request to WORLD, idle, inside a simulation of another world."
   (let ((timeline (world-timeline world)))
     (when (and *simulation*
                (by-program-p)
@@ -76,10 +76,10 @@ of WORLD passed."
                (not (timeline-passing-p timeline)))
       (first-time-p (asked-elsewhere world) world))))
 
-;;; One command after the other, and no tick between them.
+;;; Two commands without a tick between them.
 
 (defun takes-time-p (command)
-  "True if COMMAND takes time, and does not just stop the robot: a newer one cuts it short."
+  "True if COMMAND takes time and does not just stop the robot, so a newer one interrupts it."
   (not (or (command-instant-p command) (trait-p :stops command))))
 
 (defun by-program-p ()
@@ -96,7 +96,7 @@ of WORLD passed."
            (timeline-inbox timeline)))
 
 (defun just-begun (resource timeline)
-  "Return the lasting command that live RESOURCE carries out since the last tick; or NIL."
+  "Return the lasting command that RESOURCE, in a live run, has begun in the last tick, or NIL."
   (let ((event (resource-event resource)))
     (and (live-p timeline)
          (operation-p event)
@@ -183,16 +183,16 @@ the same program issues again while it is in progress without a continuation."
                                          (command-name command) argument)))))))
 
 (defvar *asked-with* '()
-  "Lists (command world (parameter . value)...): what a program has asked for, headless, since ticks
-passed last, while parameters had other values than then.")
+  "Lists (command world (parameter . value)...): the commands that programs have issued in headless
+runs since the last tick, while parameters had other values than those of the run.")
 
 (defgeneric parameters-bound (timeline world)
   (:documentation "Return a list (symbol . value) of the parameters that have another value here
-than the run of TIMELINE in WORLD knows.")
+than in the run of TIMELINE in WORLD.")
   (:method (timeline world) (declare (ignore timeline world)) '()))
 
 (defun doubt-bindings (command world bindings)
-  "Say once for COMMAND if it is done with other parameters than it was asked for with."
+  "Warn once for COMMAND if it runs with other parameters than it was issued with."
   (loop for (symbol . value) in bindings
         unless (eql value (symbol-value symbol))
           do (warn-once (list :bound (command-name command)) world
@@ -211,7 +211,7 @@ ticks of WORLD pass. Then forget the recorded parameters."
   (setf *asked-with* (remove world *asked-with* :key #'second :test #'eq)))
 
 (defun doubt-bindings-here (command world bindings)
-  "Say once for COMMAND, asked for in WORLD, which runs live, that BINDINGS are this thread's."
+  "Warn once for COMMAND, issued in WORLD, which runs live, that BINDINGS are of this thread."
   (loop for (symbol . value) in bindings
         do (warn-once (list :bound (command-name command)) world
                       (format nil "~(~A~) is done by the simulator, in whose thread ~(~A~) is ~A, ~
@@ -261,7 +261,7 @@ continue."
                           is in (with-simulation ((ROBOT ~:*~(~A~))) ...)." name)))))
 
 (defvar *ticks-follow-p* nil
-  "True if the caller lets ticks pass for its commands, or says that none do.")
+  "True if the caller lets ticks pass for its commands, or reports that none do.")
 
 (defun warn-if-kept (command resource robot)
   "Warn once for ROBOT, that of RESOURCE, if COMMAND is kept for a later run, and once for each
@@ -281,10 +281,9 @@ WITH-SIMULATION in another thread that binds its name. Not of plans: running one
     (if reader (funcall reader resource) resource)))
 
 (defun issue (command resource arguments continuation)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked and of which lists are copied;
-CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
-if the robot's run is over, or an argument is of another run; WRONG-ARGUMENT for a continuation that
-takes another number of arguments."
+  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked; lists are copied. CONTINUATION
+may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE if the robot's
+run is over, or an argument is of another run."
   (check-in-run resource (command-name command))
   (check-of-this-run command resource arguments)
   (let* ((robot (resource-robot resource))

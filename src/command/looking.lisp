@@ -16,8 +16,8 @@
     "Take a view with CAMERA."
   (succeed operation (take-view camera)))
 
-;;; After its delay the search itself takes no time. Naming the things found takes a tick for each
-;;; after the first; those that have moved away by then are left out.
+;;; After its delay the search itself takes no time. Making designators takes a tick for each thing
+;;; found after the first; things that have moved away by then are left out.
 
 (define-argument-type 'designator-type
   (lambda (value) (member value '(:local :non-local)))
@@ -94,8 +94,8 @@ that the attributes can have, and of a range the lower end first"
               (:camera-enclosed (text-of "~A is inside a container"))
               (:designator-not-found (text-of "~A found no ~A")))
      (:report (designator) (found-text operation (list designator))))
-    "Look with CAMERA for a place of a type; of several, find any one. That it found none is an
-answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
+    "Look with CAMERA for a place of a type; of several, find any one. :DESIGNATOR-NOT-FOUND means
+that it found none, and is no fault of the robot."
   (search-for-places operation camera place-type nil))
 
 (define-command camera-get-all-place-designators (operation (camera camera)
@@ -110,8 +110,8 @@ answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
               (:camera-enclosed (text-of "~A is inside a container"))
               (:designator-not-found (text-of "~A found no ~A")))
      (:report (designators) (found-text operation designators)))
-    "Look with CAMERA for all places of a type. Takes a tick more for each after the first. That it
-found none is an answer: :DESIGNATOR-NOT-FOUND."
+    "Look with CAMERA for all places of a type. Takes a tick more for each after the first.
+:DESIGNATOR-NOT-FOUND means that it found none."
   (search-for-places operation camera place-type t))
 
 ;;; Things.
@@ -138,8 +138,8 @@ found none is an answer: :DESIGNATOR-NOT-FOUND."
      (:errors (:already-tracking #'already-tracking-text)
               (:designator-not-found (text-of "~A found no such object")))
      (:report (designator) (found-text operation (list designator))))
-    "Look with CAMERA for an object that fits a description; of several, find any one. That it found
-no such object is an answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
+    "Look with CAMERA for an object that fits a description; of several, find any one.
+:DESIGNATOR-NOT-FOUND means that it found none, and is no fault of the robot."
   (search-for-things operation camera type specification nil))
 
 (define-command camera-get-all-object-designators
@@ -152,12 +152,12 @@ no such object is an answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
      (:errors (:already-tracking #'already-tracking-text)
               (:designator-not-found (text-of "~A found no such object")))
      (:report (designators) (found-text operation designators)))
-    "Look with CAMERA for all objects that fit a description. Takes a tick more for each after
-the first. That it found no such object is an answer: :DESIGNATOR-NOT-FOUND."
+    "Look with CAMERA for all objects that fit a description. Takes a tick more for each after the
+first. :DESIGNATOR-NOT-FOUND means that it found none."
   (search-for-things operation camera type specification t))
 
-;;; CAMERA-TRACK tells its continuation twice: with NIL when the track begins, and with a code when
-;;; it ends. If it cannot begin, it tells once.
+;;; CAMERA-TRACK calls its continuation twice: with NIL when the track begins, and with a code when
+;;; it ends; only once if it cannot begin.
 
 (defun track-obstacle (camera designator)
   "Return the error code that keeps CAMERA from tracking DESIGNATOR, or NIL."
@@ -175,7 +175,7 @@ the first. That it found no such object is an answer: :DESIGNATOR-NOT-FOUND."
        (eq (designator-location designator) (camera-location camera))
        (designator-local-p* designator)))
 
-;; Warnings have said why, unless it was interrupted.
+;; Warnings have been queued already, unless it was interrupted.
 (defmethod track-ended ((operation operation) code designator)
   (setf (operation-finished-p operation) t)
   (if (eq code :interrupt)

@@ -1,11 +1,11 @@
-;;;; manipulating.lisp -- carrying out manipulations (manual 5.5.2).
+;;;; manipulating.lisp -- carry out manipulations (manual 5.5.2).
 
 (in-package :ars-magna.command)
 
 (export '(manipulation-command-p command-for))
 
-;;; Objects are given as designators. One that is invalid, false, non-local, or of another robot
-;;; denotes nothing to manipulate.
+;;; Objects are given as designators. An invalid, false or non-local one, or one of another robot,
+;;; designates nothing.
 
 (defun designated-thing (designator resource)
   "Return the local thing that DESIGNATOR, of RESOURCE's robot, denotes, or NIL (reading 175)."
@@ -14,10 +14,10 @@
        (designator-local-p* designator)
        (designator-thing designator)))
 
-;;; Which methods there are for some arguments.
+;;; Methods for given arguments.
 
 (defun method-takes-p (method arguments)
-  "True if ARGUMENTS are of the number and types that METHOD wants."
+  "True if ARGUMENTS have the number and types that METHOD takes."
   (let* ((parameters (method-parameters method))
          (count (length (parameter-list-objects parameters)))
          (typed (parameter-list-typed parameters)))
@@ -26,7 +26,7 @@
          (typep (nth count arguments) '(or robot part))
          (loop for value in (nthcdr count arguments)
                for (nil type) in typed
-               ;; Types that commands do not know fit all.
+               ;; Unknown types fit all values.
                for known = (and type (find-argument-type type nil))
                always (or (null known) (argument-of-type-p value type))))))
 
@@ -44,10 +44,10 @@
 (defun method-resource (method arguments)
   (nth (length (parameter-list-objects (method-parameters method))) arguments))
 
-;;; Which method is for some things.
+;;; Methods for given things.
 
 (defun method-things (method arguments)
-  "Return the things that ARGUMENTS designate for METHOD, NIL for each that is none."
+  "Return the things that ARGUMENTS designate for METHOD, NIL for each that designates none."
   (loop with resource = (method-resource method arguments)
         for nil in (parameter-list-objects (method-parameters method))
         for designator in arguments
@@ -93,7 +93,7 @@
 (define-step carry-out (operation (and (manipulation-method-p (operation-subject operation))
                                        (method-takes-p (operation-subject operation)
                                                        (operation-arguments operation))))
-  "Do what the subject of OPERATION, a method, does, if it still can and succeeds; end OPERATION."
+  "Run the method that is the subject of OPERATION, if it still applies and by chance succeeds."
   (let ((method (operation-subject operation))
         (dice (world-dice (operation-world operation) :manipulations)))
     (if (and (method-applies-p method (operation-arguments operation))
@@ -123,13 +123,13 @@
           (and value (one-line (safe-text value :escape nil :length 100)))))
 
 (defun designated-things (operation)
-  "Return what the designators given to OPERATION designate; NIL if one of them nothing."
+  "Return the things that OPERATION's designators designate; NIL if one designates nothing."
   (let ((things (loop for designator in (designator-arguments operation)
                       collect (designated-thing designator (operation-resource operation)))))
     (and (notany #'null things) things)))
 
 (defun failed-text (operation)
-  "Return in words that the manipulation OPERATION failed, and why, if that is known."
+  "Return a text that the manipulation OPERATION failed, and why, if known."
   (format nil "~A failed~@[: ~A is not local, as objects of manipulations must be. Go there, as by ~
                robot-goto-designator, and search again with the type :local~]~@[: none of its ~
                methods is for ~{~A~^, ~}; their patterns ask for something else~]"

@@ -10,9 +10,9 @@
 ;;; :BY parameter.
 ;;;
 ;;; A method replaces one with the same parameter list. When a changed file is loaded again, the
-;;; methods that it no longer contains are forgotten, so a method with edited parameters leaves no
-;;; old version behind. Of typed methods, one with the same variables, types and attributes counts
-;;; as an earlier version unless no thing could fit both.
+;;; methods that it no longer contains are removed, so a method with edited parameters leaves no old
+;;; version behind. A method typed at a REPL replaces one with the same variables, types and
+;;; attributes, unless no thing could fit both.
 
 (define-record (parameter-list (:constructor make-parameter-list (objects patterns typed)))
   "The parameters of a method: variables and patterns of its objects, and then its resource and
@@ -68,7 +68,7 @@ others, each a list (variable type), with NIL for no type."
         finally (return (values variables patterns))))
 
 (defun parse-typed (definition list)
-  "Return a list (variable type) for each of the variables in LIST, which types may follow."
+  "Return a list (variable type) for each variable in LIST, where - and a type may follow it."
   (loop while list
         collect (let ((variable (pop list)))
                   (unless (variable-p variable)
@@ -94,8 +94,8 @@ others, each a list (variable type), with NIL for no type."
           (mapcar #'first (parameter-list-typed parameters))))
 
 (defun method-shape (method)
-  "Return what METHOD takes, as three values: the variables of its objects, a list (variable type)
-for its resource, and such lists for all that follows. The type is NIL where none is given."
+  "Return the parameters of METHOD as three values: the variables of its objects, a list (variable
+type) for its resource, and such lists for the others. The type is NIL where none is given."
   (destructuring-bind (by . others) (parameter-list-typed (method-parameters method))
     (values (parameter-list-objects (method-parameters method)) by others)))
 
@@ -147,8 +147,8 @@ for its resource, and such lists for all that follows. The type is NIL where non
                           name (remove-duplicates others :test #'equal) name))))
 
 (defun define-manipulation (name form body &key (success 1) (delay 0))
-  "Define a method of the manipulation NAME; what DEFMANIPULATION expands to. FORM is its
-parameter list, BODY a function of as many arguments. Return NAME."
+  "Define a method of the manipulation NAME, as DEFMANIPULATION does. FORM is its parameter list,
+BODY a function of as many arguments. Return NAME."
   (let* ((definition (title "defmanipulation" name))
          (manipulation (or (find-manipulation name nil) (make-manipulation name)))
          (method (make-manipulation-method
@@ -166,7 +166,7 @@ parameter list, BODY a function of as many arguments. Return NAME."
     name))
 
 (defun doubt-type (definition type)
-  "Warn if TYPE, of a parameter, is none that commands or Lisp know, and like one that they do."
+  "Warn if TYPE, of a parameter, is unknown to commands and Lisp, but similar to a known one."
   (unless (or (not (symbolp type)) (find-argument-type type nil) (find-class type nil))
     (let ((like (argument-type-like type)))
       (when like

@@ -7,9 +7,9 @@
 
 ;;; Issuing a command posts an OPERATION, a request, to the timeline of its robot. At the start of
 ;;; the next tick the operation takes over its resource, interrupting the command there, and waits
-;;; for its delay. Then its body runs; preconditions are checked at that time. The body ends the
-;;; operation or continues in further ticks: its STEP is the name of a function, and state from tick
-;;; to tick is in the operation's slots. Invariant: an operation ends exactly once, and its
+;;; for its delay. Then its body runs and checks preconditions. The body ends the operation, or
+;;; continues it in further ticks: its STEP is the name of a function, and its state from tick to
+;;; tick is in the operation's slots. Invariant: an operation ends exactly once, and its
 ;;; continuation is called exactly once, at the end of that tick.
 
 (define-kind (operation :include event
@@ -20,21 +20,21 @@
                                          (asked (timeline-tick timeline)))))
     "A command in progress. It is the event that is pending on its resource."
   (:fixed
-   (timeline nil (or null timeline) "the timeline that the operation takes place in"))
+   (timeline nil (or null timeline) "the timeline of the operation"))
   (:state
-   (step nil symbol "the name of the function of the operation that is to carry it on")
+   (step nil symbol "the name of the function that continues the operation")
    (finished-p nil boolean "the operation has ended")
-   (count 0 fixnum "how many ticks it is yet to go on")
-   (left 0d0 double-float "what is left to be turned, in radians, or for how long to drive")
+   (count 0 fixnum "a count of the command, such as of turns")
+   (left 0d0 double-float "what is left: radians to turn, or ticks or metres to drive")
    (reading 0d0 double-float "what the odometry has read so far, in radians")
-   (subject nil t "what it is about: what is held, was found, is done; at first, the name of the
-command that it cut short, or NIL"))
+   (subject nil t "data of the command, such as what it has found; before its body runs, the name of
+the command that it has interrupted, or NIL"))
   (:memory
-   (asked 0 fixnum "the tick after which it was asked for"))
+   (asked 0 fixnum "the tick after which it was issued"))
   (:link
    (continuation nil t "what to call when it ends, or NIL")))
 
-;; The continuation belongs to a program: a fork only copies it if the program is forked, too.
+;; The continuation belongs to a program. A fork only copies it if it copies the program, too.
 (defmethod copy-plan-value ((operation operation) fork)
   (let ((copy (copy-slots operation fork)))
     (when (or (and (operation-forked-p operation) (copier-option fork :participants))
@@ -74,7 +74,7 @@ command that it cut short, or NIL"))
         (event-time operation)))
 
 (defgeneric command-entry (command operation)
-  (:documentation "Return what a journal notes of OPERATION, which carries out COMMAND.")
+  (:documentation "Return the journal entry of OPERATION, which carries out COMMAND.")
   (:method ((command command) operation)
     (list* (command-name command) (named-resource operation)
            (operation-arguments operation))))
@@ -94,7 +94,7 @@ command that it cut short, or NIL"))
       (function (funcall text operation)))))
 
 (defun text-of (control)
-  "Return a function that makes an error's text of CONTROL, the resource and the arguments."
+  "Return a function that makes a message of CONTROL, the resource and the arguments."
   (lambda (operation)
     (apply #'format nil control (operation-resource operation) (operation-arguments operation))))
 
@@ -114,7 +114,7 @@ command that it cut short, or NIL"))
   (note-failure operation code text))
 
 (defun report (operation code results)
-  "Queue the message that OPERATION ends with (reading 229)."
+  "Queue the message for the end of OPERATION with CODE and RESULTS (reading 229)."
   (let* ((*told-of* (request-asker operation))
          (*robot-told-of* (operation-robot-name operation))
          (command (operation-command operation))
@@ -143,7 +143,7 @@ command that it cut short, or NIL"))
 
 (defun finish (operation code &rest results)
   "End OPERATION: with the error CODE, or successfully if that is NIL. Its continuation gets CODE,
-the resource and RESULTS. The second end of an operation changes nothing."
+the resource and RESULTS. Does nothing if OPERATION has ended already."
   (unless (operation-finished-p operation)
     (setf (operation-finished-p operation) t)
     (when (event-pending-p operation)
@@ -167,7 +167,7 @@ the resource and RESULTS. The second end of an operation changes nothing."
   (apply #'finish operation code results))
 
 (defun begun-p (operation)
-  "True if OPERATION does not wait for its command's delay any more."
+  "True if the delay of OPERATION is over."
   (not (eq (operation-step operation) 'start-body)))
 
 (defun known-results (operation)
@@ -183,7 +183,7 @@ the resource and RESULTS. The second end of an operation changes nothing."
 (defun interrupt-operation (operation)
   (apply #'finish operation :interrupt (known-results operation)))
 
-;;; Beginning and going on.
+;;; Beginning and continuing.
 
 (defun call-guarded (operation step)
   "Call STEP, of a user's command. If it fails, or neither ends nor continues OPERATION, queue a
@@ -227,7 +227,7 @@ message and end OPERATION with :FAILED."
   (queue-again (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
 
 (defun go-on-now (operation step)
-  "Continue OPERATION with STEP, the name of a function of it, in this tick and all that follow."
+  "Continue OPERATION with STEP, the name of a function of it, in this tick and the next ones."
   (setf (operation-step operation) step)
   (funcall step operation))
 
@@ -254,7 +254,7 @@ it first if it takes no time, as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWAR
       (setf (operation-subject operation) (command-name (operation-command rival))))))
 
 (defun begin (operation)
-  "Take over the resource of OPERATION and let it wait for its command's delay."
+  "Take over the resource of OPERATION, and continue after its command's delay."
   (let* ((agenda (operation-agenda operation))
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))

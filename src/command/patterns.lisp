@@ -1,4 +1,4 @@
-;;;; patterns.lisp -- which things a manipulation is for: descriptors with matchvars (manual 5.5.1).
+;;;; patterns.lisp -- descriptors with matchvars, for objects of manipulations (manual 5.5.1).
 
 (in-package :ars-magna.command)
 
@@ -59,7 +59,7 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
         (t (substance-value-type value))))
 
 (defun value-fits-p (key wanted threshold value)
-  "True if VALUE, which a thing has for KEY, is as WANTED."
+  "True if VALUE, which a thing has for KEY, fits WANTED."
   (cond ((or (null wanted) (null value)) (and (listp wanted) (member value (or wanted '(nil)))))
         ((and (realp wanted) (realp value)) (within-p value wanted wanted threshold))
         ((atom wanted) (value-equal wanted value))
@@ -86,14 +86,14 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
                   bindings)))))
 
 (defun pattern-fits (pattern thing bindings)
-  "True if THING is as PATTERN says where BINDINGS hold; the bindings after it as second value."
+  "True if THING fits PATTERN with BINDINGS. The second value is the bindings after it."
   (dolist (clause pattern (values t bindings))
     (multiple-value-bind (fits after) (clause-fits clause thing bindings)
       (unless fits (return (values nil bindings)))
       (setf bindings after))))
 
 (defun patterns-fit-p (patterns things)
-  "True if each of THINGS is as the one of PATTERNS at its place says, matchvars shared."
+  "True if each of THINGS fits that of PATTERNS at its place. They share matchvars."
   (loop with bindings = '()
         for pattern in patterns
         for thing in things
@@ -104,7 +104,7 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
 ;;; Versions of a pattern.
 
 (defun exclusive-p (one other)
-  "True if nothing that is as ONE, a value in a pattern, can be as OTHER."
+  "True if no value can fit both ONE and OTHER, values in patterns."
   (multiple-value-bind (low high) (value-limits one)
     (multiple-value-bind (other-low other-high) (value-limits other)
       (cond ((or (matchvar-p one) (matchvar-p other)) nil)
@@ -114,6 +114,6 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
                                    :test #'value-equal)))))))
 
 (defun similar-patterns-p (pattern other)
-  "True if PATTERN and OTHER look at the same attributes, and a thing can be as both say."
+  "True if PATTERN and OTHER have the same attributes, and a thing can fit both."
   (and (equal (mapcar #'first pattern) (mapcar #'first other))
        (notany #'exclusive-p (mapcar #'second pattern) (mapcar #'second other))))

@@ -16,5 +16,5 @@ ends with the next tick. Body and parts continue meanwhile. A newer THINK interr
       (go-on operation 'succeed (1- ticks))
       (succeed operation)))
 
-;; The manual only wishes for it.
+;; The manual only mentions it as a wish.
 (addition (think :ars :nisp))

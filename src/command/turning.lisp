@@ -68,7 +68,7 @@
       (< (abs (turn-step robot angle)) +facing+)))
 
 (define-step turn-on (operation (robot-p (operation-resource operation)))
-  "Turn the remaining angle of OPERATION for a tick, and end OPERATION when nothing remains."
+  "Turn for a tick, and end OPERATION when nothing is left to turn."
   (multiple-value-bind (left read)
       (turn-step (operation-resource operation) (operation-left operation))
     (setf (operation-left operation) left)
@@ -78,7 +78,7 @@
         (once-more operation))))
 
 (defun turn-by (operation robot angle)
-  "Turn ROBOT by about ANGLE, beginning in this tick, and end OPERATION with the reading of it."
+  "Turn ROBOT by about ANGLE, beginning in this tick; end OPERATION with the odometry's reading."
   (begin-movement robot)
   (setf (operation-left operation) (double angle))
   (if (zerop angle)
@@ -108,8 +108,8 @@
   (define-turn robot-turn-left (/ pi -2) "a quarter circle to the left")
   (define-turn robot-turn-right (/ pi 2) "a quarter circle to the right"))
 
-;;; All of these act on the place type that the robot senses, which may not be the one that is
-;;; there. Its directions are then those that the sensed type gives the cell.
+;;; These commands act on the place type that the robot senses, which may not be the true one. The
+;;; directions are those that the sensed type gives the cell.
 
 ;; As reading 106 says.
 (define-command robot-place (operation (robot robot))
@@ -118,7 +118,7 @@
      (:report (type) (format nil "Place is ~A" type)))
     "Sense the type of the place where ROBOT is."
   (let ((type (sense-place-type robot)))
-    ;; As the author of the map writes it.
+    ;; The symbol that the author of the map writes.
     (setf (robot-last-place robot)
           (and type (own-symbol (place-type-name type)
                                 (map-package (world-map (robot-world robot))))))
@@ -128,7 +128,7 @@
   (turn-by operation robot (angle-difference direction (robot-angle robot))))
 
 (defun judged-right-p (robot type)
-  "True if ROBOT takes TYPE, which it has sensed, for right: if it is, or by mistake (reading 103)."
+  "True if TYPE, which ROBOT has sensed, is right or by mistake taken for right (reading 103)."
   (let ((place (robot-place-here robot)))
     (or (and place (eq type (place-type place)))
         (chance robot-align-error-prob* (world-dice (robot-world robot) :place)))))

@@ -4,17 +4,17 @@
 
 (export '(withdraw-command withdrawal))
 
-;;; GRAB-RESOURCE takes a resource from whatever occupies it by then. Who only wants an end of what
-;;; it has asked for itself withdraws that. A command is known by its continuation. What the journal
-;;; notes is what that came to: that a command was interrupted, a track, or nothing.
+;;; GRAB-RESOURCE interrupts any command on a resource. To end only a command of its own, a program
+;;; withdraws that; its continuation identifies it. The journal records what was interrupted: a
+;;; command, a track, or nothing.
 
 (define-kind (withdrawal :include request
                          :constructor (make-withdrawal (continuation arguments
                                                         &aux (operator 'withdraw-command))))
     "A request to interrupt a command on a resource, the first argument, if it is in progress."
   (:fixed
-   (continuation nil t "what the command was to tell of its end; NIL if the second argument says
-where the command is: :COMMAND, :TRACK or NIL" :export)))
+   (continuation nil t "the command's continuation; NIL if the second argument says where the
+command is: :COMMAND, :TRACK or NIL" :export)))
 
 (defun track-operation-of (resource)
   (let ((track (and (camera-p resource) (camera-tracking resource))))
@@ -55,6 +55,6 @@ where the command is: :COMMAND, :TRACK or NIL" :export)))
 the start of the next tick, if it is in progress by then. Returns nothing."
   (post (make-withdrawal continuation (list resource)) resource))
 
-;; What a withdrawal came to, in a run that is repeated.
+;; The result of a withdrawal, in a replayed run.
 (define-operator 'withdraw-command '(datum datum)
   (lambda (resource place) (post (make-withdrawal nil (list resource place)) resource)))
