@@ -194,12 +194,6 @@ and FAILURES so far, last first."
   (values '() :type list)
   (failures '() :type list))
 
-(defun checked-number (count branches)
-  (let ((count (fluent-value count)))
-    (check-argument par-at-least count (whole-p count 0 branches)
-                    "an integer from 0 to the number of branches")
-    count))
-
 (defun count-end (tally how result)
   (decf (tally-left tally))
   (case how
@@ -227,10 +221,12 @@ branches (ours; CRAM's statecharts of 2026 have a PAR with minimum_success)."
           (branches simple-vector (branches-code branches (single-scope scope))))
   (:steps
    (begin
-    (let ((needed (checked-number (funcall needed environment) (length branches))))
+    (let ((count (fluent-value (funcall needed environment))))
+      (check-argument par-at-least count (whole-p count 0 (length branches))
+                      "an integer from 0 to the number of branches")
       (next over)
-      (setf memory (make-tally needed (length branches)))
-      (if (plusp needed)
+      (setf memory (make-tally count (length branches)))
+      (if (plusp count)
           (start-branches branches task environment)
           (values (frame-up frame) '()))))
    (over (values (frame-up frame) value)))

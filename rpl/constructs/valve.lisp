@@ -170,10 +170,6 @@ VALVE and the rival."
 ;;; The lines of a valve are a treap: a tree in which each line has more weight than those below it.
 ;;; Weights are as good as drawn, so that it is hardly ever deep.
 
-(defun next-weight (valve)
-  "Return the weight of a new line of VALVE, as different from the last as can be."
-  (ldb (byte 32 0) (* 2654435769 (incf (valve-count valve)))))
-
 (defun split-lines (tree line)
   "Return a tree of the lines of TREE that go before LINE, and one of the others."
   (cond ((null tree) (values nil nil))
@@ -209,16 +205,15 @@ VALVE and the rival."
                  ((before-p tree line) (setf tree (line-behind tree)))
                  (t (return tree)))))
 
-(defun insert-line (line valve)
-  (setf (line-weight line) (next-weight valve))
-  (multiple-value-bind (ahead behind) (split-lines (valve-lines valve) line)
-    (setf (valve-lines valve) (joined-lines (joined-lines ahead line) behind)))
-  line)
-
 (defun line-for (claim valve)
+  "Return the line of VALVE in which CLAIM waits, a new one if there is none."
   (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
     (or (line-like line (valve-lines valve))
-        (insert-line line valve))))
+        (multiple-value-bind (ahead behind) (split-lines (valve-lines valve) line)
+          ;; As different from the last weight as can be.
+          (setf (line-weight line) (ldb (byte 32 0) (* 2654435769 (incf (valve-count valve))))
+                (valve-lines valve) (joined-lines (joined-lines ahead line) behind))
+          line))))
 
 (defun queue-up (claim)
   (dolist (valve (claim-valves claim))

@@ -33,14 +33,11 @@
              (not (member unit '(:ticks :seconds))))
     (reject-clause (author) form (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
 
-(defun check-span (span form)
-  (when (and (realp span) (minusp span))
-    (doubt-form form "~(~A~) does not wait for ~A, which is less than 0." (first form) span)))
-
 (defun span-lambda (operator span unit form scope)
   "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, in ticks."
   (check-unit unit form)
-  (check-span span form)
+  (when (and (realp span) (minusp span))
+    (doubt-form form "~(~A~) does not wait for ~A, which is less than 0." (first form) span))
   (value-lambda `(ticks-of ,span (or ,unit :ticks) ',operator) scope))
 
 (define-construct wait-time (span &key unit)
@@ -75,10 +72,6 @@ number up to 1e15. If it is 0 or less, do not wait."
   (when trouble
     (setf (task-signal task) (failure-of trouble task (task-frame task))))
   (wake task value))
-
-(defun wait-for-no-fluent (task)
-  (park task +no-fluent+)
-  (warn-of-no-fluent task))
 
 (defun wait-until-heard (task condition)
   "Let TASK wait until CONDITION, a fluent that is false, changes. Another object never does."

@@ -2,16 +2,15 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-(defun valve-advice (value)
-  (format nil "a valve, made by make-valve~@[: ~(~A~) without a quote, if that is a variable for ~
-               one~]"
-          (and value (symbolp value) (not (keywordp value)) (not (eq t value)) value)))
-
 (defun valve-meant (object)
   "Return the valve here that OBJECT, perhaps a fluent, stands for. Signals WRONG-ARGUMENT."
   (let ((valve (fluent-value object)))
     (unless (valve-p valve)
-      (reject-argument 'with-valve 'valve valve (valve-advice valve)))
+      (reject-argument 'with-valve 'valve valve
+                       (format nil "a valve, made by make-valve~@[: ~(~A~) without a quote, if ~
+                                    that is a variable for one~]"
+                               (and (symbolp valve) (not (keywordp valve)) (not (eq t valve))
+                                    valve))))
     (here valve)))
 
 (defun checked-claim (priority valves task)
@@ -28,15 +27,13 @@
            (report-circle task)
            nil)))
 
-(defun doubt-valve (valve scope)
-  (when (and (name-without-quote-p valve scope) (fboundp valve))
-    (doubt-definition "~A: ~(~A~) is a function and no variable. Call it: (with-valve ~
-                       ((~:*~(~A~))) ...)"
-                      (author) valve)))
-
 (defun claim-form (priority valves scope)
   "Return the lambda expression that returns the values of PRIORITY and, as a list, of VALVES."
-  (dolist (valve valves) (doubt-valve valve scope))
+  (dolist (valve valves)
+    (when (and (name-without-quote-p valve scope) (fboundp valve))
+      (doubt-definition "~A: ~(~A~) is a function and no variable. Call it: (with-valve ~
+                         ((~:*~(~A~))) ...)"
+                        (author) valve)))
   (value-lambda `(cons ,priority (list ,@valves)) scope))
 
 (define-construct with-valve ((valve &key priority) &body body)

@@ -122,9 +122,6 @@ and, of a view of changes, what TEST compares, KEY of the value, behind it in a 
 for (manual D.2)."
   (create-fluent name nil))
 
-(defun numeral (number)
-  (if (< number 10) (string (digit-char number)) (princ-to-string number)))
-
 (addition create-fluent-vector)
 (defun create-fluent-vector (name count &optional value)
   "Return a vector of COUNT new fluents with VALUE, one for each part of a kind (manual C). Signals
@@ -133,8 +130,7 @@ WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
                   "an integer from 0 to 1000000")
   (let ((vector (make-array count)))
     (dotimes (i count vector)
-      (setf (svref vector i)
-            (create-fluent (concatenate 'string (string name) " " (numeral i)) value)))))
+      (setf (svref vector i) (create-fluent (format nil "~A ~D" (string name) i) value)))))
 
 ;;; Doubly linked lists, so that leaving one costs the same however many are in it.
 
@@ -211,11 +207,6 @@ and, if PULSED-P is true, that these are never set."
     (reject-use "~A is a vector of fluents: ~A needs one of them. Write (vref ~2:*~A~* ~A)."
                 variable user
                 (or (known-vector-variable-p (find-known variable)) "index"))))
-
-(defun check-no-vector (object user)
-  "Return OBJECT, a vector. Signals MISUSE if it is one of fluents, of which USER needs one."
-  (when (fluents-vector-p object) (reject-vector object user))
-  object)
 
 (defun find-known (name)
   (loop for variable being the hash-keys of *known-variables*

@@ -18,7 +18,7 @@
 (define-record (home (:constructor make-home ()))
   "Where changes are heard."
   (holder nil t "the thread that has it, or NIL" :writable)
-  (backlog (make-backlog) backlog)
+  (backlog (make-backlog) backlog :writable)
   (inbox '() t :writable)
   (outbox '() list :writable)
   (on-post #'list function "the function that is called after each post" :writable)

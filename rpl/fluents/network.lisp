@@ -12,12 +12,6 @@
   "Return what SOURCE, a fluent in use or any other object, stands for."
   (if (fluent-p source) (fluent-now source) source))
 
-(defun source-trouble (derived)
-  "Return the error of a source of DERIVED, or NIL. All its sources are in use."
-  (dolist (source (derived-sources derived))
-    (when (and (derived-p source) (derived-trouble source))
-      (return (derived-trouble source)))))
-
 (defun compute (derived)
   "Return the value of DERIVED for the stored values of its sources, all in use."
   (declare #.*hot*)                     ; 12 ns for two sources
@@ -32,7 +26,8 @@
 (defun recompute (derived)
   "Compute the value of DERIVED, in use, anew. True if it changed, or if computing met an error."
   (declare #.*hot*)
-  (let ((trouble (source-trouble derived))
+  (let ((trouble (loop for source in (derived-sources derived)
+                       thereis (and (derived-p source) (derived-trouble source))))
         (value nil))
     (unless trouble
       (handler-case (setf value (compute derived))
@@ -159,7 +154,8 @@ see SET-VALUE (manual D.2). Signals MISUSE if OBJECT is the name of a variable t
 or a vector of fluents."
   (cond ((fluent-p object) (current-value (here object)))
         ((and object (symbolp object)) (reject-name-of-fluent object))
-        ((simple-vector-p object) (check-no-vector object "fluent-value"))
+        ((and (simple-vector-p object) (fluents-vector-p object))
+         (reject-vector object "fluent-value"))
         (t object)))
 
 ;;; Building.
@@ -168,17 +164,15 @@ or a vector of fluents."
   (1+ (loop for source in sources
             when (fluent-p source) maximize (fluent-height source))))
 
-(defun make-derived (name operator sources)
-  (let ((sources (mapcar (lambda (source) (if (fluent-p source) (here source) source)) sources)))
-    (dolist (source sources)
-      (when (fluent-p source) (setf (fluent-looked source) :always)))
-    (%make-derived name operator sources (height-over sources))))
-
 (defun lift (name function &rest arguments)
   "Return FUNCTION of ARGUMENTS; if there is a fluent among these, the fluent called NAME whose
 value is always FUNCTION of their values."
   (if (some #'fluent-p arguments)
-      (make-derived name function arguments)
+      (let ((sources (loop for argument in arguments
+                           collect (if (fluent-p argument) (here argument) argument))))
+        (dolist (source sources)
+          (when (fluent-p source) (setf (fluent-looked source) :always)))
+        (%make-derived name function sources (height-over sources)))
       (apply function arguments)))
 
 (defun function-label (function)
@@ -298,12 +292,6 @@ each other's values.")
           (derived-queued fluent) nil
           (derived-successor fluent) nil)))
 
-(defun forget-backlog (home)
-  (let ((backlog (home-backlog home)))
-    (fill (backlog-heads backlog) nil)
-    (fill (backlog-tails backlog) nil)
-    (setf (backlog-highest backlog) 0)))
-
 (defun acquire-in-any-case (fluent)
   "Note one more user of FLUENT. If its function aborts, that is an error of FLUENT."
   (restart-case (acquire fluent)
@@ -321,7 +309,7 @@ in HOME."
   (let* ((fluents (reachable-fluents watchers))
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))
-    (forget-backlog home)
+    (setf (home-backlog home) (make-backlog))
     (mapc #'forget-all fluents)
     (dolist (watcher all)
       (setf (watcher-previous watcher) nil

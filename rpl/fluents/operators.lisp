@@ -117,11 +117,8 @@ fluent (reading 184)."
            (,operator ,@values)))))
 
 (defun every-value (&rest values)
-  "Return the last of VALUES if all are true: AND as a function."
-  (loop for (value . more) on values
-        unless value return nil
-        unless more return value
-        finally (return t)))
+  "Return the last of VALUES, at least one, if all are true: AND as a function."
+  (and (every #'identity values) (first (last values))))
 
 (defun some-value (&rest values)
   "Return the first true one of VALUES: OR as a function."

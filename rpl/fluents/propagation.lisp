@@ -202,10 +202,6 @@ reports what has happened."
       (funcall (home-on-post home))
       (post home `((:set ,fluent ,value)))))
 
-(declaim (inline note-outside))
-(defun note-outside (function fluent value)
-  (unless *runner* (note-outside-change *interface* function fluent value)))
-
 (public set-value)
 (defun set-value (fluent value)
   "Set FLUENT to VALUE and return VALUE. If the value changed (by EQL), tasks wake that wait for
@@ -214,7 +210,7 @@ network of it. Any thread may call this; from outside of plans it takes effect w
 plans pause (manual D.2)."
   (check-settable 'set-value fluent)
   (check-no-circle 'set-value fluent value)
-  (note-outside #'set-value fluent value)
+  (unless *runner* (note-outside-change *interface* #'set-value fluent value))
   (let* ((fluent (here fluent)) (home (elsewhere fluent)))
     (if home
         (set-elsewhere home fluent value)
@@ -258,7 +254,7 @@ network that is true at that instant. Return VALUE. Any thread may call this; fr
 it takes effect when the running plans pause (manual C)."
   (check-settable 'pulse fluent)
   (check-no-circle 'pulse fluent value)
-  (note-outside #'pulse fluent value)
+  (unless *runner* (note-outside-change *interface* #'pulse fluent value))
   (let* ((fluent (here fluent)) (home (elsewhere fluent)))
     (cond (home (post home `((:pulse ,fluent ,value))))
           (t (before-change fluent)

@@ -110,13 +110,10 @@ the place of that."
     (let ((fork (make-realm realm (incf (realm-count realm)))))
       (setf (realm-made fork) (next-token))
       (push (cons (realm-number fork) (make-weak fork)) (realm-forks realm))
-      (when (minusp (decf (realm-room realm))) (forget-gone-forks realm))
+      (when (minusp (decf (realm-room realm)))
+        (setf (realm-forks realm) (remove-if-not #'weak-value (realm-forks realm) :key #'cdr)
+              (realm-room realm) (max 16 (length (realm-forks realm)))))
       fork)))
-
-(defun forget-gone-forks (realm)
-  (let ((forks (remove-if-not #'weak-value (realm-forks realm) :key #'cdr)))
-    (setf (realm-forks realm) forks
-          (realm-room realm) (max 16 (length forks)))))
 
 (defmethod copy-plan-value ((realm realm) fork)
   (if (eq realm (source-realm fork))

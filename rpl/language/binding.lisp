@@ -235,14 +235,7 @@ them if OUTER, and returns the environment for a procedure's body."
 ;;; Local macros.
 
 (define-plan-form "MACROLET" nil (definitions &rest body) (form scope)
-  (binding-body-code
-   body
-   (wrapped-scope scope `(macrolet ,definitions)
-                  :macro (loop with environment = (scope-environment scope)
-                               for definition in definitions
-                               collect (list (first definition)
-                                             (macro-expander definition environment))))))
+  (binding-body-code body (wrapped-scope scope `(macrolet ,definitions))))
 
 (define-plan-form "SYMBOL-MACROLET" nil (definitions &rest body) (form scope)
-  (binding-body-code body (wrapped-scope scope `(symbol-macrolet ,definitions)
-                                         :symbol-macro definitions)))
+  (binding-body-code body (wrapped-scope scope `(symbol-macrolet ,definitions))))

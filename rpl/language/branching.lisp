@@ -111,10 +111,8 @@ get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
                                    form)
                    scope))
       `(make-branch :form ',(form-as-written form)
-                    :chooser ,(leaf-lambda
-                               (as-lisp `(if ,(condition-form test (scope-environment scope)) 0 1)
-                                          scope)
-                               scope)
+                    :chooser ,(value-lambda
+                               `(if ,(condition-form test (scope-environment scope)) 0 1) scope)
                     :branches (vector ,(body-code then scope) ,(body-code else scope)))))
 
 (define-plan-form "IF" nil (test then &rest else) (form scope)

@@ -97,17 +97,8 @@ values."
       (reject-call name)))
 
 (defun reject-call (name)
-  (let ((namesake (find-procedure name nil)))
-    (when namesake
-      (reject-use "There is no plan procedure or function ~S. Calls go by the very symbol: if the ~
-                   plan ~:*~A of another package is meant, write ~S."
-                  name (procedure-name namesake)))
-    (when (advice-on-call name)
-      (reject-use "There is no plan procedure or function ~(~A~): ~A"
-                  name (advice-on-call name)))
-    (when (nisps-own name)
-      (reject-use "There is no plan procedure or function ~S; NISP has one. Write (in-package ~
-                   :ars-user), or use the package NISP in yours." name))
+  (let ((remedy (unknown-call-remedy name)))
+    (when remedy (reject-use "There is no plan procedure or function ~A" remedy))
     (reject-name "plan procedure or function" name (procedures-to-offer)
                  (known-operators (or (symbol-package name) *package*)))))
 

@@ -74,18 +74,20 @@ construct of NISP, as WAIT-FOR is in packages that do not use NISP."
 function, and what to write; or NIL. What knows more names has a method.")
   (:method (name) (declare (ignore name)) nil))
 
-(defun warn-of-unknown (form)
-  (let* ((name (first form))
-         (namesake (find-procedure name nil))
-         (advice (advice-on-call name)))
+(defun unknown-call-remedy (name)
+  "Return NAME, of no plan procedure or function, and in sentences what to write instead; or NIL."
+  (let ((namesake (find-procedure name nil)) (advice (advice-on-call name)))
     (cond (namesake
-           (doubt-form form "there is no plan procedure or function ~S. If the plan of another ~
-                             package is meant, write ~S."
-                       name (procedure-name namesake)))
-          (advice (doubt-form form "there is no plan procedure or function ~(~A~): ~A" name advice))
+           (format nil "~(~S~). If the plan of another package is meant, write ~(~S~)."
+                   name (procedure-name namesake)))
+          (advice (format nil "~(~A~): ~A" name advice))
           ((nisps-own name)
-           (doubt-form form "there is no plan procedure or function ~S; NISP has one. Write ~
-                             (in-package :ars-user), or use the package NISP in yours." name))
+           (format nil "~(~S~); NISP has one. Write (in-package :ars-user), or use the package ~
+                        NISP in yours." name)))))
+
+(defun warn-of-unknown (form)
+  (let* ((name (first form)) (remedy (unknown-call-remedy name)))
+    (cond (remedy (doubt-form form "there is no plan procedure or function ~A" remedy))
           ((same-name-p name "TAG")
            (doubt-form form "a tag has a colon: (:tag name form...)."))
           (t

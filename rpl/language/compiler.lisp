@@ -122,9 +122,6 @@
            (let ((*fluents-here* (scope-fluents scope)))
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
-(defun test-lambda (form scope)
-  (leaf-lambda (as-lisp (condition-form form (scope-environment scope)) scope) scope))
-
 (defun condition-lambda (form scope)
   "Return the lambda expression, of the environment, for the object that FORM, a condition, is: a
 fluent to wait for."

@@ -144,7 +144,9 @@ remembers how many are left, NIL if any number."
         (block-code nil form scope
                     (lambda (scope)
                       `(make-turns :form ',(form-as-written form)
-                                   :until ,(test-lambda test scope)
+                                   :until ,(value-lambda (condition-form
+                                                          test (scope-environment scope))
+                                                         scope)
                                    :times ,(value-lambda count scope)
                                    :body ,(body-code body (single-scope scope))))))))
 

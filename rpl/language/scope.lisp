@@ -180,9 +180,17 @@ nodes" :writable :export)
   (let ((level (1+ (scope-level scope))))
     (layered-scope scope (list :functions level names) level :function names)))
 
-(defun wrapped-scope (scope wrapping &rest additions)
-  "Return SCOPE with WRAPPING, a form to be completed by a body, around leaves; see LAYERED-SCOPE."
-  (apply #'layered-scope scope (list :wrapping wrapping) (scope-level scope) additions))
+(defun wrapped-scope (scope wrapping)
+  "Return SCOPE with WRAPPING, a MACROLET or SYMBOL-MACROLET without a body, around leaves."
+  (destructuring-bind (operator definitions) wrapping
+    (multiple-value-call #'layered-scope scope (list :wrapping wrapping) (scope-level scope)
+      (ecase operator
+        (macrolet
+         (values :macro (loop for definition in definitions
+                              collect (list (first definition)
+                                            (macro-expander definition
+                                                            (scope-environment scope))))))
+        (symbol-macrolet (values :symbol-macro definitions))))))
 
 (defun scope-variables (scope)
   "Return the variables of the plan that are visible in SCOPE."

@@ -127,31 +127,17 @@ of a procedure is a WITH-TAGS too."
                       (:variables
                        (layered-scope scope layer first :variable (remove-duplicates names)))
                       (:functions (layered-scope scope layer first :function names))
-                      (:wrapping (rewrapped-scope scope first))))))))
-
-(defun rewrapped-scope (scope wrapping)
-  (destructuring-bind (operator definitions) wrapping
-    (ecase operator
-      (macrolet
-       (wrapped-scope scope wrapping
-                      :macro (loop for definition in definitions
-                                   collect (list (first definition)
-                                                 (macro-expander definition
-                                                                 (scope-environment scope))))))
-      (symbol-macrolet (wrapped-scope scope wrapping :symbol-macro definitions)))))
+                      (:wrapping (wrapped-scope scope first))))))))
 
 ;;; Finding.
-
-(defun local-body (procedure)
-  (and (procedure-body procedure)
-       (not (eq procedure (find-procedure (procedure-name procedure) nil)))
-       (procedure-body procedure)))
 
 (defun inner-nodes (node)
   (loop for part in (node-parts node)
         append (typecase part
                  (node (list part))
-                 (procedure (ensure-list (local-body part))))))
+                 ;; A local one.
+                 (procedure (unless (eq part (find-procedure (procedure-name part) nil))
+                              (ensure-list (procedure-body part)))))))
 
 (defun tagged-in (node name)
   "Return the tagged nodes called NAME in NODE, in order; of those within each other the outermost."

@@ -51,22 +51,18 @@ the same words whichever of them it is that takes it."
       (warn-notably text ". They go on with the ticks. Let one at a time have it: see "
                    "RPL-ROBOT-VALVE."))))
 
-(defun cut-short (runner older newer)
-  "Let time pass for RUNNER. Note it if the tasks OLDER and NEWER are of one plan, which has not
-waited for that; see COMMANDS-IN-TICK."
-  (when (and older newer (eq (task-top older) (task-top newer)))
-    (setf (runner-note runner 'cut-short) (plan-runner-tick runner)))
-  (exhaust-reaction runner))
-
 (defun count-takeover (interface resource older newer)
   "Note that NEWER took RESOURCE over from OLDER (NIL: no task); after too many let time pass."
-  (let ((count (takeover-count interface resource)))
-    (unless (and older newer (eq (task-top older) (task-top newer)))
-      ;; Plans that take a part from one another make way in the end: that is no rush of one.
-      (setf (runner-note (interface-runner interface) 'commands) nil))
+  (let ((count (takeover-count interface resource))
+        (runner (interface-runner interface))
+        (same-plan-p (and older newer (eq (task-top older) (task-top newer)))))
+    ;; Plans that take a part from one another make way in the end: that is no rush of one.
+    (unless same-plan-p (setf (runner-note runner 'commands) nil))
     (when (< *most-takeovers* (incf (cdr count)))
       (warn-of-takeovers interface (takeover-text resource older newer))
-      (cut-short (interface-runner interface) older newer))))
+      ;; One plan has not waited for the tick; see COMMANDS-IN-TICK.
+      (when same-plan-p (setf (runner-note runner 'cut-short) (plan-runner-tick runner)))
+      (exhaust-reaction runner))))
 
 (defun waits-for-tick-p (interface)
   "True if plans have taken a part from each other so often in this tick that another is to come."

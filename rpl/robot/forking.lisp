@@ -100,13 +100,6 @@ if that is NIL, as somebody did then."
     (note-of-plans interface #'say-again word arguments
                    (and (task-p subject) (task-serial subject)))))
 
-(defun call-noting-command (interface operator arguments function)
-  "Call FUNCTION, which does what the plan function OPERATOR does with ARGUMENTS. Record the call
-if it comes from outside of the plans of INTERFACE. Its results reach forks too."
-  (note-of-plans interface #'apply operator (mapcar #'fluent-value arguments))
-  (let ((*goes-on-in-forks-p* t))
-    (funcall function)))
-
 (defun name-of-fluent (fluent)
   "Return the variable of FLUENT and, if that holds a vector, the index, as a list; or FLUENT."
   (loop for (variable) in *fluent-variables*

@@ -72,6 +72,13 @@ been told since which robot it commands")
   (print-unreadable-object (interface stream :type t)
     (princ (interface-robot interface) stream)))
 
+(defmacro atomic-remove (task place)
+  "Remove TASK from the list in PLACE, which other threads may change meanwhile."
+  (with-gensyms (tasks)
+    `(loop for ,tasks = ,place
+           until (or (not (member ,task ,tasks))
+                     (swap-if ,place ,tasks (remove ,task ,tasks))))))
+
 (pushnew '*interface* *simulation-variables*)
 (pushnew '*realm* *simulation-variables*)
 

@@ -53,9 +53,10 @@
   "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
 and the results, makes settings of its end. Return nothing."
   (let ((interface (the-interface)))
-    (call-noting-command interface operator arguments
-                         (lambda ()
-                           (issue-in-plan interface operator command outcome arguments))))
+    ;; A call from outside of plans is recorded. Its results reach forks too.
+    (note-of-plans interface #'apply operator (mapcar #'fluent-value arguments))
+    (let ((*goes-on-in-forks-p* t))
+      (issue-in-plan interface operator command outcome arguments)))
   (values))
 
 (defun search-under-way (interface)

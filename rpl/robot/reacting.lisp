@@ -202,13 +202,8 @@ that this failure happened, if that was just now."
         (unremark simulation remark)))
     (remark-trouble interface :plan task failure)))
 
-(defun no-longer-unwanted (interface task)
-  (loop for tasks = (interface-unwanted interface)
-        until (or (not (member task tasks))
-                  (swap-if (interface-unwanted interface) tasks (remove task tasks)))))
-
 (defun note-end (interface task)
-  (no-longer-unwanted interface task)
+  (atomic-remove task (interface-unwanted interface))
   (cond ((eq :succeeded (task-state task))
          (tell-of-unawaited interface task)
          (tell-of-unread interface task))

@@ -167,10 +167,6 @@ from outside can wake the plans."
       (:limit (with-plans (interface) (report-limit interface task))))
     state))
 
-(defun await-no-longer (interface task)
-  (loop for tasks = (interface-awaited interface)
-        until (swap-if (interface-awaited interface) tasks (remove task tasks :test #'eq))))
-
 (defvar *plan-failed* (constantly nil)
   "A function of the task of a plan that RUN-PLAN ran and that failed; a trial binds it.")
 
@@ -217,7 +213,7 @@ MISUSE, also if the run is over before it begins."
                (setf state (await-plan interface task))
                (when (eq :failed state) (tell-of-failure interface task)))
         (when (and task (not (task-over-p task))) (end-in interface task))
-        (when task (await-no-longer interface task)))
+        (when task (atomic-remove task (interface-awaited interface))))
       (values (task-result task) state))))
 
 (addition plans)

@@ -132,21 +132,16 @@ NIL if that was aborted."
                  (rest-plans interface)))
       ((nil) (rest-plans interface 0.05)))))
 
-(defun become-thread (interface)
-  "Let this thread, which was started for that, be the thread of INTERFACE. True if it is; the start
-may have been given up, and another may have been started."
-  (let ((thread (current-thread)))
-    (swap-if (interface-thread interface) :starting thread)
-    (eq thread (interface-thread interface))))
-
 (defun call-as-thread (interface function)
   "Call FUNCTION in what is the thread of INTERFACE from now on, until it returns or is left; but
-not if another is."
-  (when (become-thread interface)
-    (in-any-case
-      (funcall function)
-      (swap-if (interface-thread interface) (current-thread) nil)
-      (wake-owner (simulation-timeline (interface-simulation interface))))))
+not if the start was given up, and another may have been started."
+  (let ((thread (current-thread)))
+    (swap-if (interface-thread interface) :starting thread)
+    (when (eq thread (interface-thread interface))
+      (in-any-case
+        (funcall function)
+        (swap-if (interface-thread interface) thread nil)
+        (wake-owner (simulation-timeline (interface-simulation interface)))))))
 
 (defun start-plans-thread (interface)
   (let ((simulation (interface-simulation interface))

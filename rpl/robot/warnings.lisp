@@ -96,15 +96,13 @@ supersedes how the same command ended before."
         ;; Who waits for one of them will be woken.
         (when (still-unread-p unread) (push unread (interface-unread interface)))))))
 
-(defun take-unread (interface task)
-  (flet ((of-task-p (unread) (eql (task-serial task) (unread-plan unread))))
-    (prog1 (remove-if-not #'of-task-p (interface-unread interface))
-      (setf (interface-unread interface) (remove-if #'of-task-p (interface-unread interface))))))
-
 (defun tell-of-unread (interface task)
   "Say once if a command of TASK, which has succeeded, came to nothing and nobody has looked."
-  (let ((unread (find-if #'still-unread-p (take-unread interface task)))
-        (simulation (interface-simulation interface)))
+  (let* ((serial (task-serial task))
+         (all (interface-unread interface))
+         (unread (find-if #'still-unread-p (remove serial all :key #'unread-plan :test-not #'eql)))
+         (simulation (interface-simulation interface)))
+    (setf (interface-unread interface) (remove serial all :key #'unread-plan))
     (when (and unread (not (message-queue-listener *message-queue*)))
       (warn-once (list :unread (task-label task)) (simulation-world simulation)
                  (format nil "The plan ~A succeeded, though its command rpl-~(~A~) ended with ~S, ~

@@ -101,16 +101,13 @@ innermost first, without shadowed ones. () when TASK is over."
   (loop for (name text) on items by #'cddr
         when text do (format stream "  ~A: ~A~%" name text)))
 
-(defun head (object stream)
-  (format stream "~A~%" (form-text object 100)))
-
 (defun outcome-text (task)
   (case (task-state task)
     (:succeeded (form-text (task-result task) 70))
     (:failed (cut (one-line (failure-text (task-result task))) 200))))
 
 (defmethod describe-object ((task task) stream)
-  (head task stream)
+  (format stream "~A~%" (form-text task 100))
   (write-lines stream
                "State" (task-state-text task)
                "Part of" (and (task-parent task) (form-text (task-parent task) 70))
@@ -131,7 +128,7 @@ innermost first, without shadowed ones. () when TASK is over."
     (write-valve valve stream)))
 
 (defmethod describe-object ((fluent fluent) stream)
-  (head fluent stream)
+  (format stream "~A~%" (form-text fluent 100))
   (let ((sources (remove fluent (base-fluents fluent)))
         (clients (loop for client in (fluent-watchers fluent)
                        when (task-p client) collect (form-text client 70))))
@@ -144,7 +141,7 @@ innermost first, without shadowed ones. () when TASK is over."
                  "Waited for by" (and clients (format nil "~{~A~^, ~}" clients)))))
 
 (defmethod describe-object ((valve valve) stream)
-  (head valve stream)
+  (format stream "~A~%" (form-text valve 100))
   (write-lines stream
                "Owner" (if (valve-owner valve) (form-text (valve-owner valve) 70) "nobody")
                "Queue" (and (valve-requests valve)
@@ -153,7 +150,7 @@ innermost first, without shadowed ones. () when TASK is over."
                                           collect (form-text task 70))))))
 
 (defmethod describe-object ((procedure procedure) stream)
-  (head procedure stream)
+  (format stream "~A~%" (form-text procedure 100))
   (let ((name (procedure-name procedure)))
     (write-lines stream
                  "Called as" (format nil "(~A~{ ~A~})" (if name (form-text name) "call-plan ...")

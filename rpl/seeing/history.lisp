@@ -156,11 +156,6 @@ function TEXT makes another of an expression."
 (defun open-span (bar kind entry)
   (push (make-span kind (trace-entry-tick entry) (trace-entry-detail entry)) (bar-spans bar)))
 
-;; What decides a construct ends the wait for its parts without a wake-up.
-(defun begin-wait (bar entry)
-  (close-spans bar '(:waiting :parts) (trace-entry-tick entry))
-  (open-span bar (if (trace-entry-subject entry) :waiting :parts) entry))
-
 (defun end-bar (bar outcome tick)
   (close-spans bar '(:waiting :parts :blocked :cleaning) tick)
   (setf (bar-outcome bar) outcome
@@ -170,7 +165,9 @@ function TEXT makes another of an expression."
   "Add ENTRY, of its task, to BAR, unless it is the start or a command."
   (let ((tick (trace-entry-tick entry)))
     (case (trace-entry-event entry)
-      (:wait (begin-wait bar entry))
+      ;; What decides a construct ends the wait for its parts without a wake-up.
+      (:wait (close-spans bar '(:waiting :parts) tick)
+       (open-span bar (if (trace-entry-subject entry) :waiting :parts) entry))
       (:wake (close-spans bar '(:waiting :parts) tick))
       (:failure (push (make-span :failure tick (trace-entry-detail entry) tick) (bar-spans bar)))
       (:block (open-span bar :blocked entry))

@@ -158,14 +158,6 @@ this task."
   (and (runner-stepper runner)
        (remove-if #'task-over-p (funcall (runner-stepper runner) nil nil) :key #'course-task)))
 
-(defun install-stepper (runner courses)
-  (setf (runner-stepper runner)
-        (and courses
-             (lambda (task frame)
-               (if task
-                   (consider-stop courses task frame)
-                   courses)))))
-
 (addition step-task)
 (defun step-task (task &optional (on t))
   "Stop from now on before each expression of TASK and its parts; no longer if ON is NIL. A stop
@@ -173,8 +165,12 @@ enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far to ru
 interactive debugger it is a message, and the task goes on. Returns nothing."
   (check-argument step-task task (task-p task) "a task, as begin-plan returns")
   (let* ((runner (task-runner task))
-         (others (remove task (courses-of runner) :key #'course-task)))
-    (install-stepper runner (if on (cons (make-course task) others) others))
+         (others (remove task (courses-of runner) :key #'course-task))
+         (courses (if on (cons (make-course task) others) others)))
+    (setf (runner-stepper runner)
+          (and courses
+               (lambda (task frame)
+                 (if task (consider-stop courses task frame) courses))))
     (values)))
 
 (defun step-if-wanted (task)

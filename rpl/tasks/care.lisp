@@ -74,10 +74,6 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
                    (task-newer child) newer))
     (cons task (mapcan #'live-parts children))))
 
-(defun live-tasks (runner)
-  (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
-  (mapcan #'live-parts (reverse (runner-roots runner))))
-
 (defun repair-queues (runner tasks)
   "Let those of TASKS that are ready, all there are, be queued in RUNNER."
   (loop for ring across (runner-rings runner)
@@ -136,7 +132,8 @@ events."
 
 (defun repair (runner)
   "Make RUNNER fit to go on, whatever it was left in the middle of."
-  (let ((tasks (live-tasks runner)))
+  (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
+  (let ((tasks (mapcan #'live-parts (plan-runner-tasks runner))))
     (repair-queues runner tasks)
     (repair-timers runner tasks)
     (repair-hearing runner tasks)
@@ -278,14 +275,6 @@ met, and whether it may have been stopped in the middle of our own code."
                     (call-offering-ends runner function #'fail #'end #'leave)))
                 anywhere-p)))))
 
-(defun bear-fate (runner fate trouble)
-  "Let the running task of RUNNER bear FATE, no :DONE, that TROUBLE brought. Return NIL."
-  (ecase fate
-    (:fail (fail-current runner trouble))
-    (:end (report-abort runner) (end-current runner))
-    (:leave (end-current runner)))
-  nil)
-
 (defun call-with-care (runner function)
   "Call FUNCTION with RUNNER and return its value; NIL if the step of a task met trouble, which that
 task has to bear."
@@ -294,6 +283,8 @@ task has to bear."
          (setf (values fate result anywhere-p) (call-to-fate runner function))
       (cond ((null fate) (put-in-order runner))
             ((or anywhere-p (eq fate :end)) (repair runner))))
-    (if (eq fate :done)
-        result
-        (bear-fate runner fate result))))
+    (ecase fate
+      (:done result)
+      (:fail (fail-current runner result) nil)
+      (:end (report-abort runner) (end-current runner) nil)
+      (:leave (end-current runner) nil))))

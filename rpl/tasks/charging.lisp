@@ -36,12 +36,6 @@ tick, or as many as it needs if that is NIL."
         (runner-uncounted runner) 0
         (runner-limit runner) (+ (runner-steps runner) steps)))
 
-(defun pay-debt (runner budget)
-  "Pay of the debt of RUNNER what BUDGET, a number of steps, is enough for. Return what is left."
-  (let ((paid (min budget (runner-debt runner))))
-    (decf (runner-debt runner) paid)
-    (- budget paid)))
-
 (defun give-budget (runner)
   "Let the reaction of RUNNER that begins take its steps: what is left of this tick's budget."
   (let ((budget (runner-budget runner)) (tick (runner-tick runner)))
@@ -50,8 +44,10 @@ tick, or as many as it needs if that is NIL."
     (cond ((null budget) (allow runner *runaway-limit*))
           ((not (runner-charged-p runner)) (allow runner budget))
           ((not (eql tick (runner-allotted runner)))
-           (setf (runner-allotted runner) tick)
-           (allow runner (pay-debt runner budget))))))
+           (let ((paid (min budget (runner-debt runner))))
+             (decf (runner-debt runner) paid)
+             (setf (runner-allotted runner) tick)
+             (allow runner (- budget paid)))))))
 
 (defun give-back (runner steps)
   "Let STEPS that a task of RUNNER has taken not count, unless these are too many in one tick."

@@ -296,7 +296,7 @@ true; or NIL and false if one of them has closed over something."
     (values nodes t)))
 
 (defun find-whose (node)
-  "Find out whose NODE is, and remember it. Return that."
+  "Find out whose NODE is, and remember it."
   (multiple-value-bind (nodes everybodys-p) (everybodys-code node)
     (dolist (each nodes) (setf (node-whose each) :everybodys))
     (setf (node-whose node) (if everybodys-p :everybodys :a-runs))))
@@ -305,10 +305,8 @@ true; or NIL and false if one of them has closed over something."
 (define-shared-slots procedure lambda-list source)
 
 (defmethod copy-plan-value ((node node) fork)
-  (let ((whose (node-whose node)))
-    (if (eq :everybodys (if (eq :unknown whose) (find-whose node) whose))
-        node
-        (copy-slots node fork))))
+  (when (eq :unknown (node-whose node)) (find-whose node))
+  (if (eq :everybodys (node-whose node)) node (copy-slots node fork)))
 
 (defmethod copy-plan-value ((procedure procedure) fork)
   (if (or (defined-procedure-p procedure)

@@ -36,14 +36,11 @@ them, a column and STREAM."
 (defun brief-failure-text (failure)
   (cut (failure-text failure) 500))
 
-(defun write-some (control items stream &optional (most 30))
-  "Write ITEMS by CONTROL, one at a time, and how many there are beyond MOST."
-  (loop for item in items
-        for number from 1
-        while (<= number most)
-        do (format stream control item))
-  (when (< most (length items))
-    (format stream "    ... and ~D more~%" (- (length items) most))))
+(defun write-some (control items stream)
+  "Write the first 30 of ITEMS by CONTROL, one at a time, and how many more there are."
+  (let ((more (nthcdr 30 items)))
+    (dolist (item (ldiff items more)) (format stream control item))
+    (when more (format stream "    ... and ~D more~%" (length more)))))
 
 (defun passed-on-text (failure)
   (and (failure-passed-on-by failure)

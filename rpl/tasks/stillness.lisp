@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(hinderers hindrance-text report-circle taken-from those-who-took-from report-deadlock
-          report-stillness +no-fluent+ warn-of-no-fluent doubt-awaited waiting-parts
+          report-stillness +no-fluent+ wait-for-no-fluent doubt-awaited waiting-parts
           text-of-plans text-of-waits advice-on-stillness endless-advice fluents-awaited))
 
 ;;; A task is stuck if what it waits for can only come from tasks that are stuck. A task with parts
@@ -149,17 +149,16 @@ frames, is about.")
          (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))
          text)))
 
-(defun advice-alone (plan)
-  (format nil "RUN-PLAN-ALONE runs ~A without a robot: no ticks of a run pass, in which commands ~
-               could end. Run it on the robot: (with-simulation (ROBOT) (run-plan '~:*~A)), or ~
-               live (simulator 'ROBOT) and (run-plan '~:*~A)." plan))
-
 (defun command-advice (tasks)
   (let* ((task (first tasks)) (plan (task-label (task-top task)))
          (client (runner-client (task-runner task))))
     (multiple-value-bind (name part) (and client (last-command client task))
       (cond
-        ((null client) (advice-alone plan))
+        ((null client)
+         (format nil "RUN-PLAN-ALONE runs ~A without a robot: no ticks of a run pass, in which ~
+                      commands could end. Run it on the robot: (with-simulation (ROBOT) ~
+                      (run-plan '~:*~A)), or live (simulator 'ROBOT) and (run-plan '~:*~A)."
+                 plan))
         (name
          (format nil "The last one of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
                       end~]." plan name (end-elsewhere name part tasks)))
@@ -241,8 +240,9 @@ frames, is about.")
   (when (first-warning-p (task-form task) (task-runner task))
     (warn-notably "In the plan " (task-label (task-top task)) ", " text)))
 
-(defun warn-of-no-fluent (task)
-  "Queue a warning that TASK, which has come to wait, was given no fluent, once for each form."
+(defun wait-for-no-fluent (task)
+  "Let TASK wait forever, as it was given no fluent. Queue a warning, once for each form."
+  (park task +no-fluent+)
   (warn-of-wait task (no-fluent-advice task)))
 
 (defun doubt-awaited (task value)

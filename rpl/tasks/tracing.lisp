@@ -43,19 +43,15 @@ TRACE-ENTRY, are evaluated only then."
         (runner-on-change runner)
         (lambda (kind fluent value) (trace-doing runner kind fluent value))))
 
-(defun trace-start (plan)
-  "Note the start of PLAN, a top-level task, and of the tasks that it consists of."
-  (dolist (task (all-tasks plan))
-    (note-event task :start
-                (task-name task)
-                (and (task-parent task) (task-serial (task-parent task))))))
-
 (defun start-trace (runner)
   "Start a trace of RUNNER, in which running tasks seem to start now. Does nothing if it keeps one."
   (unless (runner-trace runner)
     (setf (runner-trace runner) (make-trace))
     (trace-changes runner)
-    (mapc #'trace-start (plan-runner-tasks runner))))
+    (dolist (task (all-tasks runner))
+      (note-event task :start
+                  (task-name task)
+                  (and (task-parent task) (task-serial (task-parent task)))))))
 
 (defun stop-trace (runner)
   "Let RUNNER keep no trace from now on, and forget the one that it kept."

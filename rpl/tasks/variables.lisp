@@ -25,14 +25,11 @@
   (or *speaking-task*
       (and *runner* (running-task *runner*))))
 
-(defun cell-in-frames (name task)
-  (loop for frame = (task-frame task) then (frame-up frame)
-        while frame
-        thereis (and (task-bindings-p (frame-data frame))
-                     (assoc name (task-bindings-cells (frame-data frame)) :test #'eq))))
-
 (defun own-cell (name task)
-  (or (cell-in-frames name task)
+  (or (loop for frame = (task-frame task) then (frame-up frame)
+            while frame
+            thereis (and (task-bindings-p (frame-data frame))
+                         (assoc name (task-bindings-cells (frame-data frame)) :test #'eq)))
       (assoc name (task-variables task) :test #'eq)))
 
 (defun task-variable (name)
