@@ -53,6 +53,12 @@
   (rejected-clause (b (base:braking* 1)) (:robots ars-worlds:dot) (:run t)
     (:conditions (a (base:max-speed* 1)) (b (base:braking* 1)))))
 
+;; The values of other factors are forms.
+(test definition.says-that-names-of-robots-have-no-quote
+  (is-true (has-words-p (handler-case (define-for-test (:vary (:robots 'ars-worlds:dot)) (:run t))
+                          (base:malformed-definition (condition) (princ-to-string condition)))
+                        "without a quote")))
+
 (defun own-element ()
   "Return a list that is an element of itself."
   (let ((list (list 1 2))) (setf (second list) list) list))
