@@ -149,13 +149,13 @@
            "" "Why trials failed, and how to see one:"
            "  2  lost: noise=0 (2)"
            "     (replay-trial 'made-up \"noise=0\" 7)"
-           "" "Errors by which trials broke off, and how to see one:"
+           "" "Errors that ended trials, and how to see one:"
            "  1  boom: noise=0.5 (1)"
            "     (replay-trial 'made-up \"noise=0.5\" 8)"
            ""
            ,(concatenate 'string "In parentheses 95 % intervals: Wilson's of rates, by ranks of "
                          "medians, Student's of means.")
-           "A trial that broke off with an error counts as one that did not succeed.")
+           "A trial that ended with an error counts as one that did not succeed.")
          (text-lines (report-text results))))))
 
 (test report.returns-the-results-and-writes-where-it-is-told
@@ -203,7 +203,7 @@ And more."
                               ("success" :values ("TRUE")) ("success" :values (3)))))
     (let ((text (report-text results)))
       (is (search "way: 1 value that is no number is left out." text))
-      (is (search "Errors that trials outlived" text))
+      (is (search "Errors that did not end their trials" text))
       (is (search "1  kicker failed" text)))))
 
 (test report.is-legible-whatever-there-is

@@ -1,8 +1,8 @@
-;;;; package.lisp -- the experiment layer: trials by the thousand, and what they tell.
+;;;; package.lisp -- the experiment layer: thousands of trials, and statistics of their results.
 
 (ars-magna.host:define-package :ars-magna.experiment
-  (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
-on with, on as many cores and machines as there are. Names lparallel.")
+  (:documentation "Controlled experiments: conditions, trials, and tables that can be repeated and
+resumed, on all processors and on many machines. Names lparallel.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots

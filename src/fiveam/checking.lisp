@@ -1,10 +1,10 @@
-;;;; checking.lisp -- IS-SUCCESS-RATE, and why a check failed.
+;;;; checking.lisp -- IS-SUCCESS-RATE, and the reasons of failed checks.
 
 (in-package :ars-magna.fiveam)
 
 (export '(is-success-rate))
 
-(defparameter *examples* 5 "How many trials that did not succeed are listed.")
+(defparameter *examples* 5 "The most trials that did not succeed that are listed.")
 
 (defun subject-text (check)
   (if (check-subject check)
@@ -24,7 +24,7 @@
               (string= "" (result-error result)) (result-error result))))
 
 (defun example-lines (bad check)
-  "Return lines for the first of BAD, results of trials of CHECK that did not succeed."
+  "Return lines for the first *EXAMPLES* of BAD, results of trials of CHECK that did not succeed."
   (append (loop for result in bad
                 repeat *examples*
                 collect (format nil "  trial ~D, seed ~D: ~A" (result-trial result)
@@ -56,7 +56,7 @@
 ;;;; The check
 
 (defun condition-given (experiment condition)
-  "Return the condition of EXPERIMENT that CONDITION means; its only one if that is NIL."
+  "Return the condition of EXPERIMENT for the designator CONDITION; its only one if that is NIL."
   (let ((all (experiment-conditions experiment)))
     (cond (condition (find-condition experiment condition))
           ((rest all)
@@ -69,8 +69,8 @@
 ;;; Checking.
 
 (defun decide-check (experiment condition subject at-least trials level workers)
-  "Check by up to TRIALS of CONDITION of EXPERIMENT, that of SUBJECT or NIL, that AT-LEAST so many
-succeed. True if they do."
+  "Check with at most TRIALS trials of CONDITION of EXPERIMENT, made for SUBJECT or NIL, that the
+rate of success is AT-LEAST. Report that to FiveAM; return true if so."
   (check-rates 'is-success-rate at-least trials level)
   (check-argument is-success-rate workers (whole-p workers 1 1000) "how many threads, 1 to 1000")
   (let ((check (run-check (make-check experiment condition subject (as-written at-least) trials
@@ -92,8 +92,8 @@ succeed. True if they do."
                   at-least (or trials (experiment-trials experiment)) level workers)))
 
 (defun experiment-clause (form options)
-  "Return the arguments of FORM, (:experiment name :condition c). Signals MALFORMED-DEFINITION if
-it is none, or OPTIONS are given that the experiment decides."
+  "Return name and condition in FORM, (:experiment name :condition c). Signals MALFORMED-DEFINITION
+if FORM is not like that, or there are OPTIONS, which the experiment determines."
   (unless (and (proper-list-p form) (member (length form) '(2 4))
                (or (null (cddr form)) (eq :condition (third form))))
     (reject-clause "is-success-rate" form "(:experiment name) or (:experiment name :condition c)"))

@@ -1,13 +1,13 @@
-;;;; deciding.lisp -- whether a rate of success is high enough, after as few trials as will do.
+;;;; deciding.lisp -- whether a rate of success is high enough, after as few trials as possible.
 
 (in-package :ars-magna.fiveam)
 
 (export '(pass-probability))
 
-;;; A suite with false alarms is soon ignored. So the test is whether the rate is below what it
-;;; should be, and LEVEL bounds the probability of a false alarm. Half of LEVEL is for the looks
-;;; after each trial, by evidence that allows so many looks. The other half is for the end, by the
-;;; exact interval. So trials can end early with either answer.
+;;; A suite with false alarms is soon ignored. So the test is whether the rate is below the required
+;;; one, and LEVEL bounds the probability of a false alarm. Half of LEVEL is for RATE-VERDICT after
+;;; each trial, which allows any number of looks. The other half is for the exact interval at the
+;;; end. So trials can end early with either answer.
 
 (defun early-verdict (successes trials rate level)
   "Return :PASSED, :FAILED or NIL for SUCCESSES of TRIALS, with more to come."
@@ -24,12 +24,12 @@
       :passed))
 
 (defun verdict (successes trials most rate level)
-  "Return :PASSED, :FAILED or, if that is to be left to further trials, NIL, for SUCCESSES of
-TRIALS, of which there may be MOST."
+  "Return :PASSED, :FAILED or, if more trials are needed, NIL, for SUCCESSES of TRIALS. There can be
+MOST trials."
   (or (early-verdict successes trials rate level)
       (and (= trials most) (last-verdict successes trials rate level))))
 
-;;; How good that is, by going through all that can happen.
+;;; The probability that a check passes, over all possible courses.
 
 (defun check-rates (operator at-least trials level)
   (unless (and (finite-p at-least) (<= 1d-9 at-least 1))
@@ -40,8 +40,8 @@ TRIALS, of which there may be MOST."
     (reject-argument operator 'level level "a probability from 1e-9 to .5, such as .05")))
 
 (defun next-odds (odds count rate)
-  "Return the probabilities of 0 to COUNT successes, of the ODDS of 0 to COUNT - 1 before another
-trial that succeeds with the probability RATE."
+  "Return the probabilities of 0 to COUNT successes. ODDS are those of 0 to COUNT - 1 before the
+last trial, which succeeds with the probability RATE."
   (let ((next (make-array (1+ count) :initial-element 0)))
     (loop for successes below count
           for share = (aref odds successes)

@@ -1,4 +1,4 @@
-;;;; trying.lisp -- trials of a plan or an experiment, repeated until their rate is decided.
+;;;; trying.lisp -- running trials of a form or an experiment until a check is decided.
 
 (in-package :ars-magna.fiveam)
 
@@ -7,8 +7,8 @@
 (defstruct (subject (:constructor make-subject
                         (function form package robots parameters clean limit))
                     (:copier nil))
-  "FUNCTION, made of FORM, which somebody wrote in PACKAGE, is tried with ROBOTS under PARAMETERS,
-lists (name value), without noise if CLEAN is true, for LIMIT ticks."
+  "A form to check. FUNCTION evaluates FORM, from PACKAGE. Trials have ROBOTS, PARAMETERS, lists
+(name value), no noise if CLEAN is true, and at most LIMIT ticks."
   (function nil :read-only t)
   (form nil :read-only t)
   (package nil :type package :read-only t)
@@ -17,12 +17,12 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
   (clean nil :read-only t)
   (limit 0 :read-only t))
 
-(defconstant +usual-limit+ 100000 "For how many ticks a trial may go on unless its author says.")
+(defconstant +usual-limit+ 100000 "The default for the most ticks of a trial.")
 
-;;; Its trials, as those of an experiment.
+;;; An experiment for a form.
 
 (defun parameter-parts (parameters operator)
-  "Return PARAMETERS, lists (name value) that OPERATOR was given, as EXPERIMENT-FROM takes them."
+  "Return PARAMETERS, lists (name value), an argument of OPERATOR, in the form for EXPERIMENT-FROM."
   (unless (and (proper-list-p parameters)
                (every (lambda (part) (and (proper-list-p part) (= 2 (length part)))) parameters))
     (reject-argument operator 'parameters parameters "lists (name value)"))
@@ -31,7 +31,7 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
         collect (list (list symbol value) value)))
 
 (defun experiment-of (subject operator seed)
-  "Return an experiment of SUBJECT's trials from SEED on. OPERATOR is named in errors."
+  "Return an experiment for the trials of SUBJECT from SEED on. Errors name OPERATOR."
   (let ((limit (subject-limit subject)))
     (unless (integerp seed) (reject-argument operator 'seed seed "an integer"))
     (unless (whole-p limit 1)
@@ -46,7 +46,7 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
       (setf (experiment-package experiment) (subject-package subject))
       experiment)))
 
-;;; From what its author wrote.
+;;; Expanding the macros.
 
 (defun robot-names (operator robots form)
   "Return the names in ROBOTS, a name or a list. Signals MALFORMED-DEFINITION if there is none."
@@ -59,7 +59,7 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
     names))
 
 (defun parameters-form (operator parameters)
-  "Return a form for the lists (name value) that PARAMETERS mean: lists (name form), or a form."
+  "Return the form for lists (name value) of PARAMETERS, which are lists (name form), or a form."
   (if (and (consp parameters) (consp (first parameters)))
       `(list ,@(loop for part in parameters
                      do (unless (and (proper-list-p part) (= 2 (length part))
@@ -70,7 +70,7 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
       parameters))
 
 (defun subject-maker (operator form robots parameters clean limit)
-  "Return a form for the subject that OPERATOR, a macro of this name, was given in these."
+  "Return a form for the subject with these arguments of the macro OPERATOR."
   (doubt-nested-run form)
   (let ((names (robot-names operator robots form)))
     `(make-subject (lambda ()
@@ -85,17 +85,17 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
                        (:constructor make-check (experiment condition subject at-least trials
                                                  level workers))
                        (:copier nil))
-  "Whether trials of CONDITION, of EXPERIMENT, succeed AT-LEAST so often."
+  "A check that trials of CONDITION, of EXPERIMENT, succeed at a rate of AT-LEAST."
   (experiment nil :read-only t)
   (condition nil :read-only t)
-  ;; What its author wrote, or NIL if the experiment was there already.
+  ;; The form that the experiment was made for, or NIL.
   (subject nil :type (or null subject) :read-only t)
   (at-least 0d0 :type double-float :read-only t)
-  ;; How many there are at most.
+  ;; The most trials.
   (trials 0 :type integer :read-only t)
   (level 0d0 :type double-float :read-only t)
   (workers 1 :type integer :read-only t)
-  ;; What came of those that counted, the latest first, and what that says.
+  ;; The results that count, the latest first; the successes in them; the verdict.
   (results '() :type list)
   (successes 0 :type integer)
   (verdict nil :type symbol))
@@ -114,9 +114,9 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
   (call-in-silence
    (lambda () (run-guarded (check-experiment check) (check-condition check) trial stopping-p))))
 
-;; Which trials count is decided in their order, whoever runs them.
+;; The trials that count are decided in their order, whichever worker runs them.
 (defun run-some-trials (check first)
-  "Return what comes of some trials of CHECK from FIRST on, in order; of one without workers."
+  "Return results of some trials of CHECK from FIRST on, in order; of one trial for one worker."
   (let* ((workers (check-workers check))
          (last (min (check-trials check) (+ first (max first (* 8 workers)))))
          (results (make-array (- last first -1)))
@@ -131,16 +131,16 @@ lists (name value), without noise if CLEAN is true, for LIMIT ticks."
              (coerce results 'list)))))
 
 (defun run-check (check)
-  "Run trials of CHECK until they decide. Return CHECK."
+  "Run trials of CHECK until it has a verdict. Return CHECK."
   (loop for first = (1+ (length (check-results check)))
         until (loop for result in (run-some-trials check first)
                       thereis (count-result check result)))
   check)
 
-;;;; Many trials
+;;;; Repeating a trial
 
-;;; The log of a check is read elsewhere, perhaps much later. So the form that it prints repeats a
-;;; trial in any Lisp with the same code, whatever is set there.
+;;; The log of a check may be read elsewhere and much later. So the form that it prints repeats a
+;;; trial in any Lisp with the same code, whatever parameters are set there.
 
 (defun replay-subject (subject seed options)
   (unless (integerp seed) (reject-argument 'repeat-trial 'seed seed "an integer"))
@@ -168,7 +168,7 @@ MALFORMED-DEFINITION, too."
 ;;; As a text.
 
 (defun text-of (form check)
-  "Return FORM as the author of CHECK would write it, on one line if it is short."
+  "Return the text of FORM in the package of CHECK, on one line if it is short."
   (let* ((text (form-in-package form (experiment-package (check-experiment check))))
          (line (one-line text)))
     (if (< (length line) 90) line text)))

@@ -1,13 +1,13 @@
-;;;; designs.lisp -- points in a cube, at which something that depends on numbers is tried.
+;;;; designs.lisp -- points in a unit cube, for experiments with many factors.
 
 (in-package :ars-magna.statistics)
 
 (export '(+most-dimensions+ design-points))
 
 ;;; Each dimension has direction numbers V1, V2 ... of 32 bits, binary fractions. They follow from a
-;;; primitive polynomial over two elements and from odd numbers to start with, by Bratley and Fox
-;;; (Algorithm 659, 1988). The numbers are those of Joe and Kuo (SIAM J. Sci. Comput. 30, 2008). Of
-;;; the first 2^K points each slice of width 1/2^K has one, in each dimension.
+;;; primitive polynomial over GF(2) and initial odd numbers, by Bratley and Fox (Algorithm 659,
+;;; 1988). The numbers are those of Joe and Kuo (SIAM J. Sci. Comput. 30, 2008). Of the first 2^K
+;;; points each slice of width 1/2^K has one, in each dimension.
 
 (define-constant +polynomials+
     '((0) (1 0 1) (2 1 1 3) (3 1 1 3 1) (3 2 1 1 1) (4 1 1 1 3 3) (4 4 1 3 5 13) (5 2 1 1 5 5 17)
@@ -15,16 +15,16 @@
       (6 1 1 3 3 9 7 49) (6 13 1 1 1 15 21 21) (6 16 1 3 1 13 27 49) (6 19 1 1 1 15 7 5)
       (6 22 1 3 1 15 13 25) (6 25 1 1 5 5 19 61) (7 1 1 3 7 11 23 15 103))
   :test #'equal
-  :documentation "For each dimension the degree of its polynomial, the inner coefficients of that
-as a number, and the odd numbers to start with; the first dimension has none.")
+  :documentation "For each dimension the degree of its polynomial, its inner coefficients as a
+number, and the initial odd numbers; the first dimension has none.")
 
 (define-constant +most-dimensions+ 20
-  :documentation "How many dimensions Sobol's sequence has here.")
+  :documentation "The most dimensions of Sobol's sequence.")
 
 (define-constant +sobol-bits+ 32)
 
 (defun next-direction (directions degree coefficients)
-  "Return the direction number that follows DIRECTIONS, the last first, of a polynomial of DEGREE."
+  "Return the direction number after DIRECTIONS, the last first, for a polynomial of DEGREE."
   (let* ((oldest (nth (1- degree) directions))
          (number (logxor oldest (ash oldest (- degree)))))
     (loop for direction in directions
@@ -44,8 +44,8 @@ as a number, and the odd numbers to start with; the first dimension has none.")
       (coerce (reverse directions) 'simple-vector))))
 
 (defun sobol-numbers (count dimension)
-  "Return the first COUNT numbers of Sobol's sequence in DIMENSION, in the order of Gray's code:
-integers below 2^32."
+  "Return the first COUNT numbers of Sobol's sequence in DIMENSION, in Gray code order, as integers
+below 2^32."
   (loop with directions = (direction-numbers dimension) and number = 0
         for index from 1 to count
         collect number
@@ -54,30 +54,29 @@ integers below 2^32."
 
 ;;;; Designs
 
-;;; Each dimension has dice of its own: one more leaves the others as they are. More points of
-;;; :RANDOM and :SOBOL begin with those that there were; those of a Latin hypercube are all others.
+;;; Each dimension has its own dice, so another dimension does not change the others. A larger
+;;; :RANDOM or :SOBOL design begins with the points of a smaller one; a Latin hypercube does not.
 
 (defun latin-numbers (count dice)
-  "Return COUNT numbers, one in each of as many equal parts of [0, 1), in an order by DICE."
+  "Return COUNT numbers, one in each of COUNT equal parts of [0, 1), in random order by DICE."
   (let ((places (make-array count)))
     (dotimes (place count) (setf (aref places place) place))
     (loop for last from (1- count) above 0
           do (rotatef (aref places last) (aref places (roll-index (1+ last) dice))))
     (loop for place across places collect (/ (+ place (roll dice)) count))))
 
-;; Shifted in all its bits by a word of the dice's, which leaves it as even as it was: without that
-;; the first point would be a corner, whatever the seed.
+;; A random digital shift keeps the points as even. Without it the first would always be a corner.
 (defun shifted-sobol-numbers (count dimension dice)
   (let ((shift (roll-index (ash 1 +sobol-bits+) dice)))
     (loop for number in (sobol-numbers count dimension)
           collect (float (/ (+ (logxor number shift) 1/2) (ash 1 +sobol-bits+)) 1d0))))
 
 (defun design-points (kind count dimensions seed)
-  "Return COUNT points in as many DIMENSIONS, at most +MOST-DIMENSIONS+ of :SOBOL: lists of numbers
-from 0 to below 1, the same for the same SEED, an integer. KIND says how they are drawn. :RANDOM:
-each number by itself. :LATIN-HYPERCUBE: in each dimension one in each of COUNT equal parts (McKay,
-Beckman and Conover 1979). :SOBOL: by Sobol's sequence, shifted by SEED, which fills the cube most
-evenly if COUNT is a power of two."
+  "Return COUNT points in DIMENSIONS dimensions, for :SOBOL at most +MOST-DIMENSIONS+: lists of
+numbers from 0 to below 1, the same for the same SEED, an integer. KIND is :RANDOM: independent
+numbers; :LATIN-HYPERCUBE: in each dimension one in each of COUNT equal parts (McKay, Beckman and
+Conover 1979); or :SOBOL: Sobol's sequence, shifted by SEED, which fills the cube most evenly if
+COUNT is a power of two."
   (apply #'mapcar #'list
          (loop for dimension below dimensions
                for dice = (make-dice seed (format nil "~(~A~) ~D" kind dimension))

@@ -4,8 +4,8 @@
 
 (declaim (inline continued-fraction))
 (defun continued-fraction (terms)
-  "Return 1 + a1/(b1 + a2/(b2 + ...)), where the function TERMS returns a and b of a number k
-(Lentz's method as in Thompson and Barnett 1986)."
+  "Return 1 + a1/(b1 + a2/(b2 + ...)), where the function TERMS returns ak and bk for k (Lentz's
+method as in Thompson and Barnett 1986)."
   (loop with value of-type double-float = 1d0
         with up of-type double-float = 1d0
         with down of-type double-float = 0d0
@@ -20,7 +20,7 @@
                (return value)))))
 
 (defun artanh-remainder (w)
-  "Return artanh(W)/W - 1 = W^2/3 + W^4/5 + ..., to the last digits; quick for W up to 1/2."
+  "Return artanh(W)/W - 1 = W^2/3 + W^4/5 + ..., to the last digits; fast for W up to 1/2."
   (declare (type double-float w) #.*hot*)
   (loop with square of-type double-float = (* w w)
         for power of-type double-float = square then (* power square)
@@ -30,15 +30,15 @@
         until (= sum old)
         finally (return sum)))
 
-;;; Factorials never stand alone here but in the probabilities of counts, where most of one cancels
-;;; against powers. So log-gamma is not formed, which would leave a 1e-9 of such a probability
-;;; uncertain when counts are a million; only its distance from Stirling's formula is, and how far a
-;;; count is from its expectation. Both are small and exact (Loader 2000, "Fast and accurate
-;;; computation of binomial probabilities").
+;;; Factorials occur here only in probabilities of counts, where most of them cancels against
+;;; powers. So log-gamma is not computed: for counts of a million, it would leave a relative error
+;;; of 1e-9. Only its difference from Stirling's formula is computed, and the deviance of a count
+;;; from its expectation. Both are small and exact (Loader 2000, "Fast and accurate computation of
+;;; binomial probabilities").
 
 (defun stirling-error (x)
   "Return log gamma(X+1) less Stirling's formula, (X+1/2) log X - X + log sqrt(2 pi), for X from
-1/2: by DLMF 5.11.1, or Gudermann's steps of 1845 up to where that holds."
+1/2: by DLMF 5.11.1 from 16 on, and below by Gudermann's steps of 1845."
   (declare (type double-float x) #.*hot*)
   (let ((rest 0d0))
     (declare (type double-float rest))
@@ -49,8 +49,8 @@
       (+ rest (/ (- 1/12 (* y (- 1/360 (* y (- 1/1260 (* y (- 1/1680 (* y 1/1188)))))))) x)))))
 
 (defun deviance (x mean)
-  "Return X log(X/MEAN) + MEAN - X, which is not below 0, without loss where X is near MEAN (Loader
-2000)."
+  "Return X log(X/MEAN) + MEAN - X, which is never negative, without loss of digits where X is near
+MEAN (Loader 2000)."
   (declare (type double-float x mean))
   (let ((v (/ (- x mean) (+ x mean))))
     (cond ((< (abs v) .3d0) (+ (* v (- x mean)) (* 2 x v (artanh-remainder v))))
@@ -109,7 +109,7 @@ part)."
         (- 1 (/ (upper-gamma .5d0 half) 2)))))
 
 (defmacro ratio-of-polynomials (x above below)
-  "Return the ratio of the polynomials of X with the coefficients ABOVE and BELOW, of X^0 first."
+  "Return the ratio of the polynomials of X with the coefficients ABOVE and BELOW, from X^0 on."
   (flet ((horner (coefficients)
            (reduce (lambda (coefficient form) `(+ ,coefficient (* ,x ,form)))
                    coefficients :from-end t)))
@@ -148,8 +148,8 @@ part)."
      2.04426310338993978564d-15)))
 
 (defun normal-quantile (p)
-  "Return the number that a standard normal one is below with the probability P, between 0 and 1
-(the rational functions of Wichura 1988, algorithm AS 241, good to 1e-16)."
+  "Return the quantile P, between 0 and 1, of the standard normal distribution (the rational
+functions of Wichura 1988, algorithm AS 241, good to 1e-16)."
   (declare (type double-float p) #.*hot*)
   (let ((q (- p .5d0)))
     (if (<= (abs q) .425d0)
@@ -161,14 +161,13 @@ part)."
           (if (minusp q) (- size) size)))))
 
 (defun normal-critical-value (confidence)
-  "Return how many deviations either way hold a share CONFIDENCE of all normal numbers."
+  "Return the z for which standard normal numbers are from -z to z with probability CONFIDENCE."
   (declare (type double-float confidence))
   (- (normal-quantile (/ (- 1 confidence) 2))))
 
 ;;;; Beta: probabilities of counts, and Student's t
 
-;;; Where both a number X and 1 - X are arguments, X and Y, they are given apart, so that neither
-;;; loses digits by being near 1.
+;;; Some functions take both X and Y = 1 - X, so that neither loses digits near 1.
 
 (defun log-power (y x exponent)
   "Return EXPONENT log Y, where X = 1 - Y."
@@ -178,8 +177,8 @@ part)."
       (* exponent (logarithm y))))
 
 (defun log-binomial-density (a b x y)
-  "Return the logarithm of gamma(A+B+1) / (gamma(A+1) gamma(B+1)) X^A Y^B: of whole numbers, that
-of the probability of A successes and B failures (Loader 2000). A and B are 0 or from 1/2 on."
+  "Return the logarithm of gamma(A+B+1) / (gamma(A+1) gamma(B+1)) X^A Y^B: for integers, of the
+probability of A successes and B failures (Loader 2000). A and B are 0 or at least 1/2."
   (declare (type double-float a b x y))
   (let ((n (+ a b)))
     (cond ((zerop n) 0d0)
@@ -196,7 +195,7 @@ of the probability of A successes and B failures (Loader 2000). A and B are 0 or
 
 (defun beta-fraction (a b x y)
   "Return I_X(A, B) divided by X^A Y^B / beta(A, B), for X up to about A/(A+B) (the continued
-fraction of Didonato and Morris 1992, all of whose terms are above 0 there)."
+fraction of Didonato and Morris 1992, all of whose terms are positive there)."
   (declare (type double-float a b x y) #.*hot*)
   (flet ((lower-part (m)
            (declare (type double-float m))
@@ -230,8 +229,8 @@ fraction of Didonato and Morris 1992, all of whose terms are above 0 there)."
       (multiple-value-bind (y x) (lower-beta-quantile (- 1 p) b a) (values x y))
       (lower-beta-quantile p a b)))
 
-;;; As a function of the log odds of X, the logarithm of I_X is concave, and near that of a half
-;;; where the odds are A : B. So Newton's method cannot go astray from there, for P up to a half.
+;;; As a function of the log odds of X, the logarithm of I_X is concave, and near log(1/2) where the
+;;; odds are A : B. So Newton's method converges from there, for P up to 1/2.
 
 (defun lower-beta-quantile (p a b)
   (declare (type double-float p a b))
@@ -250,8 +249,8 @@ fraction of Didonato and Morris 1992, all of whose terms are above 0 there)."
           finally (return (values (share odds) (share (- odds)))))))
 
 (defun fair-coin-cdf (count trials)
-  "Return the probability that a fair coin falls heads COUNT times or less often in TRIALS,
-integers; COUNT may be -1."
+  "Return the probability of at most COUNT heads in TRIALS throws of a fair coin, integers; COUNT
+may be -1."
   (let ((count (double count)) (trials (double trials)))
     (cond ((minusp count) 0d0)
           ((= count trials) 1d0)
@@ -260,7 +259,7 @@ integers; COUNT may be -1."
 ;;; Student's t.
 
 (defun student-critical-value (confidence freedom)
-  "Return the t for which Student's t of FREEDOM degrees lies from -t to t with a probability of
+  "Return the t for which Student's t of FREEDOM degrees is from -t to t with a probability of
 CONFIDENCE."
   (declare (type double-float confidence freedom))
   (multiple-value-bind (y x) (beta-quantile confidence .5d0 (/ freedom 2))

@@ -4,8 +4,8 @@
 
 (declaim (inline wilson-low))
 (defun wilson-low (successes failures z)
-  "Return the lower bound: it is square over sum, as the product of both bounds is known, so that
-no digit is lost near 0."
+  "Return the lower bound, as a square over a sum, which follows from the product of both bounds, so
+that no digit is lost near 0."
   (declare (type double-float successes failures z))
   (let ((n (+ successes failures)) (square (* z z)))
     (/ (/ (* successes successes) n)
@@ -33,8 +33,8 @@ from 0 to TRIALS, and CONFIDENCE between 0 and 1."
   (wilson-bounds successes trials (normal-critical-value (check-share wilson-interval confidence))))
 
 (defun exact-low (successes trials tail)
-  "Return the probability of success that makes SUCCESSES or more of TRIALS as likely as TAIL, and
-that of failure."
+  "Return the probability of success for which SUCCESSES or more of TRIALS have the probability
+TAIL; and that of failure."
   (if (zerop successes)
       (values 0d0 1d0)
       (beta-quantile tail (double successes) (double (- trials successes -1)))))
@@ -50,8 +50,8 @@ says, whatever that is, and so is wider than WILSON-INTERVAL, which see for the 
             (nth-value 1 (exact-low (- trials successes) trials tail)))))
 
 (defun corrected-correlation (both first second neither)
-  "Return how much the outcomes of two ways go together, less what small numbers feign (Newcombe
-1998, method 10)."
+  "Return the correlation of paired outcomes, with the continuity correction (Newcombe 1998, method
+10)."
   (let* ((trials (+ both first second neither))
          (excess (- (* both neither) (* first second)))
          (margins (* (+ both first) (+ second neither) (+ both second) (+ first neither))))
@@ -61,13 +61,13 @@ says, whatever that is, and so is wider than WILSON-INTERVAL, which see for the 
            (sqrt (double margins))))))
 
 (defun third-side (a b correlation)
-  "Return the length of the third side of a triangle of which A and B meet at an angle with the
-cosine CORRELATION."
+  "Return the third side of a triangle whose sides A and B meet at an angle with the cosine
+CORRELATION."
   (declare (type double-float a b correlation))
   (sqrt (max 0d0 (+ (* a a) (* b b) (* -2 correlation a b)))))
 
 (defun paired-bounds (p q bounds-of-p bounds-of-q correlation)
-  "Return the bounds for P less Q, of the bounds for each and their CORRELATION."
+  "Return the bounds for P less Q, from the bounds for each and their CORRELATION."
   (destructuring-bind (low-p high-p low-q high-q) (append bounds-of-p bounds-of-q)
     (values (- (- p q) (third-side (- p low-p) (- high-q q) correlation))
             (+ (- p q) (third-side (- high-p p) (- q low-q) correlation)))))
@@ -134,8 +134,8 @@ pairs. Signals WRONG-ARGUMENT as that does, and if the two are not equally many.
     (student-bounds (map 'doubles #'- firsts others) confidence)))
 
 (defun outer-rank (size tail)
-  "Return the largest rank that the median of what SIZE numbers are a sample of is below with a
-probability of TAIL at most, or 0."
+  "Return the largest R for which the median of the distribution is below the R-th smallest of SIZE
+numbers with a probability of at most TAIL; or 0."
   (let ((low 0) (high size))
     (loop while (< (1+ low) high)
           do (let ((rank (floor (+ low high) 2)))
@@ -164,10 +164,10 @@ than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONF
 ;;;; Any statistic, by the bootstrap
 
 (defparameter *most-groups* 500
-  "In how many groups at most a sample is left out bit by bit: enough to tell how skewed it is.")
+  "The most groups of the jackknife, which estimates skewness.")
 
 (defun checked-statistic (function)
-  "Return a function that calls FUNCTION and signals WRONG-ARGUMENT unless that returns a number."
+  "Return a function that calls FUNCTION and signals WRONG-ARGUMENT if that returns no number."
   (lambda (sample)
     (let ((value (funcall function sample)))
       (unless (quantity-p value)
@@ -196,8 +196,8 @@ than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONF
           'doubles))
 
 (defun bootstrap-acceleration (sample function)
-  "Return the acceleration: how the deviation of what FUNCTION says changes with what is so (Efron
-and Tibshirani 1993, formula 14.15, of groups if SAMPLE is large)."
+  "Return the acceleration of the statistic FUNCTION for SAMPLE, by the jackknife, in groups if
+SAMPLE is large (Efron and Tibshirani 1993, formula 14.15)."
   (let* ((groups (min (length sample) *most-groups*))
          (left (coerce (loop for group below groups
                              collect (funcall function (sample-without sample group groups)))
@@ -210,16 +210,16 @@ and Tibshirani 1993, formula 14.15, of groups if SAMPLE is large)."
     (if (zerop squares) 0d0 (/ cubes (* 6 (* squares (sqrt squares)))))))
 
 (defun bias (values found)
-  "Return by how many deviations FOUND is off the middle of VALUES, some of which may equal it
-(Efron and Tibshirani 1993, formula 14.14)."
+  "Return the bias correction: by how many standard deviations FOUND is off the middle of VALUES,
+some of which may equal it (Efron and Tibshirani 1993, formula 14.14)."
   (declare (type doubles values) (type double-float found))
   (let* ((size (length values))
          (below (+ (count found values :test #'>) (/ (count found values :test #'=) 2))))
     (normal-quantile (double (/ (clamp below 1/2 (- size 1/2)) size)))))
 
 (defun corrected-share (z bias acceleration)
-  "Return which share of the values drawn is to be below a bound that lies Z deviations off (Efron
-and Tibshirani 1993, formula 14.10)."
+  "Return the corrected quantile, as a share, for the bound at Z standard deviations (Efron and
+Tibshirani 1993, formula 14.10)."
   (declare (type double-float z bias acceleration))
   (let* ((off (+ bias z)) (rest (- 1 (* acceleration off))))
     (cond ((plusp rest) (normal-probability (+ bias (/ off rest))))

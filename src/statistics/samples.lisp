@@ -1,15 +1,15 @@
-;;;; samples.lisp -- arguments of statistics; mean, variance, median and quantiles.
+;;;; samples.lisp -- checking arguments; mean, variance, median and quantiles.
 
 (in-package :ars-magna.statistics)
 
 (export '(mean median as-written))
 
 (deftype doubles ()
-  "A sample, as it is worked on."
+  "A sample in its internal form."
   '(simple-array double-float (*)))
 
 (defun elements-p (value test)
-  "True if VALUE is a list or a vector, of nothing but what passes TEST."
+  "True if VALUE is a list or vector whose elements all pass TEST."
   (and (or (vectorp value) (proper-list-p value)) (every test value)))
 
 (defun sample (operator name numbers)
@@ -24,7 +24,7 @@ WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
   (double (if (typep share 'single-float) (rationalize share) share)))
 
 (defun inner-share-p (value)
-  "True if VALUE is a number that lies between 0 and 1, by 1e-12 at least."
+  "True if VALUE is a number between 0 and 1, at least 1e-12 from either."
   (and (probability-p value) (<= 1d-12 (as-written value) (- 1 1d-12))))
 
 (defmacro check-share (operator place)
@@ -50,7 +50,7 @@ WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
 
 ;;;; Mean, variance, median, quantiles
 
-;;; What a sample is too small for is NIL: the mean of nothing, the variance of one number.
+;;; Statistics are NIL if the sample is too small: the mean of nothing, the variance of one number.
 
 (declaim (ftype (function (doubles) double-float) sum))
 (defun sum (sample)
@@ -60,8 +60,8 @@ WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
         finally (return sum)))
 
 (defun mean-of (sample)
-  "Return the mean of SAMPLE, which is not empty, mended by that of what is left without it: exact
-to the last digits, and for equal numbers that number."
+  "Return the mean of SAMPLE, which is not empty, corrected by the mean of the residuals: exact to
+the last digits, and for equal numbers that number."
   (declare (type doubles sample) #.*hot*)
   (let* ((size (double (length sample))) (rough (/ (sum sample) size)))
     (+ rough (/ (loop with rest of-type double-float = 0d0
@@ -81,11 +81,12 @@ Golub and LeVeque 1983, formula 1.7)."
              (incf rest deviation))
     (/ (max 0d0 (- squares (/ (* rest rest) size))) (- size 1))))
 
-;;; Squares and cubes of very small numbers are 0. Multiplied by a power of two these lose nothing.
+;;; Squares and cubes of very small numbers would be 0, so these are first multiplied by a power of
+;;; two, which loses nothing.
 
 (defun magnification (sample)
-  "Return the power of two to multiply the numbers of SAMPLE by before they are squared or cubed: 1
-unless all are very small."
+  "Return the power of two by which to multiply the numbers of SAMPLE before they are squared or
+cubed: 1 unless all are very small."
   (let ((largest (reduce #'max sample :key #'abs :initial-value 0d0)))
     (if (< 0d0 largest 1d-75)
         (scale-float 1d0 (min 1000 (- (nth-value 1 (decode-float largest)))))
@@ -96,12 +97,12 @@ unless all are very small."
   (if (= 1 factor) sample (map 'doubles (lambda (x) (* factor x)) sample)))
 
 (defun deviation-of (sample &optional (size 1))
-  "Return the standard deviation of the mean of SIZE numbers such as those of SAMPLE, of two or
-more."
+  "Return the standard deviation of the mean of SIZE numbers from the distribution of SAMPLE, which
+has two numbers or more."
   (let ((factor (magnification sample)))
     (/ (sqrt (/ (variance-of (magnified sample factor)) size)) factor)))
 
-;;; The system's SORT takes ten times as long, which a bootstrap of the median would feel.
+;;; SBCL's SORT takes ten times as long, which would slow a bootstrap of the median.
 
 (defun merge-runs (from to start middle end)
   (declare (type doubles from to) (type fixnum start middle end) #.*hot*)
@@ -127,7 +128,7 @@ more."
     (replace sample from)))
 
 (defun sorted-quantile (sample share)
-  "Return what a SHARE, from 0 to 1, of the sorted SAMPLE is below (Hyndman and Fan 1996, type 7)."
+  "Return the quantile SHARE, from 0 to 1, of the sorted SAMPLE (Hyndman and Fan 1996, type 7)."
   (declare (type doubles sample) (type double-float share))
   (multiple-value-bind (index part) (floor (* share (1- (length sample))))
     (let ((below (aref sample index)))

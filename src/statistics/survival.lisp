@@ -1,12 +1,11 @@
-;;;; survival.lisp -- how long something takes, of which some was cut short.
+;;;; survival.lisp -- survival curves and the log-rank test, for times some of which are censored.
 
 (in-package :ars-magna.statistics)
 
-;;; What ends by being done and what is cut short in the same moment is taken to have been cut short
-;;; after that.
+;;; If one time is an event and an equal time is censored, the censoring counts as later.
 
 (defun check-survival (operator times-name times events-name events)
-  "Signal WRONG-ARGUMENT unless TIMES and EVENTS, so called, go together."
+  "Signal WRONG-ARGUMENT unless TIMES and EVENTS, arguments with these names, fit together."
   (unless (elements-p times #'amount-p)
     (reject-argument operator times-name times "a list or vector of numbers from 0 to 1e15"))
   (unless (elements-p events (lambda (event) (member event '(t nil 1 0))))
@@ -15,18 +14,18 @@
   (check-same-length operator events-name events times))
 
 (defun dated (times events &optional mark)
-  "Return a vector of lists (time done-p mark), in order of TIMES."
+  "Return a vector of lists (time done-p mark), sorted by TIMES."
   (sort (map 'vector (lambda (time event) (list time (and (member event '(t 1)) t) mark))
              times events)
         #'< :key #'first))
 
 (defun same-time-end (dated start)
-  "Return the index of the first in DATED, from START, that is later."
+  "Return the index of the first element of DATED that is later than the one at START."
   (or (position (first (aref dated start)) dated :key #'first :test #'/= :start start)
       (length dated)))
 
 (defun map-moments (function dated)
-  "Call FUNCTION with the start and the end in DATED of each moment in which something was done."
+  "Call FUNCTION with start and end, in DATED, of the elements of each time with an event."
   (loop with start = 0
         while (< start (length dated))
         do (let ((end (same-time-end dated start)))
@@ -40,8 +39,8 @@
 ;;; The curve.
 
 (defun band (survival variance z highest)
-  "Return the bounds for SURVIVAL, of which Greenwood's sum is VARIANCE; of none left, HIGHEST is
-the high one, as that was so before."
+  "Return the bounds for SURVIVAL, for which Greenwood's sum is VARIANCE. If SURVIVAL is 0, the high
+one is HIGHEST, that of the step before."
   (if (zerop survival)
       (values 0d0 highest)
       (let ((factor (exponential (/ (* z (sqrt variance)) (- (logarithm survival))))))
@@ -51,9 +50,9 @@ the high one, as that was so before."
 (defun survival-curve (times events &key (confidence .95d0))
   "Return the share that takes longer than each time, by the product-limit estimate (Kaplan and
 Meier 1958): a list of steps (time at-risk done survival low high), one for each time at which
-something was done. TIMES and EVENTS are lists or vectors. An event is T (or 1) if it was done at
-that time, NIL (or 0) if it was cut short then, as at a limit of ticks, and might have taken longer.
-No steps if nothing was done.
+something was done. TIMES and EVENTS are lists or vectors. An event is T (or 1) if something was
+done at that time, NIL (or 0) if it was cut short (censored) then, as at a limit of ticks. The list
+is empty if nothing was done.
 
 LOW and HIGH bound the survival at that time, by Greenwood's formula on the scale of log(-log)
 (Kalbfleisch and Prentice 2002, chapter 1). That gives no bounds once nothing is left: LOW is 0
@@ -92,7 +91,7 @@ it, low and high: the first times at which survival, its low and its high bound 
 ;;; Two groups.
 
 (defun expected-and-variance (at-risk first-at-risk done)
-  "Return how many of DONE are expected of the first group, and the variance of that."
+  "Return the expected number of the DONE events in the first group, and its variance."
   (let ((share (/ first-at-risk at-risk)))
     (values (* done share)
             (if (= at-risk 1)
@@ -100,8 +99,8 @@ it, low and high: the first times at which survival, its low and its high bound 
                 (/ (* done share (- 1 share) (- at-risk done)) (1- at-risk))))))
 
 (defun log-rank-sums (dated)
-  "Return how many of the first group in DATED, those marked, are done, are expected to be, and the
-variance of that."
+  "Return the observed and the expected number of events of the first group in DATED, which is
+marked, and the variance."
   (let ((observed 0) (expected 0d0) (variance 0d0) (gone 0)
         (marked (count t dated :key #'third)) (seen 0))
     (flet ((note (start end)

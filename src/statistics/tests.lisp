@@ -1,15 +1,15 @@
-;;;; tests.lisp -- whether what was seen is more than chance.
+;;;; tests.lisp -- tests of significance, one, many or sequential.
 
 (in-package :ars-magna.statistics)
 
 (addition mcnemar-test)
 (defun mcnemar-test (first second)
-  "Return the p value of McNemar's exact test that two ways are equally good: of the same trials,
-FIRST succeeded one way only, SECOND the other way only. Trials with the same outcome both ways do
-not count. Its size is never above the level (McNemar 1947; Fagerland, Lydersen and Laake 2013,
-\"The McNemar test for binary matched-pairs data\"). The second value is the mid-p of the same
-paper, less conservative and usually nearer to the truth. Both are 1 without trials. Signals
-WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
+  "Return the p value of McNemar's exact test that two methods are equally good: of the same trials,
+FIRST succeeded only with one, SECOND only with the other. Trials with equal outcomes do not count.
+Its size is never above the level (McNemar 1947; Fagerland, Lydersen and Laake 2013, \"The McNemar
+test for binary matched-pairs data\"). The second value is the mid-p of the same paper, less
+conservative and usually nearer to the truth. Both are 1 without trials. Signals WRONG-ARGUMENT
+unless FIRST and SECOND are integers from 0 to 1e9."
   (check-count mcnemar-test first)
   (check-count mcnemar-test second)
   (let* ((trials (+ first second)) (fewer (min first second))
@@ -21,16 +21,16 @@ WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
 
 ;;;; Rare sums of signs
 
-;;; Draws of fair signs never say less than 1 / (draws + 1), which is too much where a test is one
-;;; of hundreds. So signs are drawn that are tilted towards the sum that was seen: a number A is
-;;; positive with the odds e^(2 A tilt), such that this sum is the mean. A draw then counts by its
-;;; weight, how much less likely it is with fair signs: e^(log cosh (A tilt) summed - tilt * sum).
-;;; In the tail that is never more than Chernoff's bound, so the share is known to a few per cent,
-;;; however small. What was seen counts as one of the draws (Harrison 2012, "Conservative
-;;; hypothesis tests and confidence intervals using importance sampling").
+;;; With draws of fair signs p is never below 1 / (draws + 1), which is too large for one of
+;;; hundreds of tests. So this draws signs tilted towards the observed sum: a number A is positive
+;;; with the odds e^(2 A tilt), such that this sum is the mean. The weight of a draw is how much
+;;; less likely it is with fair signs: e^(log cosh (A tilt) summed - tilt * sum). In the tail that
+;;; is never more than Chernoff's bound, so the share is known to a few per cent, however small. The
+;;; observed sum counts as one of the draws (Harrison 2012, "Conservative hypothesis tests and
+;;; confidence intervals using importance sampling").
 
 (defun negative-share (x)
-  "Return how likely a number with the odds e^(2X) of being positive is negative; X is not below 0."
+  "Return the probability of a negative sign if a positive one has the odds e^(2X), with X >= 0."
   (declare (type double-float x))
   (let ((odds (exponential (* -2 (min x 300d0)))))
     (/ odds (+ 1 odds))))
@@ -41,7 +41,7 @@ WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
         sum (* size (- 1 (* 2 (negative-share (* size tilt))))) of-type double-float))
 
 (defun tilt-for (sizes sum)
-  "Return the tilt with which the sum of SIZES, the largest of which is 1, is SUM on average."
+  "Return the tilt for which the mean sum of SIZES, the largest of which is 1, is SUM."
   (declare (type doubles sizes) (type double-float sum))
   (let ((low 0d0) (high (/ 20 (max 1d-4 (reduce #'min sizes)))))
     (loop repeat 40
@@ -62,8 +62,8 @@ WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
         finally (return sum)))
 
 (defun tail-share (sizes sum grain resamples dice)
-  "Return how likely SIZES, at most 1, with signs thrown by a coin, sum up to SUM or more either
-way, by RESAMPLES tilted draws."
+  "Return the probability that SIZES, at most 1, with random signs sum up to at least SUM or at most
+-SUM, by RESAMPLES tilted draws."
   (let* ((tilt (tilt-for sizes sum))
          (shares (map 'doubles (lambda (size) (negative-share (* size tilt))) sizes))
          (logs (loop for size across sizes sum (log-of-cosh (* size tilt)))))
@@ -76,29 +76,29 @@ way, by RESAMPLES tilted draws."
          (1+ resamples)))))
 
 (defun rare-share (sizes sum grain resamples dice)
-  "Return how likely numbers of SIZES, with signs thrown by a coin, sum up to SUM or more either
-way, if that is seldom."
+  "Return the probability that SIZES with random signs sum up to at least SUM or at most -SUM, if
+that is small."
   (let ((largest (reduce #'max sizes)))
     (min 1d0 (tail-share (map 'doubles (lambda (size) (/ size largest)) sizes)
                          (/ sum largest) (/ grain largest) resamples dice))))
 
 ;;;; The permutation test
 
-;;; If both ways are alike, each difference might as well have had the other sign. The test counts
-;;; for how many choices of all signs the sum is as far from 0 as it was. The sums are kept sorted,
-;;; with their probabilities; each difference doubles them, but for those that fall together, which
-;;; whole numbers mostly do. If they get too many, signs are drawn instead.
+;;; If both methods are equal, each difference might as well have the other sign. The test counts
+;;; for how many choices of signs the sum is at least as far from 0 as the observed one. The sums
+;;; are kept sorted, with their probabilities; each difference doubles them, except for equal sums,
+;;; which are common with whole numbers. If there are too many, signs are drawn instead.
 
 (defparameter *most-sums* (expt 2 18)
-  "How many sums times differences that are left there may be.")
+  "The most sums, times the number of differences left.")
 
 (deftype sums ()
   "Sums, sorted, and their probabilities."
   '(cons doubles doubles))
 
 (defun merge-sums (sums difference grain)
-  "Return what becomes of SUMS when DIFFERENCE, not below 0, is added or taken away; those are one
-that are closer than GRAIN."
+  "Return the SUMS after DIFFERENCE, 0 or more, is added or subtracted. Sums closer than GRAIN are
+joined."
   (declare (type sums sums) (type double-float difference grain) #.*hot*)
   (destructuring-bind (old . odds) sums
     (declare (type doubles old odds))
@@ -124,8 +124,8 @@ that are closer than GRAIN."
       (cons (subseq new 0 count) (subseq new-odds 0 count)))))
 
 (defun exact-share (sizes sum grain)
-  "Return the probability that numbers of SIZES, with signs thrown by a coin, sum up to SUM or more
-either way; NIL if that is too much work. What is within GRAIN is equal."
+  "Return the probability that SIZES with random signs sum up to at least SUM or at most -SUM; NIL
+if that is too much work. Sums within GRAIN are equal."
   (loop with sums = (cons (coerce '(0d0) 'doubles) (coerce '(1d0) 'doubles))
         for size across sizes
         for left downfrom (length sizes)
@@ -137,18 +137,18 @@ either way; NIL if that is too much work. What is within GRAIN is equal."
                               when (>= (abs found) (- sum grain)) sum odds))))
 
 (defun drawn-share (sizes sum grain resamples dice)
-  "Return the share of RESAMPLES draws whose sum is SUM or more either way; what was seen counts as
-one of them, so that it is never 0 (Phipson and Smyth 2010)."
+  "Return the share of RESAMPLES draws whose sum is at least SUM or at most -SUM. The observed sum
+counts as a draw, so the share is never 0 (Phipson and Smyth 2010)."
   (let ((shares (map 'doubles (constantly .5d0) sizes)))
     (/ (double (1+ (loop repeat resamples
                          count (>= (abs (tilted-sum sizes shares dice)) (- sum grain)))))
        (1+ resamples))))
 
 (defconstant +small-share+ .05d0
-  "What is no more likely than this is drawn anew with tilted signs, if that is wanted.")
+  "The largest p that is drawn again with tilted signs, if RARE-TOO is true.")
 
 (defun share-by-draws (sizes sum grain resamples seed rare-too)
-  "Return what DRAWN-SHARE says; or RARE-SHARE if that is little and RARE-TOO is true."
+  "Return the DRAWN-SHARE; or the RARE-SHARE if that is small and RARE-TOO is true."
   (let ((share (drawn-share sizes sum grain resamples (make-dice seed "permutation"))))
     (if (and rare-too (<= share +small-share+))
         (rare-share sizes sum grain resamples (make-dice seed "rare signs"))
@@ -157,8 +157,8 @@ one of them, so that it is never 0 (Phipson and Smyth 2010)."
 (addition permutation-test)
 (defun permutation-test (differences &key (resamples 10000) (seed 0) rare-too)
   "Return the p value of the paired permutation test (Fisher 1935, The Design of Experiments, 21):
-the probability that the mean of DIFFERENCES, a list or vector of numbers, is as far from 0 as it
-is, if each could as well have had the other sign.
+the probability that the mean of DIFFERENCES, a list or vector of numbers, is at least as far from 0
+as it is, if each is as likely to have the other sign.
 
 The second value is true if p is exact, by going through all signs (Pagano and Tritchler 1983). It
 is exact for up to 19 numbers, and for more if many are equal or whole. Else p comes from RESAMPLES
@@ -184,8 +184,8 @@ RESAMPLES from 100 to 1e7."
 (addition holm-adjusted)
 (defun holm-adjusted (p-values)
   "Return a list of P-VALUES, a list or vector, corrected for their number (Holm 1979; Wright 1992
-for the adjustment): if you call all results of at most .05 real, any of them is wrong with a
-probability of at most .05. The order is kept, and equal p values have equal results. Signals
+for the adjustment): if you call all results of at most .05 significant, the probability that any of
+them is wrong is at most .05. The order is kept, and equal p values have equal results. Signals
 WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
   (check-argument holm-adjusted p-values (elements-p p-values #'probability-p)
                   "a list or vector of numbers from 0 to 1")

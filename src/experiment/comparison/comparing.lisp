@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-;;; What is compared.
+;;; Measures.
 
 (defun names-in-all (results)
   (let ((measures (remove-if-not (lambda (name)
@@ -14,8 +14,8 @@
     (remove-duplicates (list* "success" "ticks" measures) :test #'string= :from-end t)))
 
 (defun compared-names (operator results measure)
-  "Return the names of what is to be compared in all RESULTS: what MEASURE, the argument of
-OPERATOR, says, or all that they have."
+  "Return the names of the measures to compare in all of RESULTS: MEASURE, an argument of OPERATOR,
+or if that is NIL all that they have in common."
   (let ((known (names-in-all results)))
     (flet ((known-name (name)
              (unless (typep name '(or symbol string))
@@ -26,12 +26,12 @@ OPERATOR, says, or all that they have."
           known
           (mapcar #'known-name (ensure-list measure))))))
 
-;;; The whole. PAIRS are lists of two samples of one table; if PLACE is not NIL, the two differ in
-;;; the factor there, all else equal.
+;;; Comparisons. PAIRS are lists of two samples of one table; if PLACE is not NIL, the two differ in
+;;; that factor, all else equal.
 
 (defun contrast-of-conditions (results first second place)
-  "Return an empty contrast of the samples FIRST and SECOND of RESULTS: what they have in common is
-where, and the rest their names."
+  "Return an empty contrast of the samples FIRST and SECOND of RESULTS. Equal factors are its WHERE;
+the others make the names."
   (loop for other in (if place (cons place (factors-else results place)) (naming-factors results))
         for factor = (nth other (results-factors results))
         for a = (text-at other first)
@@ -45,7 +45,7 @@ where, and the rest their names."
                                        (level-names factors seconds)))))
 
 (defun pairs-by-levels (results pairs place)
-  "Return lists (level base pair...) of PAIRS that compare the same two levels at PLACE."
+  "Return lists (level base pair...) of PAIRS that compare the same two levels of the factor PLACE."
   (loop with factor = (nth place (results-factors results))
         for group in (grouped pairs (lambda (pair)
                                       (mapcar (lambda (sample) (text-at place sample)) pair)))
@@ -54,7 +54,7 @@ where, and the rest their names."
                         group)))
 
 (defun overall-contrasts (results pairs place names)
-  "Return a contrast for each two levels that several PAIRS, with seeds in common, compare."
+  "Return a contrast for each two levels that several PAIRS with common seeds compare."
   (loop for (level base . group) in (pairs-by-levels
                                      results
                                      (remove-if-not (lambda (pair) (apply #'common-trials pair))
@@ -64,8 +64,8 @@ where, and the rest their names."
           collect (overall-contrast level base group names results)))
 
 (defun sides-words (contrasts kind)
-  "Return what CONTRASTS compare with what, in words, as far as that is the same in all; else NIL.
-KIND says what those are that are several."
+  "Return a text on what CONTRASTS compare with what, if one side is the same in all; else NIL. KIND
+is the noun for a side that differs."
   (flet ((names (reader) (remove-duplicates (mapcar reader contrasts) :test #'string= :from-end t)))
     (let ((firsts (names #'contrast-first)) (seconds (names #'contrast-second)))
       (cond ((and (null (rest firsts)) (null (rest seconds)))
@@ -74,20 +74,20 @@ KIND says what those are that are several."
             ((null (rest firsts)) (format nil "~A against each other ~A" (first firsts) kind))))))
 
 (defun end-comparison (comparison stream control &rest arguments)
-  "Correct the tests of COMPARISON, print it to STREAM, if any, and return it. Signals
-MISUSE, with the text of CONTROL and ARGUMENTS, if nothing in it could be compared."
+  "Correct the tests of COMPARISON, print it to STREAM, if any, and return it. Signals MISUSE with
+the text of CONTROL and ARGUMENTS if no contrast has trials."
   (when (every (lambda (contrast) (zerop (contrast-trials contrast)))
                (comparison-contrasts comparison))
     (reject-use "~?" control arguments))
-  ;; The comparison over all is one question, that of each condition another. So comparing in twelve
-  ;; conditions as well does not weaken the result over all.
+  ;; The comparison over all and those of single conditions are separate questions. So comparing
+  ;; twelve conditions as well does not weaken the result over all.
   (dolist (contrasts (list (comparison-contrasts comparison) (comparison-overall comparison)))
     (adjust-for-all (loop for contrast in contrasts append (contrast-differences contrast))))
   (when stream (print-comparison comparison stream))
   comparison)
 
 (defun comparison-of-conditions (results pairs place names stream)
-  "Return the comparison of PAIRS, of RESULTS, in what NAMES say, and print it to STREAM, if any."
+  "Return the comparison of PAIRS, of RESULTS, in the measures NAMES; print it to STREAM, if any."
   (let ((contrasts (loop for (first second) in pairs
                          for contrast = (contrast-of-conditions results first second place)
                          collect (contrast-samples contrast results first results second names))))
@@ -139,20 +139,20 @@ COMPARE-CONDITIONS. p is corrected for all tests together, separately for those 
          (base (level-called (levels results place) against))
          (pairs (pairs-differing-at results place nil base)))
     (unless pairs
-      (reject-use "No condition differs from one with ~A=~A in that alone. (Designs, such as ~
-                   :sobol, let all that they sample vary together.)"
+      (reject-use "No condition differs from one with ~A=~A in that alone. (In designs, such as ~
+                   :sobol, all factors vary together.)"
                   (nth place (results-factors results)) base))
     (comparison-of-conditions results pairs place names stream)))
 
 ;;;; What has changed between two versions
 
-;;; The texts beside two tables list the parts of their conditions' fingerprints. If the experiment
-;;; itself has changed, success may mean something else in each table. PAIRS are lists of a sample
-;;; of the newer table and one of the older.
+;;; The files experiment.txt of two tables list the parts of their conditions' fingerprints. If the
+;;; experiment itself has changed, success may mean something else in each table. PAIRS are lists of
+;;; a sample of the newer table and one of the older.
 
 (defun changes-of-pair (pair after before)
-  "Return which parts differ between the conditions of PAIR, by the texts in the directories AFTER
-and BEFORE; :UNKNOWN if these do not say."
+  "Return names of the parts that differ between the conditions of PAIR, by experiment.txt in the
+directories AFTER and BEFORE; :UNKNOWN if they are not there."
   (let ((now (parts-described (sample-condition (first pair)) after))
         (then (parts-described (sample-condition (second pair)) before)))
     (if (and now then) (changed-parts then now) :unknown)))
@@ -169,8 +169,8 @@ and BEFORE; :UNKNOWN if these do not say."
 (defun experiment-changes (after before)
   (let ((now (form-described after)) (then (form-described before)))
     (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it ~
-                       does, measures or counts as success may be another thing in each, so what ~
-                       differs below need not be due to the code.")
+                       does, measures or counts as success may differ, so differences below need ~
+                       not be due to the code.")
           (append (lines-only-in then now "before") (lines-only-in now then "now")))))
 
 (defun parts-words (parts conditions)
@@ -182,19 +182,18 @@ and BEFORE; :UNKNOWN if these do not say."
                          (list "the parameters, robots or values of conditions"))))))
 
 (defun unexplained-difference-lines (pairs)
-  "Return lines that warn if trials of PAIRS, with equal fingerprints, have come out differently."
+  "Return a list with a warning if trials of PAIRS, with equal fingerprints, have different rows."
   (let ((count (loop for (sample other) in pairs
                      sum (loop for (i . j) in (common-trials sample other)
                                count (not (same-row-p sample i other j))))))
     (unless (zerop count)
       (list (format nil "WARNING: and yet the rows of ~D trial~:P differ. Something that is in no ~
-                         fingerprint decides them, such as what trials leave to each other, a ~
-                         clock or a file, or rows have been changed. Neither table can be relied ~
-                         on." count)))))
+                         fingerprint affects them, such as data that trials share, a clock or a ~
+                         file, or rows have been changed. Do not rely on either table." count)))))
 
 (defun changes-between (pairs after before)
-  "Return lines on what affects the trials of PAIRS in one table but not in the other, by the texts
-in the directories AFTER and BEFORE, which may be NIL."
+  "Return sentences on what affects the trials of PAIRS in one table but not in the other, by
+experiment.txt in the directories AFTER and BEFORE, which may be NIL."
   (let* ((changed (remove-if (lambda (pair)
                                (apply #'string= (mapcar #'sample-fingerprint pair)))
                              pairs))
@@ -217,7 +216,7 @@ in the directories AFTER and BEFORE, which may be NIL."
 ;;;; Comparing versions
 
 (defun results-given (operator name value)
-  "Return the results that VALUE, the argument NAME of OPERATOR, means, and what they are called."
+  "Return the results for VALUE, the argument NAME of OPERATOR, and their name."
   (cond ((results-p value)
          (values value (if (results-directory value)
                            (native-name (results-directory value))
@@ -236,8 +235,8 @@ in the directories AFTER and BEFORE, which may be NIL."
         (values (last-part first) (last-part second)))))
 
 (defun condition-pairs (first second)
-  "Return lists of samples of the results FIRST and SECOND that are of one condition; and the names
-of conditions that one of them lacks."
+  "Return lists of two samples of equal conditions, of the results FIRST and SECOND; and the names
+of conditions that only one of them has."
   (flet ((counterpart (sample results)
            (find (sample-condition sample) (results-samples results)
                  :key #'sample-condition :test #'string=)))

@@ -1,38 +1,38 @@
-;;;; contrasts.lisp -- two conditions side by side: their trials of equal seeds.
+;;;; contrasts.lisp -- comparing two conditions by their trials of equal seeds.
 
 (in-package :ars-magna.experiment)
 
 (addition contrast-p)
 
 (define-record (contrast (:constructor make-contrast (where first second)))
-  "Two conditions, or versions, that have been compared."
+  "The comparison of two conditions or versions."
   (where nil (or null string) "what both have in common, a string, or NIL" :addition)
-  (first "" string "what the first is called, a string" :addition)
-  (second "" string "what the second is called, a string" :addition)
+  (first "" string "the name of the first, a string" :addition)
+  (second "" string "the name of the second, a string" :addition)
   (trials 0 integer "how many pairs of trials with equal seeds there are" :writable :addition)
   (unpaired-first 0 integer "how many trials of the first have no counterpart" :writable)
   (unpaired-second 0 integer "how many trials of the second have no counterpart" :writable)
-  (errors-first 0 integer "how many trials of the first that have one broke off" :writable)
-  (errors-second 0 integer "how many trials of the second that have one broke off" :writable)
-  (same 0 integer "in how many pairs both trials are the same run to the last bit, with equal
-rows" :writable :addition)
-  (differences '() list "a list of the differences in success, ticks and what was measured; none if
-all pairs are the same runs" :writable :addition))
+  (errors-first 0 integer "how many paired trials of the first ended with an error" :writable)
+  (errors-second 0 integer "how many paired trials of the second ended with an error" :writable)
+  (same 0 integer "the number of pairs in which both trials are the same run to the last bit, with
+equal rows" :writable :addition)
+  (differences '() list "a list of the differences in success, ticks and measures; none if all pairs
+are the same runs" :writable :addition))
 
 (addition comparison-p)
 (define-record (comparison (:constructor make-comparison
                                (experiment sides kind contrasts &key overall changes notes)))
-  "Conditions of an experiment side by side, or two versions of it, as COMPARE-CONDITIONS,
-COMPARE-LEVELS and COMPARE-RESULTS return them."
+  "A comparison of conditions of an experiment, or of two versions of it, as COMPARE-CONDITIONS,
+COMPARE-LEVELS and COMPARE-RESULTS return it."
   (experiment "" string)
-  (sides nil (or null string) "what they are, in words, or NIL")
+  (sides nil (or null string) "a text on what is compared with what, or NIL")
   (kind :conditions keyword ":CONDITIONS or :VERSIONS")
   (contrasts '() list
              "a list of the pairs of conditions, or versions, that were compared" :addition)
   (overall '() list "a list of the contrasts over several conditions, one for each two values, or
 for the two versions; each seed counts once in them" :addition)
-  (changes '() list "a list of sentences on what, by the texts beside the tables, decides the trials
-of one version but not of the other; NIL of conditions" :addition)
+  (changes '() list "a list of sentences on what affects the trials of one version but not of the
+other, by the texts beside the tables; NIL of conditions" :addition)
   (notes '() list))
 
 (defmethod print-object ((contrast contrast) stream)
@@ -47,8 +47,7 @@ of one version but not of the other; NIL of conditions" :addition)
 ;;; Pairs.
 
 (defun common-trials (first second)
-  "Return where the samples FIRST and SECOND have trials with equal seeds, a list of conses of two
-indexes."
+  "Return a list of conses: the indices of trials with equal seeds in the samples FIRST and SECOND."
   (let ((seeds (sample-seeds first)) (others (sample-seeds second)) (i 0) (j 0) (pairs '()))
     (loop while (and (< i (length seeds)) (< j (length others)))
           do (let ((seed (aref seeds i)) (other (aref others j)))
@@ -58,7 +57,7 @@ indexes."
     (nreverse pairs)))
 
 (defun pairs-for (name first second &optional (pairs (common-trials first second)))
-  "Return those of PAIRS of trials of FIRST and SECOND in which NAME can be compared."
+  "Return the PAIRS of trials of FIRST and SECOND in which NAME can be compared."
   (if (string-equal name "ticks")
       (remove-if-not (lambda (pair)
                        (and (success-p (aref (sample-outcomes first) (car pair)))
@@ -72,7 +71,7 @@ indexes."
       (sample-measure results sample name)))
 
 (defun filter-both (test firsts seconds)
-  "Return lists of the values of the lists FIRSTS and SECONDS, pair by pair, that both pass TEST."
+  "Return lists of the elements of the lists FIRSTS and SECONDS at places where both pass TEST."
   (loop for a in firsts
         for b in seconds
         when (and (funcall test a) (funcall test b))
@@ -80,10 +79,10 @@ indexes."
         finally (return (values values others))))
 
 ;;; A measure is compared as a rate if it is always true or false, and as a mean if it has numbers.
-;;; Words are not compared.
+;;; Texts are not compared.
 
 (defun difference-of-values (name firsts seconds)
-  "Return the difference in NAME between FIRSTS and SECONDS, lists of values; NIL of words."
+  "Return the difference in NAME between FIRSTS and SECONDS, lists of values; NIL of texts."
   (flet ((all (test) (and (every test firsts) (every test seconds))))
     (cond ((all (lambda (value) (typep value 'boolean))) (rate-difference name firsts seconds))
           ((or (some #'realp firsts) (some #'realp seconds))
@@ -92,7 +91,7 @@ indexes."
           (t nil))))
 
 (defun count-left-out (difference pairs)
-  "Enter into DIFFERENCE, unless it is NIL, how many of so many PAIRS it does not count. Return it."
+  "Set the number of PAIRS, an integer, that DIFFERENCE, or NIL, leaves out. Return DIFFERENCE."
   (when difference
     (setf (paired-left-out difference) (- pairs (paired-trials difference))))
   difference)
@@ -116,7 +115,7 @@ indexes."
 ;;; The whole.
 
 (defun same-row-p (first i second j)
-  "True if the trials at I of FIRST and at J of SECOND have the same row, but for the fingerprint."
+  "True if the trials at I of FIRST and at J of SECOND have equal rows, except for fingerprints."
   (flet ((same (reader)
            (equal (aref (funcall reader first) i) (aref (funcall reader second) j))))
     (and (same #'sample-digests) (same #'sample-outcomes) (same #'sample-reasons)
@@ -134,8 +133,8 @@ indexes."
        (= (contrast-same contrast) (contrast-trials contrast))))
 
 (defun contrast-samples (contrast results first other-results second names)
-  "Enter into CONTRAST how FIRST, of RESULTS, and SECOND, of OTHER-RESULTS, differ in what NAMES
-say. Return CONTRAST."
+  "Set CONTRAST to the comparison of the samples FIRST, of RESULTS, and SECOND, of OTHER-RESULTS, in
+the measures NAMES. Return CONTRAST."
   (let* ((pairs (common-trials first second)) (count (length pairs)))
     (setf (contrast-trials contrast) count
           (contrast-unpaired-first contrast) (- (length (sample-trials first)) count)
@@ -165,12 +164,12 @@ say. Return CONTRAST."
 ;;;; Over several conditions
 
 ;;; The trials of one seed under several conditions are not independent, so they count as one
-;;; observation: for each seed the means over all conditions are compared. Only pairs count in which
-;;; both were measured, so both means of a seed are of the same conditions. Only seeds count that
-;;; both have under all conditions. PAIRS are lists of two samples.
+;;; observation: for each seed the means over all conditions are compared. Pairs count only if both
+;;; have a value, so both means of a seed are over the same conditions. Seeds count only if both
+;;; have them under all conditions. PAIRS are lists of two samples.
 
 (defun complete-seeds (pairs)
-  "Return a table of the seeds of which both samples of all PAIRS have a trial."
+  "Return a table of the seeds that both samples of all PAIRS have."
   (let ((counts (make-hash-table)))
     (loop for (first second) in pairs
           do (loop for (i . nil) in (common-trials first second)
@@ -180,8 +179,8 @@ say. Return CONTRAST."
     counts))
 
 (defun values-by-seed (name results other-results pairs seeds)
-  "Return lists (seed a b) of what PAIRS, of samples of RESULTS and OTHER-RESULTS, have as NAME in
-trials of SEEDS."
+  "Return lists (seed a b) of the values of the measure NAME in trials of SEEDS. PAIRS are of
+samples of RESULTS and OTHER-RESULTS."
   (loop for (first second) in pairs
         for column = (column-of results first name)
         for other = (column-of other-results second name)
@@ -193,7 +192,8 @@ trials of SEEDS."
                        collect (list seed a b))))
 
 (defun means-by-seed (values)
-  "Return the means of A and of B for each seed in VALUES, lists (seed a b) of numbers."
+  "Return a list of the means of A, and one of those of B, for each seed in VALUES, lists (seed a b)
+of numbers."
   (let ((sums (make-hash-table)) (seeds '()))
     (loop for (seed a b) in values
           for entry = (or (gethash seed sums)
@@ -208,7 +208,7 @@ trials of SEEDS."
           finally (return (values firsts seconds)))))
 
 (defun overall-difference (name values)
-  "Return the difference in NAME by VALUES, lists (seed a b); NIL of words."
+  "Return the difference in NAME by VALUES, lists (seed a b); NIL of texts."
   (flet ((all (test) (loop for (nil a b) in values always (and (funcall test a) (funcall test b))))
          (difference (kind values)
            (multiple-value-bind (firsts seconds) (means-by-seed values)

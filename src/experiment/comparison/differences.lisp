@@ -1,20 +1,20 @@
-;;;; differences.lisp -- by how much two conditions differ in one thing, over trials of equal seeds.
+;;;; differences.lisp -- how much two conditions differ in one measure, over trials of equal seeds.
 
 (in-package :ars-magna.experiment)
 
-;;; Trials of one seed share their random numbers, so the difference between two conditions is taken
-;;; seed by seed: what is easy or hard for both cancels. Rates are compared by
-;;; Newcombe's interval and the exact McNemar test, means by Student's and a permutation test.
+;;; Trials of one seed share their random numbers, so conditions are compared seed by seed: what is
+;;; easy or hard for both cancels. Rates are compared by Newcombe's interval and the exact McNemar
+;;; test, means by Student's interval and a permutation test.
 
 (addition paired-difference-p)
 (define-record (paired-difference (:conc-name paired-)
                                   (:constructor make-difference
                                       (measure kind trials first second low high p
                                        &optional table rounding)))
-  "How two conditions differ in one thing."
+  "The difference between two conditions in one measure."
   (measure "" string
            "what is compared: success, ticks or the name of a measure, a string" :addition)
-  (kind :mean (member :rate :mean) "which sort of number it is, :RATE or :MEAN")
+  (kind :mean (member :rate :mean) "the kind of the numbers, :RATE or :MEAN")
   (trials 0 integer "how many pairs of trials are counted" :addition)
   (first nil t "the rate, from 0 to 1, or mean of the first; NIL of no trials" :addition)
   (second nil t "the rate, from 0 to 1, or mean of the second; NIL of no trials" :addition)
@@ -24,17 +24,17 @@
         "the upper end of the 95 % interval of the difference; NIL of too few trials" :addition)
   (p nil t
      "the probability of as large a difference, or larger, if there is none; or NIL" :addition)
-  (table '() list "in how many pairs a rate was so for both, only for the first, only for the
-second, and for neither, a list of four; NIL of a mean, or over several conditions" :addition)
+  (table '() list "the numbers of pairs in which both, only the first, only the second, and neither
+are true, a list of four; NIL of a mean, or over several conditions" :addition)
   (rounding nil (or null real) "the largest difference in any pair, if rounding explains all; 0 if
 all pairs are equal; or NIL")
-  (left-out 0 integer "how many pairs are not counted, as one of both has no number" :writable)
-  (tests 1 integer "as one of how many tests it counts" :writable)
+  (left-out 0 integer "how many pairs are not counted because a value is no number" :writable)
+  (tests 1 integer "the number of tests for which p is corrected" :writable)
   (adjusted-p nil t :writable :addition))
 
 (addition paired-estimate)
 (defun paired-estimate (difference)
-  "Return by how much the first rate or mean of DIFFERENCE is above the second, or NIL."
+  "Return the first rate or mean of DIFFERENCE less the second, or NIL."
   (and (paired-first difference)
        (number-less (paired-first difference) (paired-second difference))))
 
@@ -75,7 +75,7 @@ of booleans, are true."
 ;; The same floats added in another order differ in the last digits. Such a difference is reported
 ;; as rounding and not tested. Whole numbers have no rounding.
 (defconstant +grain+ (* 4 double-float-epsilon)
-  "What two floats differ in by this share of them at most, may be rounding.")
+  "The largest relative difference of two floats that may be rounding.")
 
 (defun equal-but-for-rounding-p (a b)
   (or (= a b)
@@ -84,8 +84,7 @@ of booleans, are true."
                (* (rational +grain+) (max (abs (rational a)) (abs (rational b))))))))
 
 (defun rounding-of (firsts seconds)
-  "Return the largest difference between FIRSTS and SECONDS if rounding explains all, 0 if they are
-equal; or NIL."
+  "Return the largest difference between FIRSTS and SECONDS if all may be rounding; else NIL."
   (cond ((every #'= firsts seconds) 0)
         ((every #'equal-but-for-rounding-p firsts seconds)
          (reduce #'max (mapcar (lambda (a b) (abs (number-less a b))) firsts seconds)))))
@@ -96,13 +95,13 @@ equal; or NIL."
     (if (some #'floatp numbers) (nearest-float mean) mean)))
 
 (defun p-of-mean (numbers)
-  "Return the p value of the mean of the differences NUMBERS. Fewer draws are made for many numbers;
-the smallest possible p does not depend on the draws."
+  "Return the p value of the mean of NUMBERS, differences. Many numbers have fewer draws; the
+smallest possible p does not depend on the draws."
   (let ((draws (clamp (floor 200000000 (length numbers)) 1000 10000)))
     (values (permutation-test numbers :resamples draws :rare-too t))))
 
 (defun mean-difference (measure firsts seconds &optional (kind :mean))
-  "Return how large MEASURE is on average, by FIRSTS and SECONDS, lists of numbers."
+  "Return the difference in MEASURE between the means of FIRSTS and SECONDS, lists of numbers."
   (if (null firsts)
       (make-difference measure kind 0 nil nil nil nil nil)
       (let* ((differences (mapcar (lambda (a b) (- (rational a) (rational b))) firsts seconds))
@@ -115,14 +114,14 @@ the smallest possible p does not depend on the draws."
                            (if rounding 1d0 (p-of-mean numbers))
                            '() rounding)))))
 
-;;; Several.
+;;; Several differences.
 
 ;; A measure that is the same in all pairs cannot show a difference, so it does not count as a test.
 (defun tested-p (difference)
   (and (paired-p difference) (not (paired-rounding difference))))
 
 (defun adjust-for-all (differences)
-  "Set the adjusted p of each of DIFFERENCES, by Holm's correction."
+  "Set the adjusted p of each of DIFFERENCES by Holm's correction."
   (let* ((with-p (remove nil differences :key #'paired-p))
          (tested (remove-if-not #'tested-p with-p)))
     (dolist (difference with-p)
@@ -133,7 +132,7 @@ the smallest possible p does not depend on the draws."
           do (setf (paired-adjusted-p difference) adjusted))))
 
 (defun smallest-p (seeds)
-  "Return the least p of a test over so many SEEDS: all differences on one side."
+  "Return the smallest p of a test over SEEDS seeds: all differences on one side."
   (expt 2 (- 1 (max 1 seeds))))
 
 (defun significant-p (difference)

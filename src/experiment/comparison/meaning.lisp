@@ -1,55 +1,55 @@
-;;;; meaning.lisp -- which conditions a word means, and which are compared with which.
+;;;; meaning.lisp -- designators of conditions, and which conditions are compared.
 
 (in-package :ars-magna.experiment)
 
-;;; What varies is a factor, a value of it a level. Factors go by their places in SAMPLE-TEXTS.
-;;; Named conditions are the levels of a first factor, CASE, which decides what the others are.
+;;; A value of a factor is a level. Factors are given by their places in SAMPLE-TEXTS. Named
+;;; conditions are the levels of the first factor, CASE, which determines those of their factors.
 
 (defun text-at (place sample) (nth place (sample-texts sample)))
 
 (defun levels (results place)
-  "Return the texts of the values that vary at PLACE in RESULTS, in order."
+  "Return the levels of the factor PLACE in RESULTS, texts, in order."
   (remove-duplicates (mapcar (lambda (sample) (text-at place sample)) (results-samples results))
                      :test #'string= :from-end t))
 
 (defun case-decides-p (place samples)
-  "True if the first factor, named cases, decides what the factor PLACE is in SAMPLES."
+  "True if the first factor, named cases, determines the factor PLACE in SAMPLES."
   (loop for sample in samples
         always (loop for other in samples
                      always (or (string/= (text-at 0 sample) (text-at 0 other))
                                 (string= (text-at place sample) (text-at place other))))))
 
 (defun naming-factors (results)
-  "Return the factors that tell conditions of RESULTS apart, by place: all but what a case decides."
+  "Return the places of factors in names of conditions of RESULTS: those that no case determines."
   (loop with case-p = (equal "case" (first (results-factors results)))
         for place from 0 below (length (results-factors results))
         unless (and case-p (plusp place) (case-decides-p place (results-samples results)))
           collect place))
 
 (defun free-factors (results)
-  "Return the factors that make the conditions of RESULTS, by place."
+  "Return the places of those NAMING-FACTORS of RESULTS that have several levels."
   (remove-if-not (lambda (place) (rest (levels results place))) (naming-factors results)))
 
 (defun factor-place (results factor)
-  "Return which of what varies in RESULTS is called FACTOR, from 0. Signals UNKNOWN-NAME."
+  "Return the place of the factor of RESULTS with the name FACTOR. Signals UNKNOWN-NAME."
   (or (and (typep factor '(or symbol string))
            (position (string factor) (results-factors results) :test #'string-equal))
       (reject-name "column of what varies" (princ-to-string factor) (results-factors results))))
 
 (defun level-called (levels value)
-  "Return which of LEVELS is VALUE, the first of them if that is NIL. Signals UNKNOWN-NAME."
+  "Return the one of LEVELS that is VALUE, or the first if VALUE is NIL. Signals UNKNOWN-NAME."
   (if (null value)
       (first levels)
       (let ((text (if (stringp value) value (value-text value))))
         (or (find text levels :test #'string-equal)
             (reject-name "value" text levels)))))
 
-;;; What levels are called. What two conditions have in common need not be said of each.
+;;; Names of levels.
 
 (defun full-level-name (factor text) (format nil "~A=~A" factor text))
 
 (defun level-name (factor text)
-  "Return what the value TEXT of FACTOR is called: a word stands for itself."
+  "Return the name of the level TEXT of FACTOR: the text itself if it is a word."
   (if (or (number-in text) (member text '("TRUE" "FALSE" "") :test #'string=))
       (full-level-name factor text)
       text))
@@ -60,7 +60,7 @@
 ;;; Pairs.
 
 (defun factors-else (results place)
-  "Return the factors that are to be equal where the factor PLACE differs."
+  "Return the places of the factors that are equal in conditions that differ in the factor PLACE."
   (let ((naming (naming-factors results)))
     (remove place (if (member place naming)
                       naming
@@ -68,8 +68,8 @@
                             collect other)))))
 
 (defun pairs-differing-at (results place level base)
-  "Return lists of two samples of RESULTS that differ at PLACE only, the second being of BASE, and
-the first of LEVEL; of any other if that is NIL."
+  "Return lists of two samples of RESULTS that differ only in the factor PLACE. The second has the
+level BASE, the first LEVEL, or any other if that is NIL."
   (let ((else (factors-else results place)))
     (flet ((counterpart (sample)
              (find-if (lambda (other)
@@ -85,10 +85,10 @@ the first of LEVEL; of any other if that is NIL."
                              (counterpart sample))
             when other collect (list sample other)))))
 
-;;;; What a word means
+;;;; Designators
 
-;;; A word means a condition, by its name, or a level, by its value or as FACTOR=VALUE; else a part
-;;; of these. A level that only one condition has means that one.
+;;; A designator is the name of a condition, or a level, as its value or as FACTOR=VALUE, or a part
+;;; of these. A level that only one condition has designates that condition.
 
 (defun designator-text (designator)
   (if (typep designator '(or symbol string)) (string designator) (value-text designator)))
@@ -100,7 +100,7 @@ the first of LEVEL; of any other if that is NIL."
   (full-level-name (nth (first level) (results-factors results)) (second level)))
 
 (defun numbered-sample (results designator)
-  "Return the sample of RESULTS that DESIGNATOR is, or is the number of, from 1; else NIL."
+  "Return DESIGNATOR if it is a sample of RESULTS; or the sample with that number, from 1; or NIL."
   (let ((samples (results-samples results)))
     (cond ((integerp designator)
            (and (<= 1 designator (length samples)) (nth (1- designator) samples)))
@@ -110,7 +110,8 @@ the first of LEVEL; of any other if that is NIL."
   (or (string-equal word level) (string-equal word (full-level-name factor level))))
 
 (defun designated-levels (results designator)
-  "Return lists (place level) of what DESIGNATOR, no condition's number, can mean in RESULTS."
+  "Return lists (place level) of the levels in RESULTS that DESIGNATOR can mean; NIL for a number or
+sample."
   (unless (numbered-sample results designator)
     (let ((word (designator-text designator)))
       (exact-or-partial
@@ -121,8 +122,8 @@ the first of LEVEL; of any other if that is NIL."
        (lambda (level) (search word (level-title results level) :test #'char-equal))))))
 
 (defun samples-called (results word)
-  "Return those samples of RESULTS whose condition is called WORD; or else has that for a value; or
-else has it in its name."
+  "Return the samples of RESULTS whose condition has the name WORD; else that have the level WORD;
+else whose name contains WORD."
   (let ((samples (results-samples results)))
     (or (remove word samples :key #'sample-condition :test-not #'string-equal)
         (exact-or-partial samples
@@ -134,7 +135,7 @@ else has it in its name."
 
 (defun designated-samples (results designator)
   "Return the samples of RESULTS that DESIGNATOR can mean: a sample, the number of a condition, from
-1, its name, or a part of that. Signals UNKNOWN-NAME."
+1, its name, or a part of that. Signals UNKNOWN-NAME if there is none."
   (let ((samples (results-samples results)) (one (numbered-sample results designator))
         (word (designator-text designator)))
     (cond (one (list one))
@@ -161,8 +162,8 @@ else has it in its name."
 ;;; Pairs.
 
 (defun candidate-level-pairs (results first second)
-  "Return lists (place level base) of what FIRST and SECOND can be of one factor; SECOND may be
-:ALL, and BASE is NIL then."
+  "Return lists (place level base): the factors of which FIRST and SECOND can be levels. BASE is NIL
+if SECOND is :ALL."
   (loop for (place level) in (designated-levels results first)
         append (if (eq :all second)
                    (list (list place level nil))
@@ -176,14 +177,14 @@ else has it in its name."
             (and base (level-title results (list place base))))))
 
 (defun level-pair-samples (results level-pair)
-  "Return pairs of samples that differ as LEVEL-PAIR says, all else equal."
+  "Return pairs of samples with the two levels of LEVEL-PAIR, all else equal."
   (destructuring-bind (place level base) level-pair
     (loop for other in (if base (list base) (remove level (levels results place) :test #'string=))
           append (pairs-differing-at results place level other))))
 
 (defun pairs-of-levels (results first second)
-  "Return the pairs of samples, all else equal, that have the levels FIRST and SECOND of one factor,
-and its place; NIL if these are none. Signals MISUSE if they could be those of several."
+  "Return pairs of samples, all else equal, that have the levels FIRST and SECOND of one factor, and
+the place of that; NIL if they are no levels. Signals MISUSE if several factors have them."
   (let ((level-pairs (candidate-level-pairs results first second)))
     (when (rest level-pairs)
       (reject-ambiguous (if (eq :all second)
@@ -217,12 +218,12 @@ values of one factor; else NIL."
               return (list place level base)))))
 
 (defun same-samples-p (results first second level-pair)
-  "True if the conditions numbered FIRST and SECOND are just those that LEVEL-PAIR compares."
+  "True if LEVEL-PAIR compares just the conditions number FIRST and SECOND."
   (equal (list (list (numbered-sample results first) (numbered-sample results second)))
          (level-pair-samples results level-pair)))
 
 (defun resolve-numbers (results first second)
-  "Return FIRST and SECOND, as words if they are values of one factor and no numbers of conditions.
+  "Return FIRST and SECOND; as texts if they are levels of one factor and not numbers of conditions.
 Signals MISUSE if they are both."
   (let ((level-pair (level-pair-of-integers results first second)))
     (cond ((or (null level-pair) (same-samples-p results first second level-pair))
@@ -234,8 +235,8 @@ Signals MISUSE if they are both."
           (t (values (designator-text first) (designator-text second))))))
 
 (defun designated-pairs (results first second)
-  "Return the pairs of samples of RESULTS that are meant by FIRST and SECOND, which may be :ALL, and
-the place of the factor if these are levels of one that several conditions have."
+  "Return the pairs of samples of RESULTS for the designators FIRST and SECOND, which may be :ALL;
+and the place of the factor, if they are levels that several conditions have."
   (multiple-value-bind (first second) (resolve-numbers results first second)
     (multiple-value-bind (pairs place)
         (and (or (rest (designated-samples results first))

@@ -1,16 +1,17 @@
-;;;; verdicts.lisp -- what a comparison tells, in words and as a table.
+;;;; verdicts.lisp -- comparisons as sentences and as tables.
 
 (in-package :ars-magna.experiment)
 
-;;; Of means all numbers have the same last decimal, which has a negative number above the point. It
-;;; shows the width of the interval, or if that is nothing the difference, with two digits.
+;;; All numbers of a difference of means are rounded to the same decimal; its number is negative
+;;; left of the point. It is the second digit of the width of the interval, or if that is 0 of the
+;;; difference.
 
 (defun last-decimal (size)
-  "Return which decimal is the second digit of SIZE."
+  "Return the number of the decimal that is the second digit of SIZE."
   (- 1 (power-of-ten (rational size))))
 
 (defun last-useful-decimal (difference)
-  "Return which decimal is the last that the numbers of DIFFERENCE, of means, are worth."
+  "Return the number of the decimal to which the numbers of DIFFERENCE, of means, are rounded."
   (let* ((low (paired-low difference)) (high (paired-high difference))
          (width (if low (number-less high low) 0))
          (reach (find-if-not #'zerop (list (paired-estimate difference)
@@ -22,17 +23,17 @@
           (t 3))))
 
 (defun power-text (number decimals)
-  "Return NUMBER with a power of ten, up to its last of DECIMALS."
+  "Return the text of NUMBER with a power of ten, rounded to DECIMALS decimals."
   (let* ((power (power-of-ten number))
          (text (decimal-text (/ number (expt 10 power)) (max 0 (+ decimals power)))))
     (format nil "~Ae~D" (without-zeros text) power)))
 
 (defun mean-text (value decimals)
-  "Return VALUE, a mean or a difference, in DECIMALS; with a power of ten if it is far from 1."
+  "Return the text of VALUE, rounded to DECIMALS decimals; with a power of ten if it is far from 1."
   (let* ((unit (expt 10 (- decimals)))
          (number (* unit (round (rational value) unit))))
     (cond ((and (zerop number) (< 9 decimals)) "0")
-          ;; Beside very large numbers a small one is not nothing.
+          ;; A small number beside very large ones is not written as 0.
           ((and (zerop number) (minusp decimals) (not (zerop value))) (figure-text value :digits 2))
           ((or (zerop number) (<= -6 (power-of-ten number) 14))
            (decimal-text number (max 0 decimals)))
@@ -51,11 +52,11 @@
 ;;; Parts of sentences.
 
 (defun p-figure (p)
-  "Return the probability P as people write it: .032, .15."
+  "Return the text of the probability P without a leading 0: .032, .15."
   (string-left-trim "0" (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
 
 (defun p-text (p)
-  "Return the probability P as people write it after a p: = .032, < .001."
+  "Return the text of the probability P to follow the letter p: = .032, < .001."
   (cond ((null p) "-")
         ((< p .001d0) "< .001")
         ((> p .995d0) "= 1")
@@ -65,7 +66,7 @@
   (string-left-trim "= " (p-text p)))
 
 (defun amount-words (difference value)
-  "Return VALUE, which is of DIFFERENCE, with its unit, if that is points of 100."
+  "Return the text of VALUE, a number of DIFFERENCE; of a rate with the unit points."
   (let ((text (funcall (number-writer difference) value)))
     (format nil "~A~:[~; point~:[s~;~]~]" text (eq :rate (paired-kind difference))
             (member text '("1" "-1") :test #'string=))))
@@ -77,7 +78,7 @@
             (funcall write (paired-low difference)) (funcall write (paired-high difference)))))
 
 (defun p-words (difference)
-  "Return how likely DIFFERENCE is by chance, as one of several tests, and if it were the only one."
+  "Return a text on p of DIFFERENCE: corrected for the number of tests, and alone."
   (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference))
         (tests (paired-tests difference)))
     (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
@@ -122,12 +123,12 @@
                      measure more first second)))))
 
 (defun seeds-needed (tests)
-  "Return over how many seeds the smallest p, as one of so many TESTS, is at most .05."
+  "Return the number of seeds over which the smallest p, corrected for TESTS tests, is at most .05."
   (loop for seeds from 1
         when (<= (* tests (smallest-p seeds)) 1/20) return seeds))
 
 (defun few-seeds-words (difference)
-  "Return in words that over the seeds of DIFFERENCE no p can be small enough; NIL if one can."
+  "Return a text if there are too few seeds for a significant p of DIFFERENCE; else NIL."
   (let ((seeds (paired-trials difference)) (tests (paired-tests difference)))
     (when (< seeds (seeds-needed tests))
       (format nil "; over ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
@@ -135,7 +136,7 @@
               seeds (p-figure (smallest-p seeds)) tests (seeds-needed tests) (< 1 tests)))))
 
 (defun not-significant-words (difference)
-  "Return why DIFFERENCE is none, although its interval leaves out 0."
+  "Return why DIFFERENCE is not significant although its interval leaves out 0."
   (let ((tests (paired-tests difference)))
     (if (< 1 tests)
         (format nil "the interval is of this difference alone: where ~D are tested, one that ~
@@ -143,7 +144,7 @@
         "the interval leaves out 0, but it is an approximation, and p is above .05: p decides")))
 
 (defun no-difference-words (difference)
-  "Return how large DIFFERENCE can be if there is one; or why it is none in spite of its interval."
+  "Return how large DIFFERENCE can be, or why it is not significant in spite of its interval."
   (let ((low (paired-low difference)) (high (paired-high difference)))
     (if (<= low 0 high)
         (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"
@@ -175,8 +176,8 @@
                              (figures-words difference) (no-difference-words difference)))))))
 
 (defun success-verdict (contrast)
-  "Return :BETTER or :WORSE if the first of CONTRAST succeeds more or less often, :SAME if both are
-the same runs, else NIL."
+  "Return :BETTER or :WORSE if the first of CONTRAST succeeds significantly more or less often,
+:SAME if both are the same runs, else NIL."
   (let ((difference (difference-called "success" contrast)))
     (cond ((same-runs-p contrast) :same)
           ((null difference) nil)
@@ -207,7 +208,7 @@ the same runs, else NIL."
 
 (addition comparison-verdicts)
 (defun comparison-verdicts (comparison)
-  "Return what COMPARISON tells, a list of sentences. For two versions they begin with how many
+  "Return the result of COMPARISON as a list of sentences. For two versions they begin with how many
 conditions got better or worse, and how many trials are identical. Then follow, over all if there
 are several conditions, and for each pair of conditions: which succeeds more often, takes more ticks
 and so on, with p, both rates or means, and the difference with its 95 % interval.
@@ -225,10 +226,10 @@ are corrected separately. Each interval is for one difference alone."
            (list (versions-verdict comparison)))
           (t (cons (versions-verdict comparison) all)))))
 
-;;; What had to be left out.
+;;; What was left out.
 
 (defun counts-words (contrast first second)
-  "Return FIRST and SECOND, how many trials of those of CONTRAST, in words; NIL if none are."
+  "Return a text on FIRST and SECOND, counts of trials of the two of CONTRAST; NIL if both are 0."
   (let ((words (loop for count in (list first second)
                      for name in (list (contrast-first contrast) (contrast-second contrast))
                      when (plusp count) collect (format nil "~D of ~A" count name))))
@@ -241,13 +242,13 @@ are corrected separately. Each interval is for one difference alone."
                               (contrast-errors-second contrast))))
     (append (and alone (list (format nil "Left out, as only one has their seeds: ~A." alone)))
             (and errors (not (same-runs-p contrast))
-                 (list (format nil "Broke off with an error, and counted as not succeeded: ~A."
+                 (list (format nil "Ended with an error, and counted as not succeeded: ~A."
                                errors))))))
 
 (defun comparison-remarks (comparison)
   (append (and (comparison-overall comparison)
                (list "Over all, each seed counts once, with its mean over the conditions."
-                     "What is tested over all counts apart from what is tested in each condition."))
+                     "Tests over all are corrected apart from tests in each condition."))
           (comparison-notes comparison)
           (loop for contrast in (comparison-contrasts comparison)
                 append (left-out-notes contrast))))

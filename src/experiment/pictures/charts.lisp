@@ -2,15 +2,15 @@
 
 (in-package :ars-magna.experiment)
 
-;;; The first factor whose values are numbers runs along a picture; the others tell series apart,
-;;; and where that makes too many of them, pictures. Factors go by their places in SAMPLE-TEXTS.
+;;; The first factor whose values are numbers is the x axis. The others make series, and if these
+;;; are too many, several pictures. Factors are given by their places in SAMPLE-TEXTS.
 
-(defconstant +most-series+ 6 "How many series there are in a picture at most.")
+(defconstant +most-series+ 6 "The most series in a picture.")
 
 (defstruct (panel (:constructor make-panel (where title series)) (:copier nil))
-  "A picture's worth of conditions. WHERE says what these have in common, or is NIL; SERIES are
-lists (name sample...), with NIL as the name of a single one. TITLE is what their names are values
-of, if that is one factor."
+  "The conditions of a picture. WHERE says what these have in common, or is NIL; SERIES are lists
+(name sample...), with NIL as the name of a single one. TITLE is the factor of which their names are
+values, if it is only one."
   (where nil :type (or null string) :read-only t)
   (title nil :type (or null string) :read-only t)
   (series '() :type list :read-only t))
@@ -18,19 +18,19 @@ of, if that is one factor."
 ;;; Factors.
 
 (defun x-axis-factor (results)
-  "Return the factor that runs along pictures of RESULTS, or NIL if nothing varies."
+  "Return the factor on the x axis of pictures of RESULTS, or NIL if nothing varies."
   (let ((free (free-factors results)))
     (or (find-if (lambda (place) (every #'number-in (levels results place))) free)
         (first free))))
 
 (defun series-factors (results)
-  "Return the factors that tell series apart."
+  "Return the factors that make the series in pictures of RESULTS."
   (remove (x-axis-factor results) (free-factors results)))
 
 ;;; Series and panels.
 
 (defun common-name (sample places factors)
-  "Return what SAMPLE is called by the factors at PLACES, or NIL if there are none."
+  "Return the name of SAMPLE by the factors at PLACES, or NIL if there are none."
   (and places
        (level-names (loop for place in places collect (nth place factors))
                     (loop for place in places collect (text-at place sample)))))
@@ -39,7 +39,7 @@ of, if that is one factor."
   (and places (null (rest places)) (nth (first places) factors)))
 
 (defun series-name (sample places factors)
-  "Return what the series of SAMPLE is called: below a title its bare value."
+  "Return the name of the series of SAMPLE: below a title only the value."
   (let ((text (and (series-title places factors) (text-at (first places) sample))))
     (if (and text (string/= "" text))
         text
@@ -50,7 +50,7 @@ of, if that is one factor."
         collect (cons (series-name (first group) places factors) group)))
 
 (defun split-evenly (list most)
-  "Return LIST as lists of about equal length, at most MOST."
+  "Return LIST in parts of about equal length, at most MOST."
   (let* ((count (length list)) (size (ceiling count (max 1 (ceiling count most)))))
     (loop while list
           collect (loop repeat size while list collect (pop list)))))
@@ -63,8 +63,8 @@ of, if that is one factor."
                             title chunk)))
 
 (defun panels (samples places factors &optional where)
-  "Return panels for SAMPLES, whose series the factors at PLACES of FACTORS tell apart: as few as
-hold all series."
+  "Return panels for SAMPLES, as few as can hold all series. The factors at PLACES of FACTORS make
+the series."
   (let ((series (series-of samples places factors)) (title (series-title places factors)))
     (cond ((<= (length series) +most-series+) (list (make-panel where title series)))
           ((null (rest places)) (chunk-panels series where title))
@@ -77,29 +77,28 @@ hold all series."
 
 ;;;; Charts
 
-;;; A picture is a list (name where chart): the chart, an SVG document, of what is called NAME, and
-;;; of conditions that WHERE tells apart.
+;;; A picture is a list (name where chart): what is shown, the part of the conditions or NIL, and
+;;; the chart, an SVG document.
 
-;;; What is written above.
+;;; Titles.
 
 (defun picture-title (results)
   (let ((name (sample-experiment (first (results-samples results)))))
     (or (question-of name) name)))
 
 (defun subtitle (panel &rest sentences)
-  "Return SENTENCES, which are strings or NIL, after what the conditions of PANEL have in common."
+  "Return a text: what the conditions of PANEL have in common, then SENTENCES, strings or NIL."
   (format nil "~@[~A. ~]~{~A~^ ~}" (panel-where panel) (remove nil sentences)))
 
 (defun errors-words (summaries)
-  "Return how many trials of SUMMARIES broke off with an error, in a sentence; \"\" if none did."
+  "Return a sentence on the trials of SUMMARIES that ended with an error; \"\" if none did."
   (let ((count (reduce #'+ summaries :key #'summary-errors)))
     (if (zerop count)
         ""
         (format nil " ~D trial~:P broke off with an error, and did not succeed." count))))
 
 (defun intervals-words (kind summaries)
-  "Return what the intervals of SUMMARIES are, of a KIND of estimates, in a sentence; and another on
-trials that broke off with an error, if there are any."
+  "Return a sentence on the intervals of SUMMARIES, of a KIND of estimates, and the ERRORS-WORDS."
   (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~
                ~A.~A"
           (statistic-option kind :interval)
@@ -107,13 +106,13 @@ trials that broke off with an error, if there are any."
           (trials-text summaries)
           (errors-words summaries)))
 
-;;; Estimates against what varies.
+;;; Estimates against the factor on the x axis.
 
 (defun x-value (text)
   (or (number-in text) (if (string= "" text) "none" text)))
 
 (defun log-x-p (numbers)
-  "True if NUMBERS lie so far apart that they are seen only on a logarithmic scale."
+  "True if NUMBERS are so far apart that they need a logarithmic scale."
   (and (cddr numbers) (every #'realp numbers) (every #'plusp numbers)
        (<= 50 (/ (reduce #'max numbers) (reduce #'min numbers)))))
 
@@ -154,9 +153,9 @@ trials that broke off with an error, if there are any."
     (estimates-charts results summaries "ticks" "ticks"
                       "Ticks of the trials that succeed: median." #'summary-ticks)))
 
-;;; What was measured.
+;;; Measures.
 
-(defconstant +most-rows+ 30 "How many rows a picture has at most.")
+(defconstant +most-rows+ 30 "The most rows of a picture.")
 
 (defun pictures-of-rows (name rows chart)
   (loop with chunks = (split-evenly rows +most-rows+)
@@ -195,11 +194,11 @@ trials that broke off with an error, if there are any."
         when (and (eq :mean kind) (any-value-p estimates))
           append (spread-pictures results summaries place)))
 
-;;; Until done. What has failed is never done: so it is still there at the end, and no trial is lost
-;;; sight of before.
+;;; Survival. A trial that does not succeed is never done: it counts until the end, and is not
+;;; censored earlier.
 
 (defun limit-of (results)
-  "Return the limit of ticks, as far as it is known."
+  "Return the limit of ticks of the experiment of RESULTS; the most ticks of a trial if unknown."
   (let ((experiment (find-experiment (sample-experiment (first (results-samples results))) nil)))
     (if experiment
         (experiment-limit experiment)
@@ -207,7 +206,7 @@ trials that broke off with an error, if there are any."
               maximize (reduce #'max (remove :none (sample-ticks sample)) :initial-value 0)))))
 
 (defun horizon (samples limit)
-  "Return until when curves are drawn: a little longer than any success of SAMPLES took."
+  "Return the tick until which curves are drawn: a little after the last success of SAMPLES."
   (let ((last (loop for sample in samples
                     maximize (reduce #'max (values-where #'success-p sample (sample-ticks sample))
                                      :initial-value 0))))
@@ -223,7 +222,7 @@ trials that broke off with an error, if there are any."
                               in (survival-curve times events :confidence confidence)
                             collect (list time survival (and band-p low) (and band-p high))))))
 
-(defconstant +most-bands+ 4 "How many curves have bands at most; more would hide each other.")
+(defconstant +most-bands+ 4 "The most curves that have bands; more would hide each other.")
 
 (defun survival-words (band-p results)
   (format nil "Kaplan and Meier's estimate~@[, with bands of ~A~]. What failed, broke off or came ~
@@ -256,8 +255,8 @@ trials that broke off with an error, if there are any."
 ;;; Differences.
 
 (defun pairs-by (results place)
-  "Return lists of two samples of RESULTS that differ in the factor PLACE, all else equal if that
-can be, the second with its first value; and whether it can."
+  "Return lists of two samples of RESULTS that differ in the factor PLACE, all else equal, the
+second with the first level; and true. If there are none, pair all with the first sample."
   (let ((pairs (pairs-differing-at results place nil (first (levels results place)))))
     (if pairs
         (values pairs t)
@@ -266,8 +265,8 @@ can be, the second with its first value; and whether it can."
               collect (list other first)))))
 
 (defun comparison-by (results place measure)
-  "Return the comparison of RESULTS by the factor PLACE in MEASURE, the same that COMPARE-LEVELS
-makes; NIL if there is nothing to compare."
+  "Return the comparison of RESULTS by the factor PLACE in MEASURE, as COMPARE-LEVELS makes it; NIL
+if there is nothing to compare."
   (multiple-value-bind (pairs equal-p) (pairs-by results place)
     (let ((pairs (remove-if-not (lambda (pair) (apply #'common-trials pair)) pairs)))
       (and pairs

@@ -1,16 +1,17 @@
-;;;; pictures.lisp -- pictures in files: of results, of the ways of trials, of comparisons.
+;;;; pictures.lisp -- saving pictures of results, of paths in trials, and of comparisons.
 
 (in-package :ars-magna.experiment)
 
 (defparameter *pictures*
   '((:success . success-pictures) (:ticks . ticks-pictures) (:measures . measure-pictures)
     (:survival . survival-pictures) (:differences . difference-pictures))
-  "An alist from what may be shown to functions of results and summaries that return pictures.")
+  "An alist from keys of SAVE-RESULT-PICTURES to functions of results and summaries that return
+pictures.")
 
-;;; Files are called by what is in them.
+;;; Files are named after their contents.
 
 (defun file-word (text)
-  "Return TEXT as the part of a file's name: at most 100 letters, digits, points and single dashes."
+  "Return TEXT as part of a file's name: at most 100 letters, digits, points and single dashes."
   (let* ((text (substitute-if #\- (lambda (char)
                                     (not (or (and (< (char-code char) 128) (alphanumericp char))
                                              (char= #\. char))))
@@ -64,10 +65,10 @@ directory cannot be made."
                              append (funcall function results summaries))
                      (ensure-store-directory directory) kind))))
 
-;;;; The ways of trials
+;;;; The paths of robots in trials
 
 (defun ways-of-trial (experiment condition trial)
-  "Run TRIAL of CONDITION of EXPERIMENT again. Return a list of the ways of its robots."
+  "Run TRIAL of CONDITION of EXPERIMENT again. Return a list of the paths of its robots."
   (let ((trails '()) (watched-p nil))
     (flet ((look (simulation)
              (setf trails (note-places simulation trails))))
@@ -87,7 +88,7 @@ directory cannot be made."
                            append (ways-of-trial experiment condition trial)))))
 
 (defun trial-numbers (trials)
-  "Return the numbers of the trials that TRIALS, an argument of SAVE-WAYS-PICTURE, means."
+  "Return a list of trial numbers for TRIALS, an argument of SAVE-WAYS-PICTURE."
   (check-argument save-ways-picture trials
                   (or (whole-p trials 1 10000)
                       (and (consp trials) (proper-list-p trials)
@@ -98,7 +99,7 @@ directory cannot be made."
       (loop for trial from 1 to trials collect trial)))
 
 (defun trials-in-words (trials)
-  "Return whose ways a picture of TRIALS, a list of numbers, shows."
+  "Return a text on the paths in a picture of TRIALS, a list of numbers."
   (let ((count (length trials)))
     (cond ((= 1 count) (format nil "The way of each robot in trial ~D" (first trials)))
           ((<= count 8) (format nil "The ways of the trials ~{~D~^, ~}" trials))
@@ -137,10 +138,10 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG ne
            (loop for (key value) on options by #'cddr
                  unless (eq :trials key) append (list key value)))))
 
-;;;; A comparison: differences against zero
+;;;; Comparisons: differences from zero
 
 (defun same-sides-p (comparison)
-  "True if the same two are compared wherever COMPARISON does."
+  "True if all contrasts of COMPARISON compare the same two."
   (loop with one = (first (comparison-contrasts comparison))
         for contrast in (comparison-contrasts comparison)
         always (and (string= (contrast-first one) (contrast-first contrast))
@@ -175,7 +176,7 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG ne
   (remove nil (mapcar (lambda (contrast) (difference-called measure contrast)) contrasts)))
 
 (defun tests-words (contrasts measure)
-  "Return as one of how many tests p of CONTRASTS counts in the picture of MEASURE; NIL if none is."
+  "Return a text on the number of tests for which p of MEASURE in CONTRASTS is corrected; or NIL."
   (let ((tested (remove-if-not #'tested-p (shown-differences contrasts measure))))
     (when tested
       (let ((tests (paired-tests (first tested))))
@@ -200,8 +201,8 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG ne
           (tests-words (comparison-overall comparison) measure)))
 
 (defun comparison-chart (comparison measure &key (contrasts (all-contrasts comparison)))
-  "Return the chart of what differs in MEASURE in COMPARISON, or in those CONTRASTS of it, an SVG
-document, below what the experiment asks."
+  "Return the chart of differences in MEASURE in COMPARISON, or these CONTRASTS of it, an SVG
+document. The title is the experiment's question."
   (let ((experiment (comparison-experiment comparison)))
     (difference-chart (remove nil (mapcar (lambda (contrast)
                                             (picture-row contrast measure comparison))

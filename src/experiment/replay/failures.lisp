@@ -1,14 +1,13 @@
-;;;; failures.lisp -- what a table says of its trials: what went wrong, and values over time.
+;;;; failures.lisp -- TRIAL-FAILURES and TRIAL-SERIES: failed trials, and values over time.
 
 (in-package :ars-magna.experiment)
 
-;;; Trials of one condition that came out alike, and have the same reason and the same text of an
-;;; error, are a group. An error in a continuation or kicker lets its trial go on; so a trial that
-;;; succeeded may be in a group, too.
+;;; Trials of one condition with the same outcome, reason and text of an error are a group. An error
+;;; in a continuation or kicker need not end its trial; so a group may also have succeeded.
 
 (defun failure-groups (sample)
-  "Return lists (trials outcome reason error) of the trials of SAMPLE that went wrong in the same
-way, the most frequent first."
+  "Return lists (trials outcome reason error) for groups of trials of SAMPLE that failed or had an
+error, the largest first."
   (let ((known (make-hash-table :test 'equal)) (keys '()))
     (loop for trial across (sample-trials sample)
           for outcome across (sample-outcomes sample)
@@ -34,11 +33,11 @@ way, the most frequent first."
             :share (/ count (float (length (sample-trials sample)) 1d0))
             :trials trials))))
 
-;;; Which results are meant.
+;;; Designators of results.
 
 (defun designated-results (designator)
-  "Return the results that DESIGNATOR means: results, the name of a directory that has some, or an
-experiment that has been run here, or its name. Signals MISUSE and DAMAGED-TABLE."
+  "Return the results for DESIGNATOR: results, the name of a directory with some, an experiment that
+was run in this Lisp, or its name. Signals MISUSE and DAMAGED-TABLE."
   (let ((experiment (and (typep designator '(or symbol string experiment))
                          (find-experiment designator nil)))
         (directory-p (typep designator '(or string pathname))))
@@ -55,8 +54,8 @@ experiment that has been run here, or its name. Signals MISUSE and DAMAGED-TABLE
                               "results, an experiment, or the name of a directory")))))
 
 (defun samples-matching (results condition)
-  "Return those samples of RESULTS whose conditions are called CONDITION, or have that in their
-names; all if it is NIL. Signals UNKNOWN-NAME."
+  "Return the samples of RESULTS whose condition is named CONDITION, or else has that in its name;
+all if it is NIL. Signals UNKNOWN-NAME."
   (let ((samples (results-samples results)))
     (cond ((null condition) samples)
           ((find-by-name (string condition) samples #'sample-condition))
@@ -68,8 +67,8 @@ names; all if it is NIL. Signals UNKNOWN-NAME."
   "Return what went wrong in RESULTS: results, an experiment that was run here, or the name of a
 directory. CONDITION, a string or symbol, limits it to conditions with that in their names. The
 value is a list of plists :condition :outcome :reason :error :count :share (of the condition's
-trials) :trials (their numbers), ordered by condition, then by count. Errors in code that let its
-trial continue count, too. REPLAY-TRIAL opens a trial. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT,
+trials) :trials (their numbers), ordered by condition, then by count. Errors that did not end their
+trials count, too. REPLAY-TRIAL opens a trial. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT,
 DAMAGED-TABLE."
   (check-argument trial-failures condition (typep condition '(or string symbol))
                   "a string or symbol, or NIL")
@@ -101,18 +100,18 @@ DAMAGED-TABLE."
 
 (addition print-failures)
 (defun print-failures (results &optional condition (stream *standard-output*))
-  "Write to STREAM what TRIAL-FAILURES returns: for each condition how many trials went wrong in
-which way, and a line for the prompt that opens one of them. Return nothing."
+  "Write to STREAM what TRIAL-FAILURES returns: for each condition how many trials failed in which
+way, and a line for the prompt that opens one of them. Return nothing."
   (dolist (sample (samples-matching (designated-results results) condition) (values))
     (print-failure-groups sample stream)))
 
 ;;;; Values over time
 
 (defun directory-of-series (results)
-  "Return the directory of RESULTS, in which there is a table of series. Signals MISUSE."
+  "Return the directory of RESULTS. Signals MISUSE unless it has a table of series."
   (let ((directory (results-directory results)))
     (unless directory
-      (reject-use "trial-series: these results are in no directory. Give RUN-EXPERIMENT a ~
+      (reject-use "trial-series: these results are not in a directory. Give RUN-EXPERIMENT a ~
                    :directory, or use (getf (replay-trial ...) :series)."))
     (check-files-plain directory)
     (unless (existing-path (series-file directory))
@@ -122,14 +121,14 @@ which way, and a line for the prompt that opens one of them. Return nothing."
     directory))
 
 (defun place-of-trial (sample trial)
-  "Return where TRIAL is in the vectors of SAMPLE. Signals MISUSE if there is no such trial."
+  "Return the index of TRIAL in the vectors of SAMPLE. Signals MISUSE if there is no such trial."
   (or (position trial (sample-trials sample))
       (reject-use "trial-series: there is no trial ~D of ~A in these results." trial
                   (sample-condition sample))))
 
 (defun block-of-trial (index sample place)
   "Return the block in INDEX of the trial at PLACE of SAMPLE; NIL if it has no lines. Signals MISUSE
-if not all of them are there."
+if lines are missing."
   (when (aref (sample-digests sample) place)
     (or (complete-block (blocks-of index (row-key sample) (aref (sample-seeds sample) place)
                                    (aref (sample-trials sample) place))
@@ -151,12 +150,12 @@ if not all of them are there."
 
 (addition trial-series)
 (defun trial-series (results condition trial)
-  "Return what the clause :each-tick has recorded of TRIAL, a number, of CONDITION in RESULTS: a
-list of lists (tick value...), the values in the order of the clause. Values are numbers, T, NIL,
-strings, and :NONE for no value. Return () if the trial timed out. RESULTS are results kept in a
-directory, an experiment that was run with one, or the directory's name. CONDITION is its number,
-from 1, its name, or a part of that. Each call reads all of series.csv. Signals MISUSE (no
-directory, no such file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
+  "Return the values that :each-tick recorded in TRIAL, a number, of CONDITION in RESULTS: a list of
+lists (tick value...), the values in the order of the clause. Values are numbers, T, NIL, strings,
+and :NONE for no value. Return () if the trial timed out. RESULTS are results kept in a directory,
+an experiment that was run with one, or the directory's name. CONDITION is its number, from 1, its
+name, or a part of that. Each call reads all of series.csv. Signals MISUSE (no directory, no such
+file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
   (check-argument trial-series trial (and (integerp trial) (<= 0 trial +largest+))
                   "the number of a trial; they count from 1")
   (let* ((results (designated-results results))

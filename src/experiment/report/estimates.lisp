@@ -1,12 +1,12 @@
-;;;; estimates.lisp -- what a column of a table comes to: a rate, a mean, a median, or texts.
+;;;; estimates.lisp -- summaries of columns of a table: rates, means, medians, or texts.
 
 (in-package :ars-magna.experiment)
 
-;;; Large numbers are multiplied by a power of two, which changes no digit. Results are divided by
-;;; it. Beside them, what is some 1e250 times smaller counts as 0.
+;;; Large numbers are multiplied by a power of two, which changes no digit, and results are divided
+;;; by it. Numbers some 1e250 times smaller than the largest count as 0.
 
 (defun nearest-float (number)
-  "Return the double-float nearest to NUMBER; the same number, exact, if it is too large for one."
+  "Return the double-float nearest to NUMBER, or NUMBER itself if it is too large for one."
   (if (finite-p number) (double number) number))
 
 (defun number-less (a b)
@@ -16,7 +16,7 @@
       (nearest-float (- (rational a) (rational b)))))
 
 (defun scale-of-numbers (numbers)
-  "Return by which power of two to multiply NUMBERS so that none is above 5e14 either way."
+  "Return the power of two by which to multiply NUMBERS so that they are from -5e14 to 5e14."
   (let ((largest (reduce #'max numbers :key #'abs :initial-value 0)))
     (if (<= largest (/ +largest-quantity+ 2))
         1
@@ -37,26 +37,26 @@
 
 ;;;; Estimates
 
-;;; What was measured is a rate if it was always true or false. If there are numbers in it, it is
-;;; their mean: what else there is besides is left out, and counted. Else it is texts. This goes by
-;;; all conditions together, so that the same is said of each. :NONE was not measured.
+;;; The estimate of a measure is a rate if the values are always true or false. If there are
+;;; numbers, it is their mean; other values are left out, and counted. Else it is texts. All
+;;; conditions together decide, so that each has the same kind. :NONE does not count.
 
 (addition estimate-p)
 (define-record (estimate (:constructor make-estimate
                              (name kind count &key value low high (left-out 0) texts beside)))
-  "What a column of the table comes to under one condition."
+  "The summary of a column of the table under one condition."
   (name "" string "what was measured, a string: success, ticks, or the name of a measure" :addition)
-  (kind :nothing keyword ":RATE of what was always true or false, :MEAN of numbers, :MEDIAN of
-ticks, :TEXTS of all else, and :NOTHING of what was never measured, under any condition" :addition)
-  (count 0 integer "how many trials it was measured in; of ticks, how many succeeded" :addition)
+  (kind :nothing keyword ":RATE of values that are always true or false, :MEAN of numbers, :MEDIAN
+of ticks, :TEXTS of others, and :NOTHING of no values under any condition" :addition)
+  (count 0 integer "the number of trials with a value; of ticks, of successes" :addition)
   (value nil (or null real)
-         "the rate, from 0 to 1, the mean or the median; NIL of none, and of texts" :addition)
+         "the rate, from 0 to 1, the mean or the median; NIL of no values or of texts" :addition)
   (low nil (or null real)
        "the low bound of the interval; NIL if there are too few values" :addition)
   (high nil (or null real)
         "the high bound of the interval; NIL if there are too few values" :addition)
-  (left-out 0 integer "how many values beside numbers are no numbers, and left out" :addition)
-  (texts '() list "an alist from texts to how often there are such, commonest first" :addition)
+  (left-out 0 integer "how many values are left out because they are no numbers" :addition)
+  (texts '() list "an alist from texts to counts, commonest first" :addition)
   (beside '() list "estimates of the same values by other statistics"))
 
 (defmethod print-object ((estimate estimate) stream)
@@ -67,7 +67,7 @@ ticks, :TEXTS of all else, and :NOTHING of what was never measured, under any co
 ;;; Kinds.
 
 (defun kind-of-values (columns)
-  "Return which kind of estimate is made of COLUMNS, of one measure under all conditions."
+  "Return the kind of estimates for COLUMNS, the values of one measure under all conditions."
   (flet ((some-value (test)
            (some (lambda (column) (some test column)) columns)))
     (cond ((some-value #'finite-value-p) :mean)
@@ -76,7 +76,7 @@ ticks, :TEXTS of all else, and :NOTHING of what was never measured, under any co
           (t :nothing))))
 
 (defun tally (texts)
-  "Return an alist from the strings TEXTS to how many there are, commonest first."
+  "Return an alist from the strings TEXTS to their counts, commonest first."
   (let ((counts (make-hash-table :test 'equal)))
     (cl:map nil (lambda (text) (incf (gethash text counts 0))) texts)
     (sort (loop for text being the hash-keys of counts using (hash-value count)
@@ -85,15 +85,15 @@ ticks, :TEXTS of all else, and :NOTHING of what was never measured, under any co
             (or (> (cdr a) (cdr b))
                 (and (= (cdr a) (cdr b)) (string< (car a) (car b))))))))
 
-;;; Statistics: how a value and an interval are made of what was measured.
+;;; Statistics: how values and intervals are computed.
 
 (defvar *statistics* '() "Lists (kind function . options), in order of definition.")
 
 (defmacro define-statistic (kind (values confidence) (&rest options) &body body)
   "Define estimates of KIND: BODY returns three values for VALUES, a vector that is not empty: the
 value and the bounds of its interval at CONFIDENCE; any may be NIL. OPTIONS are
-  :heading text   what tables of results add to the name of what was measured;
-  :interval text  what pictures call its intervals;
+  :heading text   what headings of tables add to the name of the measure;
+  :interval text  the name of its intervals in pictures;
   :beside kind    each estimate of that kind has one of this, too, in a column beside its own.
 Return KIND."
   `(progn
@@ -103,7 +103,7 @@ Return KIND."
      ,kind))
 
 (defun statistic-option (kind option)
-  "Return what DEFINE-STATISTIC said of OPTION of KIND, or NIL."
+  "Return the value of OPTION in the DEFINE-STATISTIC of KIND, or NIL."
   (getf (cddr (assoc kind *statistics*)) option))
 
 (define-statistic :rate (truths confidence) (:heading " %" :interval "Wilson's")
@@ -144,25 +144,25 @@ Return KIND."
 
 ;;;; Summaries of conditions
 
-;;; An error in a trial's own code counts as no success. Where trials were added until intervals
-;;; were narrow, all intervals of a condition have the confidence of the look that it stopped at.
+;;; A trial that ended with an error did not succeed. Where trials were added until intervals were
+;;; narrow, all intervals of a condition have the confidence of the look at which it stopped.
 
 (addition summary-p)
 (define-record summary
-  "What came of the trials of one condition, as SUMMARIZE-RESULTS says it."
-  (condition "" string "what the condition is called, a string" :addition)
-  (texts '() list "the values of what varies, strings as they stand in the table" :addition)
+  "The summary of the trials of one condition; see SUMMARIZE-RESULTS."
+  (condition "" string "the name of the condition, a string" :addition)
+  (texts '() list "the values of the factors, strings as in the table" :addition)
   (trials 0 integer "how many trials there are" :addition)
   (failures 0 integer "how many trials failed" :addition)
-  (limits 0 integer "how many trials came to the limit of ticks" :addition)
-  (errors 0 integer "how many trials broke off with an error" :addition)
-  (timeouts 0 integer "how many trials took too long by the clock")
-  (confidence .95d0 double-float "which confidence the intervals have, .95 as a rule" :addition)
-  (success nil estimate "the estimate of how often trials succeed" :addition)
-  (ticks nil estimate "the estimate of how many ticks those trials take that succeed" :addition)
-  (measures '() list "a list of the estimates of what was measured, in the table's order" :addition)
+  (limits 0 integer "how many trials reached the limit of ticks" :addition)
+  (errors 0 integer "how many trials ended with an error" :addition)
+  (timeouts 0 integer "how many trials took too much real time")
+  (confidence .95d0 double-float "the confidence of the intervals, usually .95" :addition)
+  (success nil estimate "the estimate of the rate of success" :addition)
+  (ticks nil estimate "the estimate of the ticks of trials that succeed" :addition)
+  (measures '() list "a list of the estimates of measures, in the table's order" :addition)
   (reasons '() list
-           "an alist from the reasons of failure to how often each was, commonest first" :addition))
+           "an alist from the reasons of failure to their counts, commonest first" :addition))
 
 (defmethod print-object ((summary summary) stream)
   (print-unreadable-object (summary stream)
@@ -172,8 +172,7 @@ Return KIND."
   (count outcome (sample-outcomes sample) :test #'string=))
 
 (defun values-where (test sample values)
-  "Return a vector of those of VALUES, a vector, whose trials in SAMPLE have an outcome that passes
-TEST."
+  "Return a vector of the elements of VALUES for trials of SAMPLE whose outcome passes TEST."
   (let ((outcomes (sample-outcomes sample)))
     (coerce (loop for value across values
                   for outcome across outcomes
@@ -183,7 +182,7 @@ TEST."
 (defun failed-p (outcome) (string= "failure" outcome))
 
 (defun look-after (trials)
-  "Return which look is the one after TRIALS of each condition, or NIL."
+  "Return the number of the look after TRIALS trials of each condition, or NIL."
   (loop for look from 1
         for count = (count-at-look look)
         while (<= count trials)

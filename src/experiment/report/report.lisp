@@ -1,12 +1,12 @@
-;;;; report.lisp -- PRINT-RESULTS: what came of an experiment, for people, at a glance.
+;;;; report.lisp -- PRINT-RESULTS: the results of an experiment as text.
 
 (in-package :ars-magna.experiment)
 
-;;; Why.
+;;; Reasons and errors.
 
 (defstruct (occurrence (:constructor make-occurrence (text sample trial)) (:copier nil))
-  "What happened in COUNT trials, first in TRIAL of SAMPLE. WHERE is an alist from the names of
-conditions to how often there."
+  "A reason or error of COUNT trials, first in TRIAL of SAMPLE. WHERE is an alist from the names of
+conditions to counts."
   (text "" :type string :read-only t)
   (sample nil :type sample :read-only t)
   (trial 0 :type integer :read-only t)
@@ -23,8 +23,8 @@ conditions to how often there."
         (push (cons name 1) (occurrence-where one)))))
 
 (defun occurrences (results text-of)
-  "Return what happened in trials of RESULTS, commonest first. TEXT-OF is called with a sample and
-the index of a trial, and returns a text, or NIL if nothing did."
+  "Return a list of occurrences in trials of RESULTS, commonest first. The function TEXT-OF returns
+the text for a sample and the index of a trial, or NIL."
   (let ((occurrences (make-hash-table :test 'equal)))
     (dolist (sample (results-samples results))
       (loop for trial across (sample-trials sample)
@@ -37,21 +37,21 @@ the index of a trial, and returns a text, or NIL if nothing did."
                 (and (= (occurrence-count a) (occurrence-count b))
                      (string< (occurrence-text a) (occurrence-text b))))))))
 
-(defconstant +most-told+ 5 "How many reasons and errors are told.")
+(defconstant +most-listed+ 5 "The most reasons or errors that are listed.")
 
 (defun where-text (occurrence)
   (tally-text (stable-sort (reverse (occurrence-where occurrence)) #'> :key #'cdr) 3))
 
 (defun write-occurrences (title results text-of stream)
-  "Write below TITLE what OCCURRENCES finds in RESULTS, under which conditions each was if there are
-several, and how to see one of each."
+  "Write the OCCURRENCES in RESULTS below TITLE, each with its conditions, if there are several, and
+a form that replays an example."
   (let ((all (occurrences results text-of)) (several-p (rest (results-samples results))))
     (when all
       (format stream "~%~A~%" title)
       (loop with width = (length (integer-text (occurrence-count (first all))))
             for one in all
             for sample = (occurrence-sample one)
-            repeat +most-told+
+            repeat +most-listed+
             do (write-wrapped (format nil "~A~@[: ~A~]" (occurrence-text one)
                                       (and several-p (where-text one)))
                               stream :first (format nil "  ~V@A  " width (occurrence-count one)))
@@ -59,9 +59,9 @@ several, and how to see one of each."
                                       (unbroken (prin1-to-string (sample-condition sample)))
                                       (occurrence-trial one))
                               stream :first (format nil "  ~VA  " width "")))
-      (when (nthcdr +most-told+ all)
+      (when (nthcdr +most-listed+ all)
         (format stream "  and ~D of other kinds~%"
-                (reduce #'+ (nthcdr +most-told+ all) :key #'occurrence-count))))))
+                (reduce #'+ (nthcdr +most-listed+ all) :key #'occurrence-count))))))
 
 (defun write-reasons (results stream)
   (write-occurrences
@@ -80,8 +80,8 @@ several, and how to see one of each."
 
 (defun write-errors (results stream)
   (loop for (broken-off-p title)
-          in '((t "Errors by which trials broke off, and how to see one:")
-               (nil "Errors that trials outlived, and how to see one:"))
+          in '((t "Errors that ended trials, and how to see one:")
+               (nil "Errors that did not end their trials, and how to see one:"))
         do (write-occurrences title results
                               (lambda (sample index)
                                 (let ((text (aref (sample-errors sample) index))
@@ -91,10 +91,10 @@ several, and how to see one of each."
                                        text)))
                               stream)))
 
-;;; Which intervals.
+;;; Notes on intervals.
 
 (defun left-out-text (estimates)
-  "Return what is left out of ESTIMATES, of one measure, in words, or NIL."
+  "Return a sentence on the values left out of ESTIMATES, of one measure, or NIL."
   (let ((count (reduce #'+ estimates :key #'estimate-left-out)))
     (and (plusp count)
          (format nil "~A: ~D value~:P that ~:*~[~;is no number is~:;are no numbers are~] left out."
@@ -111,7 +111,7 @@ several, and how to see one of each."
             (kind-p :mean))))
 
 (defun looks-text (width summaries)
-  "Return which confidence the intervals of SUMMARIES have, which were to be WIDTH wide."
+  "Return sentences on the confidence of intervals of SUMMARIES, which were to be WIDTH wide."
   (let ((counts (sort (remove-duplicates (mapcar #'summary-trials summaries)) #'<)))
     (format nil "Trials were added until the interval of success was at most ~A wide, looked at ~
                  after 50, 100, 200 and so on. Look K spends .05 / (K (K + 1)) of the error that ~
@@ -130,8 +130,7 @@ several, and how to see one of each."
   (terpri stream)
   (write-wrapped (kinds-text summaries) stream)
   (when (plusp (reduce #'+ summaries :key #'summary-errors))
-    (write-wrapped "A trial that broke off with an error counts as one that did not succeed."
-                   stream))
+    (write-wrapped "A trial that ended with an error counts as one that did not succeed." stream))
   (when (results-until results)
     (write-wrapped (looks-text (results-until results) summaries) stream))
   (dolist (text (apply #'mapcar (lambda (&rest estimates) (left-out-text estimates))
@@ -140,11 +139,11 @@ several, and how to see one of each."
 
 ;;;; The report
 
-;;; Numbers. Those of a column have equally many decimals, and stand below each other.
+;;; Numbers. Those of a column have the same number of decimals, and are aligned.
 
 (defun decimals-for (numbers)
-  "Return how many decimals NUMBERS are written with, so that the largest has four digits; NIL if
-they are too large or small for that."
+  "Return the number of decimals for NUMBERS, so that the largest has four digits; NIL if they are
+too large or too small for that."
   (let ((largest (reduce #'max numbers :key #'abs :initial-value 0)))
     (cond ((every (lambda (number) (= number (round number))) numbers) (if (< largest 1e9) 0 nil))
           ((not (< 1/1000 largest 1e9)) nil)
@@ -216,7 +215,7 @@ they are too large or small for that."
 ;;; The table.
 
 (defun key-columns (factors summaries)
-  "Return columns that say of which condition a row is: the values of FACTORS if these fit, else its
+  "Return columns that identify the condition of a row: the values of FACTORS if these fit, else its
 name."
   (let ((columns (loop for name in factors
                        for place from 0
@@ -261,8 +260,8 @@ name."
     (when question (write-wrapped question stream))))
 
 (defun former-summaries (results summaries)
-  "Return those of SUMMARIES, of RESULTS, whose conditions the experiment no longer has, unless that
-is none of them."
+  "Return the SUMMARIES, of RESULTS, whose conditions the experiment no longer has; NIL if these are
+all."
   (let ((former (remove-if (lambda (summary)
                              (member (summary-condition summary) (results-conditions results)
                                      :test #'string=))

@@ -1,27 +1,27 @@
-;;;; text-table.lisp -- tables of text: columns side by side, in as many blocks as the page needs.
+;;;; text-table.lisp -- tables of text: columns side by side, in blocks that fit the page.
 
 (in-package :ars-magna.experiment)
 
 (export '(call-on-page))
 
 (defconstant +page-width+ 100
-  "How many characters a line has at most, unless a window is narrower.")
+  "The most characters of a line.")
 
-(defvar *page-width* +page-width+ "How many characters a line has at most.")
+(defvar *page-width* +page-width+ "The most characters of a line now, as in a narrower window.")
 
 (defun call-on-page (function &optional (width +page-width+))
-  "Call FUNCTION, which writes tables, for a page as wide as WIDTH characters, within reason."
+  "Call FUNCTION, which writes tables, for a page of WIDTH characters, from 60 to +PAGE-WIDTH+."
   (let ((*page-width* (max 60 (min width +page-width+))))
     (funcall function)))
 
 ;;; Lines.
 
 (defun unbroken (text)
-  "Return TEXT so that no line ends in it, unless it is longer than a line."
+  "Return TEXT with no-break spaces, so that it is not wrapped unless it is longer than a line."
   (substitute #\No-break_space #\Space (coerce text '(simple-array character (*)))))
 
 (defun write-wrapped (text stream &key (first ""))
-  "Write TEXT to STREAM in lines that fit the page, the first one after FIRST, the others after as
+  "Write TEXT to STREAM in lines that fit the page. The first begins with FIRST, the others with as
 many spaces."
   (loop with indent = (length first)
         for line in (wrapped-text text (- *page-width* indent))
@@ -32,15 +32,15 @@ many spaces."
 
 (defstruct (text-column (:constructor %make-text-column (heading cells anchor width))
                         (:copier nil))
-  "CELLS below a HEADING, each a list of lines, WIDTH characters wide, at their :START or :END."
+  "HEADING and CELLS, lists of lines, in WIDTH characters, aligned at their :START or :END."
   (heading '() :type list :read-only t)
   (cells '() :type list :read-only t)
   (anchor :start :type (member :start :end) :read-only t)
   (width 0 :type integer :read-only t))
 
 (defun make-text-column (heading texts &key (anchor :start) (widest 30) whole-p)
-  "Return a column of TEXTS below HEADING, broken into lines of at most WIDEST characters; but TEXTS
-are left as they are if WHOLE-P."
+  "Return a column of TEXTS below HEADING, wrapped in lines of at most WIDEST characters. If WHOLE-P
+is true, TEXTS are not wrapped."
   (flet ((lines (text) (wrapped-text text widest)))
     (let* ((cells (mapcar (if whole-p #'list #'lines) texts))
            (heading (lines heading))
@@ -48,7 +48,7 @@ are left as they are if WHOLE-P."
       (%make-text-column heading cells anchor width))))
 
 (defun blocks (key columns)
-  "Return lists of columns that fit on the page: all of KEY, and as many of COLUMNS as go beside."
+  "Return lists of columns that fit on the page: all of KEY, and as many of COLUMNS as fit."
   (flet ((width (columns) (reduce #'+ columns :key (lambda (column)
                                                      (+ 2 (text-column-width column))))))
     (loop with blocks = '() and block = '()
@@ -81,8 +81,8 @@ are left as they are if WHOLE-P."
          (mapcar #'text-column-cells columns)))
 
 (defun write-text-table (key columns stream)
-  "Write KEY, columns that say what a row is of, and COLUMNS to STREAM: as many blocks below each
-other as are needed, each with KEY."
+  "Write KEY, columns that identify rows, and COLUMNS to STREAM, in as many blocks as needed, each
+with KEY."
   (loop for (block . more) on (blocks key columns)
         do (write-block block stream)
            (when more (terpri stream))))
@@ -94,7 +94,7 @@ other as are needed, each with KEY."
               (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
 
 (defun tally-text (tally most)
-  "Return TALLY, an alist from texts to counts, in one line, the MOST commonest first."
+  "Return TALLY, an alist from texts to counts, as a line: the first MOST texts, then others."
   (flet ((counted (text count)
            (unbroken (format nil "~A (~D)" (cut text 60) count))))
     (let ((rest (nthcdr most tally)))
