@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(parameter check-parameter-value describe-type parameter-settings check-parameters
-          *noise-before-cleaning* ticks-for noise-of-step per-tick-drift per-tick-probability))
+(export '(parameter check-parameter-value describe-type define-parameter parameter-settings
+          check-parameters *noise-before-cleaning* ticks-for noise-of-step per-tick-drift
+          per-tick-probability))
 
 ;;; Each parameter is a special variable that users may SETF. Its one definition gives its
 ;;; documentation, the check of its value, its noiseless value and its line in the prompt's list. A
