@@ -7,12 +7,12 @@
   :serial t
   :components
   ((:module "src/host" :serial t
-    :components ((:file "package") (:file "versions") (:file "numbers") (:file "memory")
-                 (:file "language") (:file "classes") (:file "files") (:file "interrupts")
+    :components ((:file "package") (:file "versions") (:file "language") (:file "memory")
+                 (:file "classes") (:file "files") (:file "interrupts")
                  (:file "closures") (:file "code") (:file "environments")
                  (:file "compiler") (:file "debugger") (:file "threads") (:file "streams")))
    (:module "src/basics" :serial t
-    :components ((:file "package") (:file "text") (:file "records") (:file "names")
+    :components ((:file "package") (:file "text") (:file "records")
                  (:file "conditions") (:file "telling") (:file "fixed-point")
                  (:file "trigonometry") (:file "exponentials") (:file "dice") (:file "random")
                  (:file "files") (:file "formats")))
@@ -211,7 +211,7 @@
       :components ((:file "reporting") (:file "listener") (:file "session") (:file "visit")
                    (:file "listening") (:file "line") (:file "quantities") (:file "arguments")
                    (:file "errands") (:file "reading") (:file "finding") (:file "loading")
-                   (:file "carrying-out") (:file "guarding") (:file "plans") (:file "worlds")
+                   (:file "carrying-out") (:file "plans") (:file "worlds")
                    (:file "breakage") (:file "debugger") (:file "clx") (:file "completing")
                    (:file "prompt")))
      (:module "lines" :serial t
