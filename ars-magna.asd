@@ -10,7 +10,7 @@
     :components ((:file "package") (:file "versions") (:file "language") (:file "memory")
                  (:file "classes") (:file "files") (:file "interrupts")
                  (:file "closures") (:file "code") (:file "environments")
-                 (:file "compiler") (:file "debugger") (:file "threads") (:file "streams")))
+                 (:file "compiler") (:file "debugger") (:file "threads")))
    (:module "src/basics" :serial t
     :components ((:file "package") (:file "text") (:file "records")
                  (:file "conditions") (:file "telling") (:file "fixed-point")

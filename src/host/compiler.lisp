@@ -1,10 +1,11 @@
-;;;; compiler.lisp -- the compiler's position in the source; what waits until a unit ends.
+;;;; compiler.lisp -- the position of the compiler and of LOAD; what waits until a unit ends.
 
 (in-package :ars-magna.host)
 
 (export '(show-lambda-list nested-p edited-file error-context context-original-form
           compiler-error-p keep-place in-source-p call-at-place at-end-of-unit call-as-unit
-          place-in-text compiler-place))
+          place-in-text compiler-place form-start line-reached line-of-next
+          encapsulated-condition undecodable-format))
 
 ;;; SBCL records the position of each list that it has read to compile or load. KEEP-PLACE gives a
 ;;; list made from another the position of that, so that the compiler's notes point to what the
@@ -218,3 +219,37 @@ Without a compiler, do nothing."
 (wrap-function (internal-name :sb-c '#:%with-compilation-unit)
                (lambda (function body &rest options &key override &allow-other-keys)
                  (apply function (lambda () (call-in-unit :compilation body override)) options)))
+
+;;;; The position of LOAD in a file that it cannot read
+
+(defun form-start (stream)
+  "Return the position, in characters, of the form that LOAD reads from STREAM, or 0 if not even its
+first character can be read; NIL for other streams."
+  (and (internal-type-p stream :sb-int #:form-tracking-stream)
+       (or (internal (:sb-int #:form-tracking-stream-form-start-char-pos) stream) 0)))
+
+(defun line-of-next (stream)
+  "Return the line of the character that LOAD reads next from STREAM, for which FORM-START is not
+NIL."
+  (car (internal (:sb-int #:line/col-from-charpos) stream)))
+
+;; A word may end by the newline after it, which has been read by then.
+(defun line-reached (stream)
+  "Return the line of the last character that LOAD has read from STREAM, for which FORM-START is not
+NIL."
+  (destructuring-bind (line . column) (internal (:sb-int #:line/col-from-charpos) stream)
+    (if (plusp column) line (max 1 (1- line)))))
+
+(defun encapsulated-condition (condition)
+  "Return the condition that CONDITION wraps to add a position, as LOAD's do; NIL for others."
+  (and (internal-type-p condition :sb-int #:encapsulated-condition)
+       (internal (:sb-int #:encapsulated-condition) condition)))
+
+(defun undecodable-format (condition)
+  "Return the name, a string, of the external format in which a stream has bytes that are no text,
+if that is what CONDITION says; else NIL."
+  (when (internal-type-p condition :sb-int #:stream-decoding-error)
+    (let ((format (if-internal (:sb-kernel #:character-coding-error-external-format)
+                    (internal (:sb-kernel #:character-coding-error-external-format) condition)
+                    :utf-8)))
+      (string (first (ensure-list format))))))

@@ -1,4 +1,4 @@
-;;;; files.lisp -- files as the operating system knows them; other programs; the environment.
+;;;; files.lisp -- files and streams as the system knows them; programs; environment; terminal.
 
 (in-package :ars-magna.host)
 
@@ -8,7 +8,8 @@
           shown-name +illegible+ encoded decoded cut-file call-with-file-lock make-directories
           make-new-directory process-number copy-permissions temporary-file-prefix
           remove-abandoned-files *many-files-text* check-name-legible environment-value
-          real-microseconds date-and-time run-command run-attached run-filter))
+          real-microseconds date-and-time run-command run-attached run-filter octet-input
+          text-output descriptor-stream input-within-p rows-and-columns char-width))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defconstant +illegible+ (code-char #xFFFD)
@@ -284,3 +285,47 @@ output as a string."
                                     :external-format :utf-8)
       ;; A shell returns this status if it finds no such program.
       (values (if (eql status 127) nil status) errors))))
+
+;;;; Streams on file descriptors
+
+(deftype descriptor-stream ()
+  "A stream on a file, pipe or terminal of this process."
+  (internal-name :sb-sys '#:fd-stream))
+
+(defun octet-input (descriptor)
+  "Return an input stream on the file DESCRIPTOR, with one character for each octet."
+  (internal (:sb-sys #:make-fd-stream) descriptor :input t :buffering :full
+                                                  :external-format :latin-1))
+
+(defun text-output (descriptor)
+  "Return a UTF-8 output stream on the file DESCRIPTOR."
+  (internal (:sb-sys #:make-fd-stream) descriptor :output t :buffering :full
+                                                  :external-format '(:utf-8 :replacement #\?)))
+
+(defun input-within-p (stream seconds)
+  "Wait at most SECONDS until STREAM, on a descriptor, has input or is at its end. True if so."
+  (or (listen stream)
+      (internal (:sb-sys #:wait-until-fd-usable)
+                (internal (:sb-sys #:fd-stream-fd) stream) :input seconds)))
+
+;;;; The terminal
+
+(defconstant +ask-for-size+ (if (uiop:featurep :linux) #x5413 #x40087468)
+  "The system's request number for the size of a terminal window.")
+
+(defun rows-and-columns ()
+  "Return the rows and columns of the window of this process's terminal; zeros if not known."
+  (sb-alien:with-alien ((size (array sb-alien:unsigned-short 4)))
+    (setf (sb-alien:deref size 0) 0
+          (sb-alien:deref size 1) 0)
+    (sb-alien:alien-funcall
+     (sb-alien:extern-alien "ioctl" (function sb-alien:int sb-alien:int sb-alien:unsigned-long
+                                              (* (array sb-alien:unsigned-short 4))))
+     1 +ask-for-size+ (sb-alien:addr size))
+    (values (sb-alien:deref size 0) (sb-alien:deref size 1))))
+
+(defun char-width (char)
+  "Return the columns that CHAR takes on a terminal: 0 for accents, 2 for East Asian characters."
+  (cond ((member (internal (:sb-unicode #:general-category) char) '(:mn :me :cf)) 0)
+        ((member (internal (:sb-unicode #:east-asian-width) char) '(:w :f)) 2)
+        (t 1)))
