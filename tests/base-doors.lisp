@@ -272,7 +272,7 @@
          (base:write-file-anew (lambda (out) (write-string "some words" out)) file "the text")
          (is (null (base:unusable-file-text file)))
          (is (string= "some words" (base:file-text file)))
-         (base:cut-file file 4)
+         (base:truncate-file file 4)
          (is (string= "some" (base:file-text file)))
          (base:replace-file (base:path-called "a/c/other") file))
        (is-true (base:existing-path (merge-pathnames "a/c/other" directory)))))))

@@ -166,7 +166,8 @@
 (test compilation-units.are-not-told-of-in-our-threads-when-lisp-is-left
   (flet ((told-p (left-p leaving-p own-p)
            (let ((host::*leaving-p* leaving-p) (host::*own-thread-p* own-p) (told nil))
-             (host::tell-of-unit (lambda (left-p) (declare (ignore left-p)) (setf told t)) left-p)
+             (host::report-unit-end (lambda (left-p) (declare (ignore left-p)) (setf told t))
+                                    left-p)
              told)))
     (is-true (told-p t nil t))
     (is-true (told-p t t nil))

@@ -287,7 +287,7 @@ output, and what to the error output."
     (let* ((file (base:native-path (placed "parts/shard-0-of-2/rows.csv")))
            (size (with-open-file (in file :element-type '(unsigned-byte 8)) (file-length in))))
       (is (string= "1" (missing-of "2")))
-      (base:cut-file file (- size 3))
+      (base:truncate-file file (- size 3))
       (is (string= "0 1" (missing-of "2")))
       (is (= size (progn (run-stroll "--out" (placed "parts") "--shard" "0/2")
                          (with-open-file (in file :element-type '(unsigned-byte 8))

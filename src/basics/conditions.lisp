@@ -156,7 +156,7 @@ one of the names MEANT."
 
 (define-condition outlived (misuse)
   ()
-  (:documentation "An operation was requested of a finished run, by a program that goes on."))
+  (:documentation "A program has requested an operation of a finished run."))
 
 (defun reject-outlived (control &rest arguments)
   "Signal OUTLIVED, a MISUSE, with a text formatted from CONTROL and ARGUMENTS."

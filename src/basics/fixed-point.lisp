@@ -129,7 +129,7 @@
 ;;; last cell is for the result: a result in the cell of an argument takes 5 ns more.
 
 (defmacro in-cells (function &rest numbers)
-  "Return the double-float that FUNCTION puts behind NUMBERS, in the last cell of a vector."
+  "Return the double-float that FUNCTION puts after NUMBERS, in the last cell of a vector."
   (with-gensyms (cells)
     (let ((count (length numbers)))
       `(let ((,cells (make-array ,(1+ count) :element-type 'double-float)))
@@ -139,7 +139,7 @@
          (aref ,cells ,count)))))
 
 (defmacro define-put (name (&rest arguments) &body body)
-  "Define NAME, which puts the value of BODY into a vector, behind the cells that hold ARGUMENTS."
+  "Define NAME, which puts the value of BODY into a vector, after the cells that hold ARGUMENTS."
   (let ((count (length arguments)))
     `(defun ,name (cells)
        (declare #.*hot* (type (simple-array double-float (,(1+ count))) cells))
@@ -149,7 +149,7 @@
          nil))))
 
 (define-constant +number-text+ "a real number, from -1.7e308 to 1.7e308" :test #'string=
-  :documentation "In words, what a double-float can stand for.")
+  :documentation "In words, the range of double-floats.")
 
 (defmacro check-number (operator place)
   "Signal WRONG-ARGUMENT unless PLACE is a double-float or a real number that can be made one. The

@@ -89,7 +89,7 @@
 
 ;;; Reading.
 
-(defun texts-between-commas (line)
+(defun fields-between-commas (line)
   (declare #.*hot* (type (simple-array character (*)) line))
   (loop with start = 0
         for comma = (position #\, line :start start)
@@ -105,7 +105,7 @@
         unless (and (< (1+ quote) (length line)) (char= #\" (char line (1+ quote))))
           return (1+ quote)))
 
-(defun without-doubles (text)
+(defun undouble-quotes (text)
   "Return TEXT with each doubled quote made single."
   (with-output-to-string (out)
     (loop with i = 0
@@ -113,18 +113,18 @@
           do (write-char (char text i) out)
              (incf i (if (char= #\" (char text i)) 2 1)))))
 
-(defun next-text (line start)
+(defun next-field (line start)
   "Return the field that begins in LINE at START, and its end. Signals BROKEN-LINE."
   (cond ((and (< start (length line)) (char= #\" (char line start)))
          (let ((end (end-of-quoted line start)))
-           (values (without-doubles (subseq line (1+ start) (1- end))) end)))
+           (values (undouble-quotes (subseq line (1+ start) (1- end))) end)))
         (t (let ((end (or (position #\, line :start start) (length line))))
              (when (find #\" line :start start :end end) (error 'broken-line :line line))
              (values (subseq line start end) end)))))
 
-(defun texts-with-quotes (line)
+(defun fields-with-quotes (line)
   (loop with start = 0
-        collect (multiple-value-bind (text end) (next-text line start)
+        collect (multiple-value-bind (text end) (next-field line start)
                   (unless (or (= end (length line)) (char= #\, (char line end)))
                     (error 'broken-line :line line))
                   (setf start (1+ end))
@@ -135,8 +135,8 @@
   "Return the fields of LINE, of a table. Signals BROKEN-LINE."
   ;; Most lines have no quotes, and are split faster this way.
   (let ((texts (if (find #\" (the simple-string line))
-                   (texts-with-quotes line)
-                   (texts-between-commas line))))
+                   (fields-with-quotes line)
+                   (fields-between-commas line))))
     (if (find #\' (the simple-string line)) (mapcar #'unescaped texts) texts)))
 
 ;;;; JSON, XML and HTML

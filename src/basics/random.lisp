@@ -10,7 +10,7 @@
 ;;; CL:RANDOM must not depend on what this Lisp has done before. Programs (continuations, plans and
 ;;; the code around them) use a random state of their run, seeded when that begins. Code that
 ;;; changes a world uses another one, because a journal repeats the world but not the programs. It
-;;; is seeded anew in each tick, from the run's seed and the tick, so it need not be copied, saved
+;;; is seeded again in each tick, from the run's seed and the tick, so it need not be copied, saved
 ;;; or digested.
 
 (defparameter *lisps-dice* 'cl:*random-state*

@@ -308,7 +308,7 @@ typed 23.2, not 23.200000762939453. Smaller numbers have an exponent."
 ;;; The output of editors.
 
 (defun followed (stream)
-  "Return the stream that STREAM, perhaps a synonym, stands for here."
+  "Return STREAM, or the stream that it is a synonym for here."
   (if (typep stream 'synonym-stream)
       (followed (symbol-value (synonym-stream-symbol stream)))
       stream))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.copying)
 
-(export '(copier with-copier copier-variable copier-option note-copy settled define-shared
+(export '(copier with-copier copier-variable copier-option note-copy note-finished define-shared
           define-shared-slots))
 
 (define-record (copier (:constructor make-copier ()))
@@ -35,8 +35,8 @@ for the copy, and true; or NIL and false" :writable)
   "Record COPY as the copy of VALUE by COPIER. Return COPY."
   (setf (gethash value (copier-table copier)) copy))
 
-(declaim (inline settled))
-(defun settled (copy copier)
+(declaim (inline note-finished))
+(defun note-finished (copy copier)
   "Return COPY, an object made for the fork of COPIER that needs no further work."
   (note-copy copy copy copier))
 

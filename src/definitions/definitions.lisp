@@ -121,7 +121,7 @@ there."
          (new (subst value clause form :test #'equal)))
     (cond ((other-definition-p value definition) value)
           ((and clause (not (equal new form))) new)
-          (t (reject-use "~S can stand for no part of ~A. Give a whole form for it."
+          (t (reject-use "~S cannot replace a part of ~A. Give a whole form for it."
                          value (definition-text definition))))))
 
 (defun call-with-definition-restarts (function replace)
@@ -176,7 +176,7 @@ form for it, also repeatedly: read again from its file, or with another clause."
   (let ((*definition* (make-defining source form)))
     (call-with-definition-restarts (lambda () (call-blaming function #'reject-value)) #'eval)))
 
-(defun part-with (test form)
+(defun find-part (test form)
   "Return the first part of FORM, a tree of conses, of which TEST is true, or NIL."
   (let ((stack (list form)))
     (loop while stack
@@ -189,7 +189,7 @@ form for it, also repeatedly: read again from its file, or with another clause."
 (defun endless-p (form)
   "True if FORM has more conses than a written form can have, as circular lists do."
   (let ((left 10000000))
-    (and (part-with (lambda (part) (and (consp part) (minusp (decf left)))) form) t)))
+    (and (find-part (lambda (part) (and (consp part) (minusp (decf left)))) form) t)))
 
 (defun rejected-form (condition)
   "Return a form that signals CONDITION again when it is evaluated."

@@ -83,7 +83,7 @@ LABELS-AND-FORMS alternate, as in KNOWN-FACTS."
                                              (and head (clause-line file head nil))))))))
 
 ;; Lisp itself describes our definitions, such as commands, unless they have another name there.
-(defun worth-telling-p (entry registry symbol)
+(defun show-entry-p (entry registry symbol)
   "True if DESCRIBE of SYMBOL should show its ENTRY in REGISTRY."
   (or (not (registry-fixed-p registry))
       (and (not (eq symbol (entry-name entry)))
@@ -92,7 +92,7 @@ LABELS-AND-FORMS alternate, as in KNOWN-FACTS."
 (defmethod describe-object :after ((symbol symbol) stream)
   (dolist (registry (and symbol *registries*))
     (let ((entry (lookup-entry symbol registry)))
-      (when (and entry (worth-telling-p entry registry symbol))
+      (when (and entry (show-entry-p entry registry symbol))
         (format stream "~&~%~A names ~:[a~;an~] ~A:~%" symbol
                 (find (char (registry-text registry) 0) "aeiou") (registry-text registry))
         (write-facts-of (append (facts (entry-object entry)) (facts-of-definition entry))

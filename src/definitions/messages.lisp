@@ -6,8 +6,8 @@
           copy-message-queue message *robot-told-of* *run-that-reports* *told-of* take-messages
           queue-message queue-items message-text phrase write-message *message-limit* make-message))
 
-;;; Messages are queued as lists of items and become text when they are read. The queue is bounded:
-;;; beyond *MESSAGE-LIMIT* the oldest are dropped and counted.
+;;; Messages are queued as lists of items and become text when they are read. The queue is
+;;; bounded: beyond *MESSAGE-LIMIT* the oldest are dropped and counted.
 
 (defparameter *message-limit* 1000
   "How many messages a queue holds before it drops the oldest (manual 3.7; our bound).")
@@ -49,12 +49,12 @@ troubles.lisp" :export)
   ;; Or a function that returns it later; or :AT-ONCE for a message that is shown at once if there
   ;; is no listener, because the run may never end.
   (notable-p nil (or boolean (eql :at-once) function)
-             "the message is a warning that is shown like an error if nobody reads it"))
+             "the message is a warning that is shown like an error if it is not read"))
 
 (define-record (message-queue (:constructor make-message-queue
                                   (&key (error-policy :report) echoed)
                                 "Return a new, empty queue of messages."))
-  "Messages nobody has read yet. LOCK guards all lists, counts and tables; whether UNSIGNALLED is
+  "Unread messages. LOCK guards all lists, counts and tables; whether UNSIGNALLED is
 NIL may be read without it."
   (lock (make-lock "messages") t)
   (newest-first '() list :writable)
@@ -63,7 +63,7 @@ NIL may be read without it."
   (listener nil (or null function) "the function that is called after each message is queued, in the
 thread that reports and without arguments, or NIL. Can be set" :writable :export)
   (error-policy :report error-policy
-                ":REPORT, :SIGNAL or :COLLECT: what becomes of errors in users' code. Can be set"
+                ":REPORT, :SIGNAL or :COLLECT: what happens to errors in users' code. Can be set"
                 :writable :export)
   (seen '() list "the tail of NEWEST-FIRST that need not be shown" :writable)
   (read-p nil boolean
@@ -146,7 +146,7 @@ is no listener, or NIL"))
   (queue-items :warning stuff))
 
 (defun warn-notably (&rest stuff)
-  "Queue a warning made of the items STUFF that is shown like an error if nobody reads it. Return
+  "Queue a warning made of the items STUFF that is shown like an error if it is not read. Return
 nothing."
   (queue-items :warning stuff :notable-p t))
 

@@ -18,7 +18,7 @@
 
 (defun define-argument-type (name predicate text &optional trouble)
   "Define the argument type NAME: values that satisfy PREDICATE, described by TEXT. TROUBLE is a
-function that returns in words what is wrong with a value, or NIL if TEXT says it all."
+function that returns in words what is wrong with a value, or NIL if TEXT is enough."
   (register *argument-types* name (make-argument-type name predicate text trouble))
   name)
 

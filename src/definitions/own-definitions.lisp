@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(*kept-variables* become call-with-own-definitions))
+(export '(*kept-variables* overwrite-object call-with-own-definitions))
 
-(defun become (object model)
+(defun overwrite-object (object model)
   "Copy all slots of MODEL to OBJECT, a structure of the same type. Return OBJECT."
   (dolist (name (class-slot-names (class-of object)) object)
     (unless (eql (slot-value object name) (slot-value model name))
@@ -23,7 +23,7 @@
     (with-lock (*registries-lock*) (set-entries registry then))
     (mapc #'forget-entry (set-difference now then))
     (loop for (entry copy value) in kept
-          do (become (entry-object entry) copy)
+          do (overwrite-object (entry-object entry) copy)
              (when value
                (setf (global-value (entry-variable entry)) (first value))))
     (mapc #'reinstate (registry-objects registry))))

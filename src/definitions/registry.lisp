@@ -175,7 +175,7 @@ unless NAME is a symbol of Common Lisp or ours."
           ((variable-in-use-p name) (refuse "The variable ~(~A~) already has a value"))
           (t name))))
 
-(defun say-if-replaced (old new registry)
+(defun warn-if-replaced (old new registry)
   (let ((file (source-file (entry-source old)))
         (other (source-file (entry-source new))))
     (when (and file (not (equal file other)))
@@ -210,7 +210,7 @@ threads define NAME, each replaces another object."
            (source (if *marking-p* *own-source* (current-source)))
            (new (make-entry name object source variable)))
       (when (replace-entry old new registry before value)
-        (when old (say-if-replaced old new registry))
+        (when old (warn-if-replaced old new registry))
         (when *definition-listener* (funcall *definition-listener* object))
         (return (values object (and old (entry-object old))))))))
 

@@ -222,7 +222,7 @@ found in it, or NIL; and which of the definitions of that name it is."
   (find char "()"))
 
 (defun code-alone (text)
-  "Return TEXT without comments and blanks, but for one space between two words."
+  "Return TEXT without comments and blanks, except one space between two words."
   (with-output-to-string (stream)
     (let ((i 0) (last #\() (blank nil))
       (loop while (< i (length text))

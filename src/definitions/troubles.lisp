@@ -7,9 +7,9 @@
           *inquiry-hooks* *debugger-refused-p*))
 
 ;;; A message has a cause if it reports an error in users' code, or the failure of a plan that
-;;; nobody waits for. The error policy of the queue decides what happens then:
+;;; no caller waits for. The error policy of the queue decides what happens then:
 ;;;
-;;;   :REPORT   the message is queued, and shown when the run ends if nobody has read it
+;;;   :REPORT   the message is queued, and shown when the run ends if it was not read
 ;;;   :SIGNAL   the first error is signalled as USER-CODE-ERROR where ticks are passed
 ;;;   :COLLECT  the message is queued; SIMULATION-ERRORS returns the errors
 ;;;
@@ -90,12 +90,12 @@ handler continues."
 (defparameter *most-unread* 20 "How many different unread messages are shown.")
 
 (defun take-unseen (queue)
-  "Return the messages in QUEUE that nobody has read, the oldest first. Mark all as read."
+  "Return the unread messages in QUEUE, the oldest first. Mark all as read."
   (with-queue (queue)
     (let ((newest-first (message-queue-newest-first queue)))
       (reverse (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))))
 
-(defun write-counted (messages stream)
+(defun write-counted-messages (messages stream)
   (let ((counts (make-hash-table :test 'equal)) (texts '()))
     (dolist (message messages)
       (let ((text (write-message message nil (text-with-command message))))
@@ -125,7 +125,7 @@ is true."
                                    (take-unseen queue))))
       (when messages
         (fresh-line *error-output*)
-        (write-counted messages *error-output*)
+        (write-counted-messages messages *error-output*)
         (finish-output *error-output*)))))
 
 ;;; Messages that are shown at once.

@@ -84,9 +84,9 @@ loading from a file, or NIL. Can be set" :writable :export)
           (incf (user-calls-count calls))
           (setf (user-calls-origin calls) origin
                 (user-calls-waiting-p calls) nil)
-          (unwind-protect (call-opening (held-off-p) function)
+          (unwind-protect (call-interruptible (interrupts-deferred-p) function)
             (setf (user-calls-origin calls) outer)))
-        (call-opening (held-off-p) function))))
+        (call-interruptible (interrupts-deferred-p) function))))
 
 (defmacro as-users-code ((origin) &body body)
   "Run BODY as CALL-AS-USERS-CODE would a function."

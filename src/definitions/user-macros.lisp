@@ -65,7 +65,7 @@ PARAMETERS; or NIL."
 
 (defun doubt-readtable (form)
   "Warn if FORM contains, as a symbol, syntax of Nisp's reader, such as !>robot.cameras."
-  (let ((slot (part-with (lambda (part)
+  (let ((slot (find-part (lambda (part)
                            (and part (symbolp part)
                                 (< 2 (length (symbol-name part)))
                                 (starts-with-subseq "!>" (symbol-name part))))

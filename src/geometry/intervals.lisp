@@ -24,7 +24,7 @@ joins the values of two axes."
                       (compare (low-y a) (high-y a) (low-y b) (high-y b)))))))))
 
 (define-comparison interval-intersect? and (low-a high-a low-b high-b)
-  "True if the intervals A and B share an element, be it a bound (manual, Table 3.2)."
+  "True if the intervals A and B share an element, perhaps a bound (manual, Table 3.2)."
   (and (<= low-a high-b) (<= low-b high-a)))
 
 (define-comparison interval-subset? and (low-a high-a low-b high-b)

@@ -7,7 +7,7 @@
 ;;; costs nothing here: its lower and upper bounds are the same number (manual 3.2.1).
 
 (deftype finite ()
-  "The numbers that a double-float can stand for."
+  "The numbers that can be converted to double-floats."
   '(and real (satisfies finite-p)))
 
 (deftype span ()

@@ -1,4 +1,4 @@
-;;;; closures.lisp -- what closures close over, compiled and interpreted ones.
+;;;; closures.lisp -- the variables and values that closures close over, compiled or interpreted.
 
 (in-package :ars-magna.host)
 

@@ -68,7 +68,7 @@
             (names-used code))))
 
 (defun constant-meant (constant)
-  "Return what CONSTANT, of code, stands for: the name, if it is a call by name."
+  "Return the name in CONSTANT, of code, if it is a call by name; else CONSTANT."
   (if (internal-type-p constant :sb-kernel #:fdefn)
       (internal (:sb-kernel #:fdefn-name) constant)
       constant))
@@ -107,7 +107,7 @@ symbols, other functions, constants and closed-over values."
   (multiple-value-bind (list unknown-p) (lambda-list-of function)
     (or unknown-p (takes-count-p list count))))
 
-;;; The source files of functions. SBCL must be told if the forms of a file are evaluated singly.
+;;; The source files of functions. SBCL does not know the file of forms that are evaluated singly.
 
 (defvar *dates-of-files* (make-hash-table :test 'equal :synchronized t)
   "The write dates of files whose forms were evaluated singly, by namestring.")

@@ -77,8 +77,8 @@ has set HOOK or *DEBUGGER-HOOK*."
 
 (defun debugger-hook ()
   "Return the function that replaces Lisp's debugger in threads without a binding, called with a
-condition and itself; or NIL. Can be set. The name DEBUGGER-DISABLED-HOOK means that nobody can
-answer."
+condition and itself; or NIL. Can be set. The name DEBUGGER-DISABLED-HOOK means that there is no
+debugger."
   (let ((hook sb-ext:*invoke-debugger-hook*))
     (if (stale-p hook) (hook-of-front-end *front-end*) hook)))
 

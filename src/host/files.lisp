@@ -5,7 +5,7 @@
 (export '(base-directory native-name native-path native-path-of-directory path-called
           existing-path missing-directory many-files-p replace-file plain-file-p
           check-unprotected dangling-link-p name-in-directory file-size unusable-file-text
-          shown-name +illegible+ encoded decoded cut-file call-with-file-lock make-directories
+          shown-name +illegible+ encoded decoded truncate-file call-with-file-lock make-directories
           make-new-directory process-number copy-permissions temporary-file-prefix
           remove-abandoned-files *many-files-text* check-name-legible environment-value
           real-microseconds date-and-time run-command run-attached run-filter octet-input
@@ -100,7 +100,7 @@ exist."
 
 ;; Renaming needs only the directory's permissions, and the superuser may write anything.
 (defun check-unprotected (path)
-  "Signal an error if the file PATH, a pathname, exists and nobody, or not this process, may write."
+  "Signal an error if the file PATH, a pathname, exists and this process, or nobody, may write it."
   (let ((name (system-name path)))
     (when (and (existing-path path)
                (or (zerop (logand #o222 (sb-posix:stat-mode (sb-posix:stat name))))
@@ -145,7 +145,7 @@ invalid octet."
 
 ;;; Files shared by several processes.
 
-(defun cut-file (path length)
+(defun truncate-file (path length)
   "Truncate the file PATH to LENGTH octets."
   (sb-posix:truncate (system-name path) length)
   (values))

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.host)
 
-(export '(deferring-interrupts allowing-interrupts waiting held-off-p protecting-strictly
+(export '(deferring-interrupts allowing-interrupts waiting interrupts-deferred-p protecting-strictly
           call-holding-interrupts call-open-to-interrupts waiting-at-most deadline-passed
-          in-any-case call-opening call-each time-limit let-callers-handle call-with-limit
+          in-any-case call-interruptible call-each time-limit let-callers-handle call-with-limit
           user-interrupt signal-user-interrupt call-on-interrupt call-on-continuing
           die-of-interrupts die-of-termination))
 
@@ -21,8 +21,8 @@
   "What defers the interrupts of this thread: NIL for nothing; :STRICTLY; or a function that calls
 another with interrupts allowed, if its second argument is true only where SBCL waits.")
 
-(declaim (inline held-off-p))
-(defun held-off-p ()
+(declaim (inline interrupts-deferred-p))
+(defun interrupts-deferred-p ()
   "True if interrupts of this thread are deferred here."
   (and *holding* t))
 
@@ -104,8 +104,8 @@ interrupts are as outside."
 
 ;;; Cleanup that always completes.
 
-(declaim (inline call-opening))
-(defun call-opening (open-p function)
+(declaim (inline call-interruptible))
+(defun call-interruptible (open-p function)
   "Call FUNCTION, with interrupts allowed if OPEN-P."
   (if open-p
       (call-allowing-interrupts function)
@@ -113,13 +113,13 @@ interrupts are as outside."
 
 (defun call-in-any-case (first &rest others)
   (declare (dynamic-extent others))
-  (let ((open-p (not (held-off-p))))
+  (let ((open-p (not (interrupts-deferred-p))))
     (labels ((call-rest (functions)
                (when functions
                  (unwind-protect (funcall (the function (first functions)))
                    (call-rest (rest functions))))))
       (deferring-interrupts
-        (unwind-protect (call-opening open-p first)
+        (unwind-protect (call-interruptible open-p first)
           (call-rest others))))))
 
 ;; PROTECTING-STRICTLY is for little work that is done often; it allows no interrupts.

@@ -106,12 +106,12 @@ this thread serves others and allows interrupts."
 (call-when-leaving 'note-leaving)
 
 ;; At exit, what Lisp compiles in our threads, as for generic functions, can be lost.
-(defun tell-of-unit (function left-p)
+(defun report-unit-end (function left-p)
   "Let FUNCTION report that a unit ended, aborted if LEFT-P, unless it was because this Lisp exits."
   (unless (and left-p *leaving-p* (own-thread-p))
     (funcall function left-p)))
 
-(wrap-unit-summaries #'tell-of-unit)
+(wrap-unit-summaries #'report-unit-end)
 
 (defun join-thread (thread)
   "Wait until THREAD has ended, normally or not. Return nothing."

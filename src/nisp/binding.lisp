@@ -1,4 +1,4 @@
-;;;; binding.lisp -- what binds variables: LET, \, DEFFUNC and kin, MATCHQ with its matchvars.
+;;;; binding.lisp -- forms that bind variables: LET, \, DEFFUNC, MATCHQ and so on.
 
 (in-package :ars-magna.nisp)
 
@@ -41,7 +41,7 @@
 (public continuation)
 (defmacro continuation (lambda-list &body body)
   "Return a function for a robot command to call with an error code (NIL: none) and what else it
-reports. Like LAMBDA, but types may follow the parameters and unused ones are no matter
+reports. Like LAMBDA, but types may follow the parameters and unused ones cause no warning
 (manual 3.1.1; reading 39)."
   (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
     (check-continuation lambda-list body)

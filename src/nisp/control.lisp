@@ -105,8 +105,8 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
 ;;;; Lists without types
 
 ;;; A hyphen and a type after a variable declare its type (manual 3.1). Types are documentation:
-;;; they are checked for being there and then dropped, known or not. A name that may be a slip for
-;;; that of a known type is warned of.
+;;; they are checked for being there and then dropped, known or not. A name that resembles that of a
+;;; known type causes a warning.
 
 (defun hyphen-p (form)
   (and (symbolp form) (string= form "-")))

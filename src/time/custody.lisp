@@ -54,15 +54,15 @@
 interrupted if this thread could before."
   (if (mine-p custody)
       (funcall function)
-      (let ((open-p (not (held-off-p))))
+      (let ((open-p (not (interrupts-deferred-p))))
         (deferring-interrupts
           (if (take-custody custody)
               (let* ((held (cons custody *held*)) (*held* held))
                 (declare (dynamic-extent held))
                 (in-any-case
-                  (call-opening open-p function)
+                  (call-interruptible open-p function)
                   (give-up-custody custody)))
-              (call-opening open-p otherwise))))))
+              (call-interruptible open-p otherwise))))))
 
 (defun hand-over (custody thread)
   (setf (custody-thread custody) thread))

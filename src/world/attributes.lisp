@@ -28,7 +28,7 @@
 
 (declaim (inline attribute-key))
 (defun attribute-key (name)
-  "Return the keyword that stands for the attribute called NAME, a symbol."
+  "Return the keyword for the attribute called NAME, a symbol."
   (if (keywordp name) name (make-keyword (name-string name))))
 
 (defun attribute-of (name)

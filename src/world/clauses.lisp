@@ -57,7 +57,7 @@ of DEFINITION, which expected EXPECTED there."
 ;;; Clauses one by one.
 
 (defvar *path* '()
-  "The positions that lead from the definition at hand to the clause that is being carried out.")
+  "The positions that lead from the current definition to the current clause.")
 
 (defun call-with-clause (function clause path)
   "Call FUNCTION with CLAUSE, at PATH of the current definition, with restarts that return NIL or

@@ -4,10 +4,10 @@
 
 (export '(define-map))
 
-;;; The obj clause of a map, a thing. A clause is data. Its author's code in it, prototypes and the
-;;; lambdas of draw functions, is compiled beside it: in a list of (key function), each once. A key
-;;; is (name form), with the name of a thing that is drawn. A clause that the user chose instead, or
-;;; that another stands for, has none there.
+;;; The obj clause of a map, a thing. A clause is data. The code in it, prototypes and the lambdas
+;;; of draw functions, is compiled separately, in a list of (key function), each once. A key is
+;;; (name form), with the name of a thing that is drawn. Code of clauses that were typed in a
+;;; restart, or that come from another clause, is not in the list.
 
 (defvar *code* '() "The compiled code of the map that is being defined.")
 
@@ -110,7 +110,7 @@
 ;;; about when a file is compiled.
 
 (defun find-places (map path)
-  "Find the places of MAP anew, and keep it in PATH, if any, if the code of all types worked."
+  "Find the places of MAP again, and cache it in PATH, if any, if the code of all types worked."
   (let ((whole (nth-value 1 (classify-places map))))
     (when (and path whole) (write-cache map path (cache-key map)))
     map))
@@ -125,8 +125,8 @@
 
 (addition rebuild-map)
 (defun rebuild-map (map)
-  "Find the places of MAP (a map or its name) anew, by the place types that are defined now, and
-rewrite its cache. Worlds of MAP see the change at once. Return the map."
+  "Find the places of MAP (a map or its name) again, by the current place types, and rewrite its
+cache. Worlds of MAP see the change at once. Return the map."
   (let ((map (find-map map)))
     (find-places map (usable-cache-path map))))
 

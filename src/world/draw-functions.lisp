@@ -58,7 +58,7 @@ none, a second value says why, and what to do."
                                     (defun ~:*~(~A~) ~A ...)"
                                value +draw-arguments+)))))
 
-;;; In definitions a descriptor is not evaluated, but for this: (lambda ...), #'name and name.
+;;; In definitions a descriptor is not evaluated, except (lambda ...), #'name and name here.
 
 (defun call-of-p (name form)
   (and (proper-list-p form) (symbolp (first form)) (same-name-p (first form) name)))

@@ -9,8 +9,8 @@
 ;;; Destroyed things and removed attachments have no rank: they are copied like other objects, if
 ;;; something still refers to them.
 
-(declaim (inline twin-by-rank))
-(defun twin-by-rank (thing old new)
+(declaim (inline copy-by-rank))
+(defun copy-by-rank (thing old new)
   "Return what THING was copied to, if it is one of the vector OLD, that were copied to NEW."
   (declare (type thing thing) (type simple-vector old new))
   (let ((rank (thing-rank thing)))
@@ -22,7 +22,7 @@
   (let ((world (thing-world thing)))
     (cond ((and world (not (eq world (copier-option fork :world)))) thing)
           ((destructuring-bind (&optional (old #()) &rest new) (copier-objects fork)
-             (and new (twin-by-rank thing old new))))
+             (and new (copy-by-rank thing old new))))
           (t (copy-slots thing fork)))))
 
 (defmethod copy-plan-value ((attachment attachment) fork)
@@ -54,10 +54,10 @@
                 (attachment-thing copy) twin)
           (when (attachment-group attachment)
             (setf (attachment-group copy) (group-for (attachment-group attachment)))
-            (seat-member (attachment-group copy) (attachment-index copy) copy))
+            (put-member (attachment-group copy) (attachment-index copy) copy))
           copy)))))
 
-(defun seat-others (group copy copier)
+(defun put-other-members (group copy copier)
   "Seat in COPY those members of GROUP that are on no thing any more, until they are taken out."
   (when (group-dead group)
     (let ((row (group-row copy)))
@@ -86,9 +86,9 @@
        (null (thing-contents thing))))
 
 (defun complete-thing (thing old new copier)
-  "Replace location and contents of the copy of THING by copies. See TWIN-BY-RANK."
+  "Replace location and contents of the copy of THING by copies. See COPY-BY-RANK."
   (declare (type thing thing))
-  (flet ((twin (other) (or (twin-by-rank other old new) (forked other copier))))
+  (flet ((twin (other) (or (copy-by-rank other old new) (forked other copier))))
     (let ((twin (twin thing)))
       (unless (symbolp (thing-location thing))
         (setf (thing-location twin) (forked (thing-location thing) copier)))
@@ -96,12 +96,12 @@
 
 (defun copy-stock (stock things copier)
   (let ((copy (make-stock)))
-    (setf (stock-things copy) (settled things copier)
+    (setf (stock-things copy) (note-finished things copier)
           (stock-count copy) (stock-count stock)
-          (stock-firsts copy) (settled (copy-seq (stock-firsts stock)) copier)
-          (stock-nexts copy) (settled (copy-seq (stock-nexts stock)) copier)
-          (stock-marks copy) (settled (copy-seq (stock-marks stock)) copier))
-    (settled copy copier)))
+          (stock-firsts copy) (note-finished (copy-seq (stock-firsts stock)) copier)
+          (stock-nexts copy) (note-finished (copy-seq (stock-nexts stock)) copier)
+          (stock-marks copy) (note-finished (copy-seq (stock-marks stock)) copier))
+    (note-finished copy copier)))
 
 (defun copy-each-thing (old new count world copier)
   (declare #.*hot* (type simple-vector old new) (type cell-index count))
@@ -119,7 +119,7 @@
          (new (make-array (length things) :initial-element nil)))
     (copy-each-thing things new (stock-count stock) copy copier)
     (loop for group in (world-kicker-groups world)
-          do (seat-others group (forked group copier) copier))
+          do (put-other-members group (forked group copier) copier))
     (setf (world-stock copy) (copy-stock stock new copier))))
 
 (defun octets-of-copy (world)
@@ -135,6 +135,7 @@
       (let ((copy (copy-slots world fork)))
         ;; Their members are yet to be seated.
         (dolist (group (world-kicker-groups world))
-          (setf (group-row (copy-slots group fork)) (settled (copy-seq (group-row group)) fork)))
+          (setf (group-row (copy-slots group fork))
+                (note-finished (copy-seq (group-row group)) fork)))
         (copy-things world copy fork)
         copy)))

@@ -68,9 +68,9 @@
           (setf (group-row group) (resize (group-row group) (* 6 index))))
         (incf (group-count group))
         (setf (attachment-group attachment) group)
-        (seat-member group index attachment)))))
+        (put-member group index attachment)))))
 
-(defun seat-member (group index attachment)
+(defun put-member (group index attachment)
   (let ((row (group-row group)) (place (* 3 index)))
     (setf (attachment-index attachment) index
           (svref row place) attachment
@@ -82,14 +82,14 @@
   (let ((group (attachment-group attachment)))
     (setf (attachment-alive-p attachment) nil)
     (when group
-      (seat-member group (attachment-index attachment) attachment)
+      (put-member group (attachment-index attachment) attachment)
       (push attachment (group-dead group)))))
 
 (defun remove-dead-members (group)
   "Close the gaps in the row of GROUP, with members from its end."
   (dolist (attachment (shiftf (group-dead group) '()))
     (let* ((last (decf (group-count group))) (row (group-row group)))
-      (seat-member group (attachment-index attachment) (svref row (* 3 last)))
+      (put-member group (attachment-index attachment) (svref row (* 3 last)))
       (fill row nil :start (* 3 last) :end (* 3 (1+ last))))))
 
 (defun regroup-kickers (world)

@@ -85,7 +85,7 @@ a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker
     (when old
       (incf *kicker-generation*)
       (setf (kicker-checked-p new) (kicker-checked-p old)))
-    (register *kickers* name (if old (become old new) new) :variable t)))
+    (register *kickers* name (if old (overwrite-object old new) new) :variable t)))
 
 (defun kicker-functions (definition variable options body)
   "Return the keyword arguments, as forms, for a kicker with OPTIONS and BODY (reading 169)."
@@ -253,7 +253,8 @@ or is from another file."
   "Warn if KICKER is on a thing of WORLD, and its test, never true, reads an unknown attribute."
   (let ((key (and (eq :no (kicker-test-outcome kicker))
                   (some-kicker (lambda (each) (eq each kicker)) world)
-                  (find-if-not (lambda (key) (or (attribute-of key) (carried-p key world)))
+                  (find-if-not (lambda (name)
+                                 (or (attribute-of name) (attribute-present-p name world)))
                                (kicker-test-attributes kicker)))))
     (when key
       (warn-once (list :kicker (kicker-name kicker)) world

@@ -26,7 +26,7 @@
                                          (place-type-rules type)))))))
 
 (defun words-sum (words)
-  "Return a check sum of WORDS but for the first and the sum itself, the last of the header."
+  "Return a check sum of WORDS, except the first and the sum itself, the last of the header."
   (declare (type words words))
   (let ((sum 1))
     (declare (type (unsigned-byte 64) sum))
@@ -99,7 +99,7 @@
             (aref (map-directions map) index) value)))
 
 (defun restore-map (map words)
-  "Fill the empty grid of MAP from WORDS. Signals an error if they stand for none."
+  "Fill the empty grid of MAP from WORDS. Signals an error if they are no grid."
   (clear-walls map)
   (clear-places map)
   (let ((walls-end (+ +cache-header+ (* 2 (aref words 2)))))

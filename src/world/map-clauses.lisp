@@ -46,14 +46,14 @@ the form for the option"))
 (defun wrong-derivation-text (kind condition)
   "Return in words what is expected instead of a clause of KIND whose expansion CONDITION rejects."
   (let ((*print-pretty* nil))
-    (format nil "~A; it stands for ~(~S~), where there should be ~A" (clause-kind-usage kind)
+    (format nil "~A; it expands to ~(~S~), where there should be ~A" (clause-kind-usage kind)
             (abridged (malformed-definition-clause condition))
             (malformed-definition-expected condition))))
 
 (defun derived-parts (map clause kind depth)
   "Return the parts that CLAUSE of MAP, of KIND, expands to. Mistakes in them are CLAUSE's."
   (when (< 50 depth)
-    (reject-clause (map-title map) clause "a clause that does not stand for itself, without end"))
+    (reject-clause (map-title map) clause "a clause that does not expand to itself without end"))
   (pushnew (clause-kind-name kind) (map-clause-kinds map))
   (handler-case (call-for-value
                  (lambda ()

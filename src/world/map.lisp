@@ -89,7 +89,7 @@ the first use" :writable :export))
 
 (defgeneric map-replaced (old new)
   (:documentation "Called when the map NEW has taken the place of OLD; OLD is NIL if there was none,
-NEW if OLD was undefined. The layer above ends what goes on in OLD.")
+NEW if OLD was undefined. The layer above ends the runs of OLD.")
   (:method (old new) (declare (ignore old new)) nil))
 
 (defun register-map (map)

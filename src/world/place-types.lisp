@@ -142,8 +142,8 @@ be set. X and Y are the upper left corner of the cell in pixels" :writable :addi
 (addition place-directions)
 (defun place-directions (place)
   "Return the two canonical directions of PLACE, radians: what its type's :directions form says,
-or its basic direction and the opposite. Trouble in the form is queued as an error
-message (reading 72)."
+or its basic direction and the opposite. Errors in the form are queued as error
+messages (reading 72)."
   (let* ((basic (place-canonical-dir place))
          (type (place-type place))
          (function (place-type-directions type))
@@ -229,7 +229,7 @@ message (reading 72)."
   :before name -- ours: where a cell could be of both, this type wins over the one called NAME,
     or over all others if NAME is T; without it, a type that was defined earlier wins
   :documentation text -- ours: what the place type is
-A matcher may go on with integers dx dy, as a checker's values do: ours too. Checker and
+A matcher may have integers dx dy after the direction, as a checker's values: ours too. Checker and
 directions are tried once on a small map of their own. Maps built earlier learn of the type from
 REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment
@@ -267,14 +267,14 @@ CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cach
           (place-type-graphics new) graphics
           (place-type-key new) key)
     (try-place-type new)
-    (register *place-types* name (if old (become old new) new)
+    (register *place-types* name (if old (overwrite-object old new) new)
               :before (and (not (eq next old)) next))
     (warn-of-vain-rules definition (find-place-type name))
     name))
 
 (define-facts (place-type type)
   "Rank" (place-type-rank type)
-  "Told by" (if (place-type-checker type)
+  "Recognized by" (if (place-type-checker type)
                 "a checker"
                 (format nil "~R matcher~:P" (length (place-type-rules type))))
   "Chance that a search finds it where it is not" (place-type-confusion type)

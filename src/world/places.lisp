@@ -174,8 +174,8 @@ MAP, and true if no type was left out (reading 70)."
 
 ;;; A checker or :directions form that does not work would show only when a map is built, perhaps
 ;;; much later. So each is tried when it is defined: a checker on a sample of walls, the rules on
-;;; maps made of their own match forms. What the code needs may be defined later in its file: a
-;;; function or variable that is missing is no trouble yet.
+;;; maps made of their own match forms. What the code needs may be defined later in its file, so a
+;;; missing function or variable is no error yet.
 
 (defparameter *sample*
   '("###########"
@@ -202,15 +202,16 @@ MAP, and true if no type was left out (reading 70)."
     (clear-places map)
     map))
 
+(defun form-wall-p (form column row)
+  "True if the match FORM has a wall at COLUMN and ROW, counted from its upper left corner."
+  (and (<= 0 column) (<= 0 row) (eq t (nth column (nth row form)))))
+
 (defun rule-map (rule)
   "Return a map with the walls of RULE and room for the place beside them."
   (multiple-value-bind (width height) (form-size (rule-form rule))
     (let ((margin (1+ (max (abs (rule-dx rule)) (abs (rule-dy rule))))))
       (small-map (+ width (* 2 margin)) (+ height (* 2 margin))
-                 (lambda (x y)
-                   (let ((row (- y margin)) (column (- x margin)))
-                     (and (< -1 row height) (< -1 column width)
-                          (eq t (nth column (nth row (rule-form rule)))))))))))
+                 (lambda (x y) (form-wall-p (rule-form rule) (- x margin) (- y margin)))))))
 
 (defun try-place-type (type)
   (handler-case
@@ -232,9 +233,9 @@ MAP, and true if no type was left out (reading 70)."
 (defun walled-p (rule)
   "True if RULE wants a wall where it has the place."
   (multiple-value-bind (width height) (form-size (rule-form rule))
-    (let ((column (+ (rule-dx rule) (floor width 2))) (row (+ (rule-dy rule) (floor height 2))))
-      (and (< -1 column width) (< -1 row height)
-           (eq t (nth column (nth row (rule-form rule))))))))
+    (form-wall-p (rule-form rule)
+                 (+ (rule-dx rule) (floor width 2))
+                 (+ (rule-dy rule) (floor height 2)))))
 
 (defun match-form-text (form)
   "Return FORM in the abbreviations of manual 5.1.1."

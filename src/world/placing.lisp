@@ -81,7 +81,7 @@
 
 (defun place-thing (thing location &optional x y)
   "Put THING into LOCATION: NIL, what holds things, or :FLOOR at X, Y (metres, inside the map).
-The primitive: it checks and tells nothing. Return THING."
+The primitive: it checks only the position and tells no watchers. Return THING."
   (if (eq location :floor)
       (let ((x (double x)) (y (double y)))
         (check-inside 'place-thing (world-map (thing-world thing)) x y)
@@ -98,7 +98,7 @@ The primitive: it checks and tells nothing. Return THING."
 ;; everywhere, says so if the position is most likely a mistake.
 (defun warn-if-in-wall (what world x y)
   "Queue a warning that WHAT, a string, has been put into a wall of WORLD at (X,Y). The first one
-about WHAT in a run is also printed if nobody reads it."
+about WHAT in a run is also printed if it is not read."
   (when (wall-at-p (world-map world) x y)
     (queue-items :warning (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
                  :notable-p (first-time-p (list :in-wall what) world))))
@@ -142,7 +142,7 @@ about WHAT in a run is also printed if nobody reads it."
   (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing)))
 
 (defun relocate (thing location &optional x y)
-  "Place THING and tell the watchers."
+  "Place THING and call the watchers."
   (let ((old (thing-location thing)))
     (place-thing thing location x y)
     (note-move thing old location)

@@ -1,4 +1,4 @@
-;;;; residents.lisp -- which world is meant, and finding things in it.
+;;;; residents.lisp -- the world that a name or map means, and finding things in it.
 
 (in-package :ars-magna.world)
 
@@ -46,7 +46,7 @@ of MAP, else MAP's resident world. A world is returned as it is."
 (defun find-things (name &optional world)
   "Return a list of the things called NAME (a symbol or string, perhaps \"PEN#2\", or a serial
 number) in WORLD, in order of creation. WORLD may be a map; by default it is that of the current
-simulation or, as long as there is none, the resident worlds of all maps. Signals WRONG-ARGUMENT."
+simulation or, without one, the resident worlds of all maps. Signals WRONG-ARGUMENT."
   (check-argument find-things name (typep name '(or symbol string integer))
                   "a symbol, a string such as \"PEN#2\", or a serial number")
   (loop for each in (worlds-in-view world)
@@ -54,8 +54,8 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
                      for thing = (thing-of-rank rank each)
                      when (and thing (thing-called-p thing name)) collect thing)))
 
-;;; A name that nothing has may be a slip. Names that differ in their digits are of several things,
-;;; as are those with the number of a thing, such as "PEN#2".
+;;; An unknown name may be a misspelling. Names that differ only in their digits, or in the number
+;;; of a thing, such as "PEN#2", are names of several things.
 
 (defun may-be-slip-p (name other)
   (flet ((without-digits (name)
@@ -89,8 +89,8 @@ perhaps meant; or NIL."
 
 (addition find-thing)
 (defun find-thing (name &optional world)
-  "Return the first of FIND-THINGS with the same arguments, or NIL. A NAME that nothing has, and
-that is like another thing's, gets a warning, once in a run."
+  "Return the first of FIND-THINGS with the same arguments, or NIL. An unknown NAME that
+resembles that of a thing gets a warning, once in a run."
   (let ((things (find-things name world)))
     (when (and (null things) (typep name '(or (and symbol (not null)) string)))
       (dolist (each (worlds-in-view world)) (note-unknown-thing name each)))

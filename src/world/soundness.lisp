@@ -11,7 +11,7 @@
         do (must-hold (and (<= tag (stock-count stock))
                            (thing-p (svref (stock-things stock) (1- tag)))
                            (zerop (bit met tag)))
-                      "what lies in a cell are no things")
+                      "a cell contains something that is no thing")
            (setf (bit met tag) 1)))
 
 (defun check-cells (world)
@@ -19,7 +19,7 @@
          (met (make-array (1+ (stock-count stock)) :element-type 'bit :initial-element 0)))
     (must-hold (= size (* (map-width (world-map world)) (map-height (world-map world)))
                   (length (world-flags world)))
-               "its world has not the size of ~A" (world-map world))
+               "its world does not have the size of ~A" (world-map world))
     (dotimes (index size) (check-cell index stock met))))
 
 (defun check-stock (stock)
@@ -36,14 +36,14 @@
                   (thing-alive-p thing)
                   (= rank (thing-rank thing))
                   (< 0 (thing-serial thing) (world-next-serial world)))
-             "what is number ~D of its things is none of them" rank)
+             "number ~D of its things is not one of them" rank)
   (must-hold (proper-list-of-p (lambda (entry) (typep entry '(cons keyword (cons t null))))
                                (thing-attributes thing))
-             "the attributes of ~A make no sense" thing)
+             "the attributes of ~A are invalid" thing)
   (must-hold (proper-list-of-p (lambda (inside)
                                  (and (thing-p inside) (eq thing (thing-location inside))))
                                (thing-contents thing))
-             "what is in ~A are no things, or are elsewhere" thing)
+             "the contents of ~A are no things, or are elsewhere" thing)
   (must-hold (proper-list-of-p (lambda (attachment)
                                  (and (attachment-p attachment)
                                       (eq thing (attachment-thing attachment))))
@@ -60,11 +60,11 @@
                           "two things have the number ~D" (thing-serial thing))
                (setf (gethash (thing-serial thing) serials) t)))
     (must-hold (= (world-live-count world) (hash-table-count serials))
-               "it has not as many things as it says")))
+               "it does not have as many things as it counts")))
 
 ;;; Places. Each thing is met once: in the cell where it lies, or in what holds it.
 
-(defun count-met (things location met)
+(defun count-things (things location met)
   "Count in the table MET each of THINGS, which are in LOCATION."
   (dolist (thing things)
     (must-hold (eq location (thing-location thing)) "~A is not where it is listed" thing)
@@ -75,18 +75,18 @@
                   (= index (thing-index thing)))
              "~A does not lie in its cell" thing)
   (must-hold (= (thing-flags thing) (aref (stock-marks (world-stock world)) (thing-rank thing)))
-             "~A is not marked as what it is" thing))
+             "the marks of ~A are wrong" thing))
 
 (defun check-floor (world met)
   "Add the things in the cells of WORLD to MET, and check them and the cells' flags."
   (loop for index below (length (world-flags world))
         for flags = (aref (map-flags (world-map world)) index)
         do (do-cell (thing index world)
-             (count-met (list thing) :floor met)
+             (count-things (list thing) :floor met)
              (check-lying thing index world)
              (setf flags (logior flags (thing-flags thing))))
            (must-hold (= flags (aref (world-flags world) index))
-                      "cell ~D is not as the map and the things in it make it" index)))
+                      "the flags of cell ~D do not match the map and its things" index)))
 
 (defun holders-in (world)
   (let ((holders (make-hash-table :test 'eq)))
@@ -113,17 +113,17 @@
     (check-floor world met)
     (dolist (holder (holders-in world))
       (must-hold (proper-list-of-p #'thing-p (location-contents holder))
-                 "what ~A holds are no things" (location-name holder))
-      (count-met (location-contents holder) holder met))
+                 "~A holds something that is no thing" (location-name holder))
+      (count-things (location-contents holder) holder met))
     (do-things (thing world)
-      (must-hold (eql 1 (gethash thing met)) "~A is not in one place" thing)
+      (must-hold (eql 1 (gethash thing met)) "~A is not in exactly one place" thing)
       (must-hold (= (hash-table-count met) (world-live-count world))
-                 "something that is no more lies about"))
+                 "a destroyed thing is still somewhere"))
     (check-no-circle world)))
 
 ;;; Kickers.
 
-(defun check-seat (group index)
+(defun check-member (group index)
   (let* ((row (group-row group))
          (attachment (svref row (* 3 index)))
          (thing (svref row (+ 1 (* 3 index)))))
@@ -132,7 +132,7 @@
                     (= index (attachment-index attachment))
                     (eq thing (and (attachment-alive-p attachment) (attachment-thing attachment)))
                     (eq (svref row (+ 2 (* 3 index))) (attachment-kicker attachment)))
-               "number ~D of the kickers with the chance ~A is none of them"
+               "number ~D of the kickers with probability ~A is not one of them"
                index (group-probability group))))
 
 (defun check-group (group)
@@ -143,10 +143,10 @@
                   (zerop (mod (length (group-row group)) 6))
                   (probability-p (group-probability group))
                   (<= 0 (group-quantum group)))
-             "its groups of kickers make no sense")
-  (dotimes (index (group-count group)) (check-seat group index))
+             "its groups of kickers are invalid")
+  (dotimes (index (group-count group)) (check-member group index))
   (must-hold (every #'null (subseq (group-row group) (* 3 (group-count group))))
-             "there are more kickers with the chance ~A than it says" (group-probability group))
+             "there are more kickers with probability ~A than it counts" (group-probability group))
   (must-hold (and (proper-list-of-p (lambda (attachment)
                                       (and (attachment-p attachment)
                                            (eq group (attachment-group attachment))
@@ -156,24 +156,24 @@
                      (length (remove-duplicates (group-dead group)))
                      (loop for index below (group-count group)
                            count (null (svref (group-row group) (+ 1 (* 3 index)))))))
-             "the kickers with the chance ~A that were taken off do not add up"
+             "the number of removed kickers with probability ~A is wrong"
              (group-probability group)))
 
 (defun check-kickers (world)
-  (must-hold (proper-list-p (world-kicker-groups world)) "its groups of kickers go round")
+  (must-hold (proper-list-p (world-kicker-groups world)) "its list of kicker groups is circular")
   (mapc #'check-group (world-kicker-groups world))
   (must-hold (proper-list-of-p (lambda (attachment)
                                  (and (attachment-p attachment)
                                       (eq world (thing-world (attachment-thing attachment)))))
                                (world-due-kickers world))
-             "the kickers that are due are none"))
+             "its due kickers are not kickers of its things"))
 
 (defun check-world (world)
   "Signal an error, CONTRADICTION where we check for it, unless WORLD, which was read from a file,
 is a state that a run can reach."
   (must-hold (and (= (length (world-dice-set world)) (length +dice-purposes+))
                   (every (lambda (dice) (typep dice 'dice)) (world-dice-set world)))
-             "its dice are none")
+             "its dice are invalid")
   (check-stock (world-stock world))
   (check-cells world)
   (check-things world)

@@ -26,7 +26,7 @@
    (nexts (make-tags +least-stock+) tags
           "by rank, the tag of the thing that came next to where the thing lies")
    (marks (make-octets +least-stock+) octets
-          "by rank, the flags of the cell where the thing lies that come of it")))
+          "by rank, the flags that the thing causes in the cell where it lies")))
 
 ;;; Cells.
 

@@ -1,13 +1,13 @@
-;;;; thing-attributes.lisp -- reading and setting the attributes of things, and slips in them (5.3).
+;;;; thing-attributes.lisp -- reading and setting attributes of things; warnings of misspelt ones.
 
 (in-package :ars-magna.world)
 
 (export '(note-strange-name warn-of-slips))
 
-(defun carried-p (key world)
+(defun attribute-present-p (key world)
   (do-things (thing world)
     (when (assoc key (thing-attributes thing) :test #'eq)
-      (return-from carried-p t))))
+      (return-from attribute-present-p t))))
 
 (defun carried-name-like (key world)
   "Return an undeclared attribute of a thing of WORLD that KEY may be a misspelling of, or NIL."
@@ -29,7 +29,7 @@ declared attribute or, if it is READ, one that a thing has."
         (when (and like
                    (or read (declared-name-like key))
                    (not (said-p key world))
-                   (not (carried-p key world)))
+                   (not (attribute-present-p key world)))
           (warn-once key world
                      (format nil "~(~A~) of ~(~A~): ~(~S~) is not declared, and nothing here has ~
                                   it; did you mean ~(~S~)?"
@@ -39,9 +39,9 @@ declared attribute or, if it is READ, one that a thing has."
 (settable get-attribute)
 (defun get-attribute (thing attribute)
   "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
-which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it, as SORT does. An
-ATTRIBUTE that may be a slip for one that is declared or that a thing has gets a warning, once in a
-run."
+which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not modify it, as SORT does. An
+ATTRIBUTE that may be a misspelling of one that is declared or that a thing has gets a warning, once
+in a run."
   (check-argument get-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (let* ((key (attribute-key attribute))
          (entry (assoc key (thing-attributes thing) :test #'eq)))
@@ -153,7 +153,7 @@ that the attribute cannot have. Warns as GET-ATTRIBUTE does."
 time.")
 
 (defun option-called (name)
-  "Return the entry of *OPTIONS-OF-THINGS* that NAME is or is a slip for, or NIL."
+  "Return the entry of *OPTIONS-OF-THINGS* that NAME equals or resembles, or NIL."
   (let ((key (attribute-key name)))
     (or (assoc key *options-of-things*)
         (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
@@ -180,7 +180,7 @@ time.")
                 (string-downcase thing-name)))))
 
 (defun warn-of-slips (definition name descriptor &key clause)
-  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION, or a map's CLAUSE."
+  "Warn of probable misspellings in DESCRIPTOR of the thing NAME in DEFINITION, or a map's CLAUSE."
   (dolist (slip (slips-in descriptor))
     (warn-of-definition "~A~@[ (~A)~]: ~A" definition
                         (clause-place (or clause (assoc (first slip) descriptor)))
@@ -194,13 +194,13 @@ time.")
   "Warn once if the attribute KEY of a specification is undeclared and no thing has it."
   (unless (or (attribute-of key)
               (said-p key world)
-              (carried-p key world))
+              (attribute-present-p key world))
     (warn-once key world
                (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~
                             ~]~:[~;: that is what a thing is made with, and no attribute~]"
                        key (declared-name-like key) (option-of-things-p key)))))
 
-;;; An attribute that is declared anew may no longer have the values that things have.
+;;; A redefined attribute may no longer accept the values that things have.
 
 (defun unfit-recipe (recipes key)
   "Return the first of RECIPES and their contents with an invalid KEY, and what is wrong with it."

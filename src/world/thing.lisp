@@ -116,7 +116,7 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
 ;;; Attributes.
 
 (defun value-like (value domain)
-  "Return the symbol in DOMAIN that VALUE may be a slip for, or NIL."
+  "Return the symbol in DOMAIN that VALUE may be a misspelling of, or NIL."
   (and (symbolp value)
        (nearest-name value (remove-if-not #'symbolp (remove nil domain)))))
 

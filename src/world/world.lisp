@@ -49,7 +49,7 @@ grip" :export)))
 
 (define-constant +dice-purposes+
     '(:motion :odometry :place :looking :tracking :handling :kickers :manipulations :user)
-  :test #'equal :documentation "What chance decides; each has dice of its own.")
+  :test #'equal :documentation "The purposes of dice.")
 
 (defmethod digest-state ((dice dice) digest)
   (digest-add digest (dice-state dice)))
@@ -207,8 +207,8 @@ OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside tick
 
 (defun warn-once (key world items &key (notable t))
   "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had one about KEY,
-such as a list of a topic and a name. If nobody reads it, it is shown like an error, provided that
-NOTABLE is true, or is a function that returns true by then. Return true if it was queued."
+such as a list of a topic and a name. If it is not read, it is shown like an error, provided that
+NOTABLE is true, or is a function that then returns true. Return true if it was queued."
   (when (first-time-p key world)
     (queue-items :warning (ensure-list items) :notable-p notable)
     t))

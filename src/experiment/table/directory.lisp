@@ -71,7 +71,7 @@ True if any lines are left. Signals DAMAGED-TABLE, and leaves FILE unchanged, if
     (check-beginning file columns)
     (let ((end (map-lines (constantly nil) file)))
       (unless (= end (file-size file))
-        (call-writing (lambda () (check-unprotected file) (cut-file file end)) file))
+        (call-writing (lambda () (check-unprotected file) (truncate-file file end)) file))
       (plusp end))))
 
 (defun open-table (file columns)
