@@ -139,7 +139,7 @@
 
 (test definers.say-which-list-is-missing
   (is-true (complains-p '(command:defmanipulation rub (:by robot))
-                        "the list of options stands behind the parameters"))
+                        "the list of options comes after the parameters"))
   (is-true (complains-p '(command:defmanipulation rub (:by robot) (print 3)) "or () for none"))
   (is-true (complains-p '(rpl:def-interp-proc rub (rpl:wait-time 3))
                         "The list of parameters stands before the body")))

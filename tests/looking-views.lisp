@@ -88,7 +88,9 @@
                                                          (eye) :non-local '() :all t)
                                         collect (robot:designate sighting (eye)))))
                  (incf found (length designators))
-                 (incf lost (count-if-not #'robot:trackable-p designators)))))
+                 (incf lost (count-if-not (lambda (designator)
+                                            (robot:trackable-p designator (eye)))
+                                          designators)))))
     (is (< 200 found))
     (is (< lost (* 0.05 found)) "~D of ~D" lost found)))
 

@@ -87,7 +87,7 @@ exactly once."
 (test go-forward.says-that-it-is-not-for-going-back
   (with-rover (:clean t)
     (is (null (code (outcome () command:robot-go-forward -3))))
-    (is-true (has-words-p (displayed) "-3 ticks are none" "To drive back, turn by pi"))))
+    (is-true (has-words-p (displayed) "-3 ticks do nothing" "To drive back, turn by pi"))))
 
 (test go-forward.is-blocked-by-walls-and-things
   (with-rover (:clean t)

@@ -67,7 +67,7 @@
     (command:robot-go-forward skater 3)
     (run:run-ticks 10)
     (let ((said (why-said)))
-      (is-true (has-words-p said "(robot-go-forward skater 3)" "asked for by Lisp" "after tick 0"
+      (is-true (has-words-p said "(robot-go-forward skater 3)" "issued by Lisp" "after tick 0"
                             ":NOT-MOVING" "its speed is 0" "robot-set-speed"))
       (is (string= said (why-said skater)))
       (is (string= said (why-said (robot:robot-hand skater 0))) "of a part: of its robot")
@@ -81,7 +81,7 @@
     (at-the-prompt "go-forward 3")
     (run:run-ticks 1)
     (is-true (has-words-p (why-said) "(robot-turn skater 2)" ":INTERRUPT"
-                          "robot-go-forward, asked for by the prompt"))))
+                          "robot-go-forward, issued by the prompt"))))
 
 (test why.tells-of-tracks-that-were-lost
   (with-skater ()
@@ -102,7 +102,7 @@
 (test why.is-answered-at-the-prompt
   (with-skater ()
     (is-true (has-words-p (joined (at-the-prompt "set-speed 0" "go-forward 3" "why"))
-                          ":NOT-MOVING" "asked for by the prompt"))))
+                          ":NOT-MOVING" "issued by the prompt"))))
 
 (test why.is-the-business-of-each-run
   (with-skater ()

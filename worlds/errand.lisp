@@ -96,11 +96,11 @@ of the robot shows that ERRAND was taken over, end it instead."
 ;;; Going there.
 
 (defun track-then (errand designator next otherwise)
-  "Track DESIGNATOR and take the step NEXT once that is so, or OTHERWISE if it cannot be."
+  "Track DESIGNATOR and take the step NEXT when the track has begun, or OTHERWISE if it cannot."
   (let ((begun #f))
     (camera-track (errand-camera errand) designator
       (continuation (err camera designator)
-        ;; It is called again when the track ends; what that keeps from succeeding then says so.
+        ;; It is called again when the track ends; a command that needs the track fails by itself.
         (cond (begun nil)
               (t (setf begun #t)
                  (go-on errand err next otherwise)))))))

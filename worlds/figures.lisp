@@ -112,7 +112,7 @@ to draw; NIL is the whole map.")
 
 (defparameter *ways-of-choosing*
   '("always the short way" "always the long way" "either, at random" "chosen by rollouts")
-  "What the page calls the conditions of CHOOSING-BY-ROLLOUTS, in their order.")
+  "The labels of the conditions of CHOOSING-BY-ROLLOUTS on the page, in order.")
 
 (defun in-time-p (outcome)
   (string= "success" outcome))

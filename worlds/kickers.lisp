@@ -1,7 +1,7 @@
 ;;;; kickers.lisp -- kickers that move and change things in the shipped worlds.
 
 ;;; Use them in any world: (obj (ball :prototype ars-worlds:ball* :kickers (roll-away)) ...).
-;;; Kickers are found by name, in whichever package. Steps are shorter than a cell, so nothing is
+;;; Kickers are found by name, in any package. Steps are shorter than a cell, so nothing is
 ;;; kicked through a wall. A movement of several ticks keeps its state in an attribute of the thing,
 ;;; which robots cannot sense. All randomness comes from the world's dice for users, so a run with
 ;;; the same seed repeats itself. Manual 5.3.1.

@@ -1,7 +1,7 @@
 ;;;; plans-reckoning.lisp -- dead reckoning: a robot's estimate of its position, and corrections.
 
-;;; For plans that find their way on a map. A RECKONING begins at a given position and is kept by an
-;;; odometer of its own. Walls met and doorways sensed correct it. Only HERE reads the true
+;;; For plans that find their way on a map. A RECKONING begins at a given position and has its own
+;;; odometer. Walls met and doorways sensed correct it. Only HERE reads the true
 ;;; position, for the start of a plan.
 
 (in-package :ars-worlds)

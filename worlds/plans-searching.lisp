@@ -8,7 +8,7 @@
 ;;;     (hide-thing 'vase '((:size 1) (:color violet) (:substance glass)))
 ;;;     (run-plan 'search-nearest '((:color violet) (:substance glass)) watson-lookouts*))
 ;;;
-;;; All three take their random choices from the same dice of their own: trials.lisp says why.
+;;; All three draw their random choices from the same separate dice: see trials.lisp.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)

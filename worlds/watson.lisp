@@ -2,8 +2,8 @@
 
 ;;; For errands: six rooms off a hallway, furniture to drive round, things in drawers and cupboards
 ;;; up to three deep. The cat wanders about, the ball rolls, the newspaper blows about, somebody
-;;; keeps borrowing the scissors, and Aunt Agatha does her rounds. Each room's walls have parameters
-;;; of their own. North is up, y grows downwards. Each character is a square metre: # wall, +
+;;; keeps borrowing the scissors, and Aunt Agatha does her rounds. The parameters of walls differ
+;;; from room to room. North is up, y grows downwards. Each character is a square metre: # wall, +
 ;;; doorway, > ROBBIE at its start.
 ;;;
 ;;;   ########################################

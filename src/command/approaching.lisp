@@ -27,7 +27,8 @@
     (setf (operation-count operation) +aiming-turns+)))
 
 (defun drive-to-goal (robot designator)
-  "Drive ROBOT for a tick towards DESIGNATOR. Return whether it has arrived, and what blocked it."
+  "Drive ROBOT for a tick, at most to where DESIGNATOR was last seen. Return whether it has arrived,
+and what blocked it."
   (let* ((distance (distance-to robot (designator-x designator) (designator-y designator)))
          (block (drive-tick robot distance)))
     (values (at-designator-p robot designator (<= distance (longest-step robot)) block)
@@ -64,14 +65,14 @@
   "Approach the designator that is the subject of OPERATION for a tick."
   (approach-step operation (operation-resource operation)
                  (first (operation-arguments operation)) (operation-subject operation))
-  (unless (operation-finished-p operation) (once-more operation)))
+  (unless (operation-finished-p operation) (repeat-step operation)))
 
-;; As reading 112 says.
+;; See reading 112.
 (defmethod approaching-p ((operation operation) camera)
   (and (eq 'robot-goto-designator (command-name (operation-command operation)))
        (eq camera (first (operation-arguments operation)))))
 
-;; As reading 109 says.
+;; See reading 109.
 (define-command robot-goto-designator (operation (robot robot)
                                        (camera camera "the camera that tracks the designator"))
     ((camera "the camera")

@@ -44,8 +44,8 @@
   (echo '() list
         "the names of the results that are also passed after an interruption")
   (delay nil function)
-  (instant-p nil boolean "the command has no delay: it ends in the tick after it was issued, even if
-another one follows it" :export)
+  (instant-p nil boolean "the command has no delay: it is done in the tick after it was issued, even
+if another one follows it" :export)
   (report nil (or null function))
   (guarded-p nil boolean "a user has defined it: errors in it become messages")
   (body nil function))

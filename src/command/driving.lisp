@@ -43,7 +43,7 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
          (fail-with ,operation :not-moving)
          (let ((,block ,(if drive `(,drive ,operation) '(drive-tick robot))))
            ,@body
-           (unless (operation-finished-p ,operation) (once-more ,operation))))))
+           (unless (operation-finished-p ,operation) (repeat-step ,operation))))))
 
 (define-step drive-a-while (operation (robot-p (operation-resource operation)))
   "Drive for a tick, and end OPERATION when its time is over."
@@ -65,7 +65,7 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
       (drive-on (block operation drive-in-time)
         (when (or block (drive-time-over-p operation)) (succeed operation)))))
 
-;; As reading 233 says.
+;; See reading 233.
 (define-command robot-go-forward (operation (robot robot)
                                   (time ticks "for how many ticks"))
     ()
@@ -111,7 +111,7 @@ ticks."
 ;; The manual has none.
 (addition (robot-go-distance :ars :nisp))
 
-;; As reading 102 says.
+;; See reading 102.
 (define-command robot-goto-wall (operation (robot robot))
     ()
     ((:family :moving) (:section "3.5") (:delay robot-move-delay*)
@@ -137,7 +137,7 @@ ticks."
   "True if ROBOT drove in the last tick, or in this."
   (>= (robot-drove-tick robot) (1- (world-tick (robot-world robot)))))
 
-;; As reading 95 says.
+;; See reading 95.
 (define-command robot-stop (operation (robot robot))
     ()
     ((:family :moving) (:section "3.5") (:delay 1) (:traits :stops)
@@ -184,7 +184,7 @@ ROBOT-STOP meanwhile does not prolong that."
     (:wall (succeed operation))
     (:thing (fail-with operation :robot-blocked))
     ((nil) (if (neighbour-wall-p robot side)
-               (once-more operation)
+               (repeat-step operation)
                (succeed operation)))))
 
 (define-step follow-on (operation (and (robot-p (operation-resource operation))
@@ -195,11 +195,11 @@ ROBOT-STOP meanwhile does not prolong that."
     (destructuring-bind (side heading) (operation-subject operation)
       (cond ((not (turn-towards robot
                                 (angle-difference (* heading (/ pi 2)) (robot-angle robot)) 1d-3))
-             (once-more operation))
+             (repeat-step operation))
             ((standing-p robot) (fail-with operation :not-moving))
             (t (drive-along operation robot side))))))
 
-;; As reading 107 says.
+;; See reading 107.
 (define-command robot-follow-wall (operation (robot robot))
     ()
     ((:family :moving) (:section "C") (:delay robot-move-delay*)

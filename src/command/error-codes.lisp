@@ -85,13 +85,13 @@ camera-remove.")
 lost from view."
      "Look for the thing again, and use the new designator.")
     (:non-local-grasp "The thing is too far away to be grasped."
-     "Go there with robot-goto-designator, and find it anew as :local.")
+     "Go there with robot-goto-designator, and find it again as :local.")
     (:non-local-designator "The thing is too far away."
-     "Go there with robot-goto-designator, and find it anew as :local.")
+     "Go there with robot-goto-designator, and find it again as :local.")
     (:not-tracked "The camera does not track what the hand is to grasp."
      "Track it with camera-track first.")
     (:missed-grasp "The hand reached for the thing and missed it."
-     "Try again; look for the thing anew if its designator was lost.")
+     "Try again; look for the thing again if its designator was lost.")
     (:insufficient-strength "The thing, with what is in it, is too heavy for the hand."
      "Use a stronger hand, or take out first what is in the thing.")
     (:not-grasping "The hand holds nothing." "Grasp something first with hand-grasp-desig.")
@@ -110,7 +110,7 @@ lost from view."
     (:holding-thing "The hand holds that very container, or what that is in."
      "Put it down first, or use another hand.")
     (:hand-bump "The hand missed the container and bumped into it."
-     "Try again; look for the container anew if its designator was lost.")
+     "Try again; look for the container again if its designator was lost.")
     (:camera-bump "The camera missed the container and bumped into it, and lost it from view."
      "Find and track the container again, and try again.")
     (:not-tracking-destination "The camera tracks something else than where it is to go."

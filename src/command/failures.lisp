@@ -22,7 +22,8 @@ TEXT. INTERRUPTER is a list (name asker) of what interrupted it, if known."
   (interrupter '() :type list :read-only t))
 
 (defun interruption-of (request tick)
-  "Return the record of an interruption of REQUEST in TICK or in the tick that begins, or NIL."
+  "Return the record of an interruption of REQUEST in TICK, or NIL. Where requests are performed,
+the tick that begins has not been counted yet."
   (let ((interruption (resource-interruption (event-resource request))))
     (and interruption
          (<= tick (interruption-tick interruption) (1+ tick))
@@ -151,8 +152,8 @@ result, what that means and what to try."
     (if (null error)
         (list (format nil "No command of ~A has failed." (resource-robot resource)))
         (remove nil
-                (list (format nil "~A, asked for by ~A after tick ~D, ended at tick ~D with ~S: ~A."
+                (list (format nil "~A, issued by ~A after tick ~D, ended at tick ~D with ~S: ~A."
                               call for asked tick error text)
-                      (and by (format nil "What took over was ~(~A~), asked for by ~A." by by-for))
+                      (and by (format nil "It was interrupted by ~(~A~), issued by ~A." by by-for))
                       (error-code-meaning error)
                       (error-code-remedy error))))))

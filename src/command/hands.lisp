@@ -21,7 +21,7 @@
         (t (princ-to-string destination))))
 
 (defun succeed-with-message (operation text &rest results)
-  (tell-of operation text)
+  (queue-operation-message operation text)
   (apply #'succeed operation results))
 
 ;;; Designators.
@@ -58,7 +58,7 @@
       (part-reaches-p part container)))
 
 (defun has-room-p (container size)
-  "True if CONTAINER has room for SIZE more, but for rounding (readings 153 and 237)."
+  "True if CONTAINER can hold things, and SIZE more but for rounding (readings 153 and 237)."
   (and (plusp (if (storage-bin-p container)
                   (storage-bin-capacity container)
                   (thing-capacity container)))
@@ -133,23 +133,23 @@ designators invalid silently."
 
 ;;; Feeling.
 
-(defun answer (operation code)
+(defun end-with-answer (operation code)
   "End OPERATION with CODE, which is an answer and no failure."
-  (tell-of operation (error-text operation code))
+  (queue-operation-message operation (error-text operation code))
   (setf (operation-finished-p operation) t)
   (notify operation code '()))
 
-;; As reading 150 says.
+;; See reading 150.
 (define-command hand-grasp-check (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:traits :asks)
      (:errors (:grasping (text-of "~A is holding something"))
               (:not-grasping (text-of "~A is not holding anything"))))
     "Feel whether HAND holds something. One of the two error codes is the answer."
-  (answer operation (if (hand-holding hand) :grasping :not-grasping)))
+  (end-with-answer operation (if (hand-holding hand) :grasping :not-grasping)))
 
 (defconstant +watch-period+ 1000
-  "How long the event of a watch waits, in ticks, before it is queued anew.")
+  "How long the event of a watch waits, in ticks, before it is queued again.")
 
 (define-step watch-grip (operation (hand-p (operation-resource operation)))
   "Occupy the hand of OPERATION until it no longer holds its subject (reading 162)."
@@ -160,7 +160,7 @@ designators invalid silently."
            (unsettle (hand-robot hand))
            (go-on operation 'watch-grip +watch-period+)))))
 
-;; As readings 222 and 239 say.
+;; See readings 222 and 239.
 (define-command hand-track (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:delay 1)

@@ -42,7 +42,7 @@
       (perhaps-lose-designators destination hand-insert-lose-desig-prob* (handling-dice hand)))
     (finish operation code destination)))
 
-;; As reading 156 says.
+;; See reading 156.
 (define-command hand-insert (operation (hand hand)
                              (destination destination
                               "a local designator of a container, or a storage bin"))
@@ -125,7 +125,7 @@
         (t (move-part camera container)
            nil)))
 
-;; As reading 158 says.
+;; See reading 158.
 (define-command camera-insert (operation (camera camera)
                                (destination destination
                                 "a local designator that the camera tracks, or a storage bin"))
@@ -161,7 +161,7 @@
          (succeed-with-message operation (format nil "~A opened" storage-bin)))
         (t (fail-with operation :bin-open))))
 
-;; As readings 163 and 166 say.
+;; See readings 163 and 166.
 (define-command storage-bin-close (operation (storage-bin storage-bin))
     ((jammed-part "the camera or hand that keeps the bin from closing, or NIL"))
     ((:family :handling) (:section "3.6") (:delay bin-delay*)

@@ -30,7 +30,7 @@
   (list* 'err (spec-name (command-resource command))
          (mapcar #'spec-name (command-results command))))
 
-(defun misplaced-p (continuation told)
+(defun misplaced-parameter-p (continuation told)
   "True if CONTINUATION calls a parameter by the name of an argument in another position of TOLD."
   (multiple-value-bind (list unknown-p) (lambda-list-of continuation)
     (unless unknown-p
@@ -47,7 +47,7 @@
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
                (or (not (callable-with-p continuation (length told)))
-                   (misplaced-p continuation told)))
+                   (misplaced-parameter-p continuation told)))
       (warn-once (list :continuation (command-name command)) world
                  (format nil "~(~A~): the continuation takes ~(~:A~), and is called with ~(~A~). ~
                               Write (continuation ~:*~(~A~) ...)."
@@ -178,7 +178,7 @@ the same program issues again while it is in progress without a continuation."
              (angle (doubt-angle (command-name command) world argument))
              (ticks (when (minusp argument)
                       (warn-once (list :ticks (command-name command)) world
-                                 (format nil "~(~A~): ~A ticks are none, so nothing is done. To ~
+                                 (format nil "~(~A~): ~A ticks do nothing. To ~
                                               drive back, turn by pi first."
                                          (command-name command) argument)))))))
 

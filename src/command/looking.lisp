@@ -35,13 +35,13 @@ that the attributes can have, and of a range the lower end first"
 (defun found-text (operation designators)
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
-(defun name-sightings (camera sightings)
+(defun designate-sightings (camera sightings)
   "Return designators for those of SIGHTINGS that CAMERA still has, as many as a robot keeps."
   (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
     (remove-if-not #'designator-valid-p (remove nil designators))))
 
 (defun designate-first (operation sightings)
-  (let ((designator (first (name-sightings (operation-resource operation) sightings))))
+  (let ((designator (first (designate-sightings (operation-resource operation) sightings))))
     (if designator
         (succeed operation designator)
         (fail-with operation :designator-not-found))))
@@ -50,7 +50,8 @@ that the attributes can have, and of a range the lower end first"
                                              (proper-list-of-p #'sighting-p
                                                                (operation-subject operation))))
   "End OPERATION with designators for all sightings that are its subject."
-  (let ((designators (name-sightings (operation-resource operation) (operation-subject operation))))
+  (let ((designators (designate-sightings (operation-resource operation)
+                                          (operation-subject operation))))
     (if designators
         (succeed operation designators)
         (fail-with operation :designator-not-found))))
@@ -190,13 +191,13 @@ first. :DESIGNATOR-NOT-FOUND means that it found none."
                          (timeline-tick (operation-timeline operation))))
     (end-track camera :interrupt)))
 
-;; As reading 83 says.
+;; See reading 83.
 (defun begin-track (operation camera designator)
   (report operation nil (list designator))
   (notify operation nil (list designator))
   (start-track camera designator operation))
 
-;; As reading 5 says.
+;; See reading 5.
 (define-command camera-track (operation (camera camera)
                               (designator designator "what to track"))
     ((designator "the designator"))
@@ -215,7 +216,7 @@ track begins, with NIL, and again when it ends, with the error code that says ho
         (fail-with operation obstacle designator)
         (begin-track operation camera designator))))
 
-;; As reading 84 says.
+;; See reading 84.
 (define-command camera-untrack (operation (camera camera))
     ()
     ((:family :looking) (:section "3.4.3") (:traits :stops) (:expected :not-tracking)

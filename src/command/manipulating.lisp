@@ -40,7 +40,7 @@
                                (loop for method in (manipulation-methods manipulation)
                                      collect (parameter-variables (method-parameters method)))))))
 
-;; As reading 176 says.
+;; See reading 176.
 (defun method-resource (method arguments)
   (nth (length (parameter-list-objects (method-parameters method))) arguments))
 
@@ -102,7 +102,8 @@
         (fail-with operation :failed))))
 
 (defun begin-manipulation (operation resource &rest arguments)
-  "Choose the method for ARGUMENTS, and carry it out when its delay has passed. Fail without one."
+  "Choose the method for ARGUMENTS, and carry it out when its delay has passed. Fail if there is
+none, as after UNDEFINE."
   (let* ((manipulation (find-manipulation (command-name (operation-command operation)) nil))
          (method (and manipulation (applicable-method manipulation arguments resource))))
     (setf (operation-subject operation) method)

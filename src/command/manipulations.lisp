@@ -109,7 +109,7 @@ type) for its resource, and such lists for the others. The type is NIL where non
 (defmethod advice-on-use ((operator (eql 'defmanipulation)) form)
   (and (consp (cddr form))
        (null (cdddr form))
-       "the list of options stands behind the parameters, () if there are none"))
+       "the list of options comes after the parameters, () for none"))
 
 (defun outdated-p (name method source)
   "True if METHOD of NAME is from an earlier version of the file of SOURCE, now without it."

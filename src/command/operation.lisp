@@ -90,7 +90,7 @@ the command that it has interrupted, or NIL"))
          (text (and error-code (error-code-text error-code))))
     (etypecase text
       (null (format nil "~A: ~A" (command-prefix command) code))
-      (string (format nil "~A" text))
+      (string text)
       (function (funcall text operation)))))
 
 (defun text-of (control)
@@ -101,11 +101,11 @@ the command that it has interrupted, or NIL"))
 (defun operation-robot-name (operation)
   (robot-name (resource-robot (operation-resource operation))))
 
-(defun tell-of (operation text)
+(defun queue-operation-message (operation text)
   (let ((*told-of* (request-asker operation)) (*robot-told-of* (operation-robot-name operation)))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
-(defun tell-of-failure (operation kind code text)
+(defun queue-failure-message (operation kind code text)
   "Queue TEXT, a message of KIND, for the end of OPERATION with CODE, and record the failure."
   (queue-message (make-message kind (list text)
                                :about (command-name (operation-command operation))
@@ -120,13 +120,13 @@ the command that it has interrupted, or NIL"))
          (command (operation-command operation))
          (report (command-report command)))
     (cond ((eq code :interrupt)
-           (tell-of-failure operation :warning code
-                            (format nil "~A was interrupted" (command-prefix command))))
-          (code (tell-of-failure operation :error code (error-text operation code)))
+           (queue-failure-message operation :warning code
+                                  (format nil "~A was interrupted" (command-prefix command))))
+          (code (queue-failure-message operation :error code (error-text operation code)))
           (report (let ((text (printing-words () (apply report operation results))))
-                    (when text (tell-of operation text)))))))
+                    (when text (queue-operation-message operation text)))))))
 
-;; As reading 86 says.
+;; See reading 86.
 (defun tell-end (operation code results)
   "Call the continuation of OPERATION, which has ended with CODE and RESULTS, if it has one."
   (when (operation-continuation operation)
@@ -170,7 +170,7 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
   "True if the delay of OPERATION is over."
   (not (eq (operation-step operation) 'start-body)))
 
-(defun known-results (operation)
+(defun results-if-interrupted (operation)
   "Return the results of OPERATION if it is interrupted: what :ECHO names, NIL for all others."
   (let* ((command (operation-command operation))
          (names (mapcar #'spec-name (command-parameters command))))
@@ -181,7 +181,7 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
                         ((begun-p operation) (operation-subject operation))))))
 
 (defun interrupt-operation (operation)
-  (apply #'finish operation :interrupt (known-results operation)))
+  (apply #'finish operation :interrupt (results-if-interrupted operation)))
 
 ;;; Beginning and continuing.
 
@@ -216,8 +216,8 @@ message and end OPERATION with :FAILED."
         (unless (or returned (event-pending-p operation) (operation-finished-p operation))
           (interrupt-operation operation))))))
 
-(declaim (inline once-more))
-(defun once-more (operation)
+(declaim (inline repeat-step))
+(defun repeat-step (operation)
   "Call the step of OPERATION again in the next tick. Called by that step."
   (queue-again (operation-agenda operation) operation 1))
 
@@ -231,7 +231,7 @@ message and end OPERATION with :FAILED."
   (setf (operation-step operation) step)
   (funcall step operation))
 
-;; As reading 78 says.
+;; See reading 78.
 (define-step start-body (operation t)
   "Run the body of OPERATION's command."
   (apply (command-body (operation-command operation))

@@ -5,7 +5,7 @@
 ;;; The robot reports what its odometry read of a turn, not the truth. Turning takes as many ticks
 ;;; as the turn angle goes into the angle.
 
-(defun set-within (value low high)
+(defun limit-value (value low high)
   "Return VALUE within LOW and HIGH, and whether it was too :LOW or :HIGH (reading 91)."
   (cond ((< value low) (values (double low) :low))
         ((> value high) (values (double high) :high))
@@ -17,7 +17,7 @@
     (declare (ignore operation))
     (format nil control (symbol-value parameter))))
 
-;; As reading 94 says.
+;; See reading 94.
 (define-command robot-set-speed (operation (robot robot)
                                  (speed speed "the new speed, from 0 to max-speed*"))
     ((speed "the speed set"))
@@ -26,7 +26,7 @@
               (:too-high-speed (limit-text "Speed too high. Set to the maximum, ~,2F" 'max-speed*)))
      (:report (speed) (phrase "Speed set to ~,2F" speed)))
     "Set the speed at which ROBOT drives, cut off at 0 and MAX-SPEED*."
-  (multiple-value-bind (speed outside) (set-within speed 0 max-speed*)
+  (multiple-value-bind (speed outside) (limit-value speed 0 max-speed*)
     (setf (robot-speed robot) speed)
     (finish operation (ecase outside ((nil) nil) (:low :negative-speed) (:high :too-high-speed))
             speed)))
@@ -42,7 +42,7 @@
                (limit-text "Turn angle too high. Set to the maximum, ~,2F" 'max-turn-angle*)))
      (:report (angle) (format nil "Turn angle set to ~,2F" angle)))
     "Set how far ROBOT turns in a tick, cut off at MIN-TURN-ANGLE* and MAX-TURN-ANGLE*."
-  (multiple-value-bind (angle outside) (set-within angle min-turn-angle* max-turn-angle*)
+  (multiple-value-bind (angle outside) (limit-value angle min-turn-angle* max-turn-angle*)
     (setf (robot-turn-angle robot) angle)
     (finish operation
             (ecase outside
@@ -75,7 +75,7 @@
     (incf (operation-reading operation) read)
     (if (< (abs left) +facing+)
         (succeed operation (operation-reading operation))
-        (once-more operation))))
+        (repeat-step operation))))
 
 (defun turn-by (operation robot angle)
   "Turn ROBOT by about ANGLE, beginning in this tick; end OPERATION with the odometry's reading."
@@ -104,14 +104,14 @@
                   ,(format nil "Turn ROBOT in place by about ~A." words)
                 (turn-by operation robot ,angle))))
   (define-turn robot-about-face pi "half a circle")
-  ;; As reading 49 says.
+  ;; See reading 49.
   (define-turn robot-turn-left (/ pi -2) "a quarter circle to the left")
   (define-turn robot-turn-right (/ pi 2) "a quarter circle to the right"))
 
 ;;; These commands act on the place type that the robot senses, which may not be the true one. The
 ;;; directions are those that the sensed type gives the cell.
 
-;; As reading 106 says.
+;; See reading 106.
 (define-command robot-place (operation (robot robot))
     ((place-type "the name of the place type sensed, or NIL"))
     ((:family :moving) (:section "2.2, C") (:traits :asks)
@@ -127,13 +127,13 @@
 (defun turn-to-face (operation robot direction)
   (turn-by operation robot (angle-difference direction (robot-angle robot))))
 
-(defun judged-right-p (robot type)
+(defun place-type-accepted-p (robot type)
   "True if TYPE, which ROBOT has sensed, is right or by mistake taken for right (reading 103)."
   (let ((place (robot-place-here robot)))
     (or (and place (eq type (place-type place)))
         (chance robot-align-error-prob* (world-dice (robot-world robot) :place)))))
 
-;; As reading 104 says.
+;; See reading 104.
 (define-command robot-align-place (operation (robot robot))
     ((angle "a reading of the angle turned"))
     ((:family :moving) (:section "3.5") (:delay (+ robot-turn-delay* robot-align-delay*))
@@ -143,7 +143,7 @@
     "Turn ROBOT to the nearest canonical direction of the place where it is."
   (let ((type (sense-place-type robot)))
     (cond ((null type) (fail-with operation :no-place-type))
-          ((judged-right-p robot type)
+          ((place-type-accepted-p robot type)
            (turn-to-face operation robot
                          (nearest-direction (canonical-directions robot type)
                                             (robot-angle robot))))
@@ -161,7 +161,7 @@ the reverse. If it looks away from the corner already, it turns to the other wal
          (now (position (nearest-direction headings (robot-angle robot)) headings)))
     (elt exits (- 1 (mod now 2)))))
 
-;; As reading 236 says.
+;; See reading 236.
 (define-command robot-turn-corner (operation (robot robot))
     ((angle "a reading of the angle turned"))
     ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)

@@ -19,7 +19,7 @@
     (list kind initarg (double amount))))
 
 (defun maps-to-choose (name)
-  "Return a list of the maps in words, for a message about the unknown NAME."
+  "Return a text that lists the maps, for a message about the unknown NAME."
   (let ((names (mapcar #'map-name (all-maps))))
     (if names
         (format nil "a map: ~{~(~A~)~^, ~}~@[; did you mean ~(~A~)?~]"
@@ -86,7 +86,7 @@
                             cameras, hands and bins have options of their own")))
     (cons (kind-name kind) (parse-values kind specification reject))))
 
-;;; Each option has its own way to say what a part is made from.
+;;; Each option has its own syntax for parts.
 
 (defun camera-form (camera cameras value)
   (declare (ignore cameras))

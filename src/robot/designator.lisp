@@ -12,7 +12,7 @@
 ;;; storage bin, or NIL in the open.
 
 (public designator)
-;; As reading 138 says.
+;; See reading 138.
 (addition designator-p)
 (define-kind (designator)
     "A handle for a thing or place that a camera has seen, or seems to have seen (manual 3.4.1)."
@@ -41,7 +41,7 @@ robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
    (refreshed -1 fixnum "the tick in which it was last brought up to date")))
 
 (setf (documentation 'make-designator 'function)
-      "Return a new designator, which no robot knows by number yet.")
+      "Return a new designator, not yet numbered by a robot.")
 
 (define-argument-type 'designator #'designator-p "a designator"
   (constantly (format nil "searches of cameras give them to their continuations, such as ~

@@ -45,11 +45,11 @@
          (and x (within-reach-p (part-robot part) x y)))))
 
 (defun part-reaches-bin-p (part bin)
-  "True if PART, in the open, can get at the storage BIN, as it is its robot's (reading 230)."
+  "True if PART, in the open, can get at the storage BIN, one of its robot (reading 230)."
   (and (eq (part-robot part) (storage-bin-robot bin))
        (null (part-location part))))
 
-;; As reading 154 says.
+;; See reading 154.
 (defmethod remaining-capacity ((bin storage-bin))
   (max 0d0 (- (storage-bin-capacity bin)
               (loop for thing in (storage-bin-contents bin) sum (thing-size thing)))))
@@ -72,7 +72,7 @@ robot stands (reading 152)."
 
 (defun move-part (part location)
   "Move PART, a camera or hand, into LOCATION: a thing, a storage bin, or NIL for the open. What it
-holds moves along; its track is lost; warnings say so."
+holds moves along; its track is lost. Warnings are queued."
   (let ((old (part-location part)))
     (when (thing-p location)
       (pushnew #'watch-container (world-move-watchers (location-world part))))
@@ -100,7 +100,7 @@ holds moves along; its track is lost; warnings say so."
                (and bin (or (storage-bin-closed-p bin)
                             (not (eq (part-robot part) (storage-bin-robot bin))))))))))
 
-;; As reading 113 says.
+;; See reading 113.
 (defun settle-part (part)
   (when (must-pull-out-p part) (pull-out part)))
 

@@ -59,7 +59,7 @@ NIL."
 (defun check-start (blueprint map)
   (let ((trouble (start-trouble map (blueprint-x blueprint) (blueprint-y blueprint))))
     (when trouble
-      (reject-use "~(~A~) no longer fits into ~(~A~): ~A. Define the robot anew."
+      (reject-use "~(~A~) no longer fits into ~(~A~): ~A. Define the robot again."
                   (blueprint-name blueprint) (map-name map) trouble))))
 
 (defun make-robot (blueprint world)
@@ -141,8 +141,8 @@ NIL."
     (and (eq world (map-resident map))
          (eq map (find-map (map-name map) nil)))))
 
-;; Another thread may settle the same robot meanwhile: the owner of the world decides. It may also
-;; have replaced the world: then the robot is settled in the new one.
+;; Another thread may do the same meanwhile: the thread that owns the world decides. If the world
+;; has been replaced, repeat this for the new one.
 (defun settle-robot (blueprint)
   "Put a robot made by BLUEPRINT into the resident world of its map, in place of any from an earlier
 definition of its name. Return it, or the one that is already there."

@@ -28,7 +28,7 @@ CONTINUOUS-NOISE-FACTOR* (manual 3.4.2; reading 116)."
                      (+ distance (double continuous-noise-factor*))))
         base)))
 
-;; As reading 225 says.
+;; See reading 225.
 (defun noisy-number (attribute value distance dice)
   (roll-gaussian value (reading-deviation attribute distance) dice))
 
@@ -92,7 +92,7 @@ are NIL, if it is one of CHOICES."
   (high nil :type (or null real) :read-only t)
   (choices '() :type list :read-only t))
 
-;; As readings 123 to 125 say.
+;; See readings 123 to 125.
 (defun parse-demand (specification)
   (destructuring-bind (name value &optional threshold) specification
     (let* ((key (attribute-key name)) (attribute (attribute-of key)))
@@ -193,7 +193,7 @@ as an object descriptor (reading 127)."
     (dolist (demand demands (values t (nreverse readings)))
       (let* ((key (demand-key demand)) (attribute (demand-attribute demand))
              (value (thing-value thing key)))
-        ;; As reading 122 says.
+        ;; See reading 122.
         (unless (or value (null attribute) (can-be-false-p attribute)) (return nil))
         (let ((reading (read-attribute attribute value distance dice)))
           (unless (fits-p demand reading) (return nil))

@@ -56,8 +56,8 @@ metres, and the heading in radians. For displays, as programs of the robot canno
 (defmethod print-object ((odometer odometer) stream)
   (print-named odometer stream (format nil "Odometer ~A" (odometer-name odometer))))
 
-(declaim (inline reaches-p))
-(defun reaches-p (angle low high)
+(declaim (inline includes-angle-p))
+(defun includes-angle-p (angle low high)
   "True if ANGLE plus a multiple of 2 pi is between LOW and HIGH."
   (declare (type double-float angle low high))
   (let* ((gap (- low angle))
@@ -72,8 +72,8 @@ metres, and the heading in radians. For displays, as programs of the robot canno
         (high (odometer-angle-max odometer))
         (slack 1d-15))
     (flet ((bounds (a b top bottom)
-             (values (if (reaches-p bottom low high) -1d0 (max -1d0 (- (min a b) slack)))
-                     (if (reaches-p top low high) 1d0 (min 1d0 (+ (max a b) slack))))))
+             (values (if (includes-angle-p bottom low high) -1d0 (max -1d0 (- (min a b) slack)))
+                     (if (includes-angle-p top low high) 1d0 (min 1d0 (+ (max a b) slack))))))
       (declare (inline bounds))
       (setf (values (odometer-cos-min odometer) (odometer-cos-max odometer))
             (bounds (cosine low) (cosine high) 0d0 pi)
@@ -203,7 +203,7 @@ probability TYPE-FALSE-NEG*. Where there is none, a random one is sensed with TY
 
 (defun canonical-directions (robot type)
   "Return a list of the two canonical directions, in radians, that TYPE gives the cell in which
-ROBOT is. In a cell that is no place there are none, and the heading stands for both (reading 223)."
+ROBOT is. A cell without a place has none; the heading stands for both (reading 223)."
   (let ((place (robot-place-here robot)))
     (if place
         (multiple-value-list

@@ -37,7 +37,7 @@
    (robot nil t "the robot whose mind it is" :export)))
 
 (public robot)
-;; As reading 92 says.
+;; See reading 92.
 (addition robot-p)
 (define-kind (robot :include resource :constructor %make-robot)
     "A point robot: it turns in place, drives straight ahead, and carries its parts along (manual

@@ -185,7 +185,7 @@ may be among them."
     (loop for find in (some-of (append finds (make-list phantoms)) all dice)
           collect (if find
                       (thing-sighting camera type (first find) (rest find) dice)
-                      (imagine camera type (imagine-description world demands dice) dice)))))
+                      (false-sighting camera type (false-description world demands dice) dice)))))
 
 (defun places-in-view (camera type)
   "Return the places of TYPE that CAMERA, in the open, has in view, but for the robot's own cell."
@@ -214,7 +214,7 @@ TYPE (reading 74)."
                         (make-sighting :non-local place
                                        (+ 0.5d0 (cell-x cell)) (+ 0.5d0 (cell-y cell))
                                        (list name)))
-                      (imagine camera :non-local (list name) dice)))))
+                      (false-sighting camera :non-local (list name) dice)))))
 
 ;;; Each pixel is the parameter of the surface that its ray meets: a wall, the largest thing that
 ;;; obstructs vision in the first cell that has one, or 0 at the edge of the map. Things on the way
@@ -265,7 +265,7 @@ from the least to the greatest parameter of the walls of MAP (reading 147)."
       (push (true-pixel world (robot-x robot) (robot-y robot) dx dy) pixels))
     (nreverse pixels)))
 
-;; As reading 148 says.
+;; See reading 148.
 (defun inside-view (camera)
   (let ((location (camera-location camera)))
     (make-list (camera-resolution camera)

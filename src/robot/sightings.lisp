@@ -66,7 +66,7 @@ robot's cell, ending with probability PROB-STOP* at each, or at the edge of the 
                    (+ (robot-x robot) (* exit dx))
                    (+ (robot-y robot) (* exit dy))))))
 
-(defun imagine (camera type data dice)
+(defun false-sighting (camera type data dice)
   "Return a false sighting of TYPE with DATA (reading 137)."
   (let ((robot (camera-robot camera)))
     (multiple-value-bind (x y)
@@ -78,7 +78,7 @@ robot's cell, ending with probability PROB-STOP* at each, or at the edge of the 
                              dice))
       (make-sighting type nil x y data))))
 
-(defun imagine-description (world demands dice)
+(defun false-description (world demands dice)
   "Return a random description that meets DEMANDS. Each attribute noticed in addition is true of
 some thing in WORLD, a different one for each."
   (let ((readings (loop for demand in demands
@@ -89,7 +89,7 @@ some thing in WORLD, a different one for each."
                                           (roll-element (demand-choices demand) dice))))))
     (append (notice-attributes (world-map world) (mapcar #'first readings)
                                (lambda (attribute)
-                                 ;; NIL if there are none, or by bad luck.
+                                 ;; NIL if there are none, or none has this rank.
                                  (let* ((count (world-rank-count world))
                                         (thing (and (plusp count)
                                                     (thing-of-rank (roll-index count dice)

@@ -44,13 +44,15 @@ cell of (TO-X,TO-Y) in WORLD; :OBSTRUCTED if all that would are stopped before; 
           finally (return sight))))
 
 ;; Where a robot can drive straight ahead it can see, too, however few the rays are.
-(defun seen-by-p (camera designator)
+(defun visible-p (designator camera)
   "True if CAMERA, pointing at what DESIGNATOR denotes, sees it: a search would find it, or would
-miss it though nothing obstructs it. During an approach a line to a corner of its cell will do."
+miss it though nothing obstructs it (reading 141). False designators are visible. During an approach
+a line to a corner of the cell is enough."
   (let* ((robot (camera-robot camera)) (world (robot-world robot))
          (own-x (robot-x robot)) (own-y (robot-y robot))
          (x (designator-x designator)) (y (designator-y designator)))
-    (or (in-same-cell-p robot x y)
+    (or (null (designator-denotation designator))
+        (in-same-cell-p robot x y)
         (line-clear-p world own-x own-y x y)
         (and (or (approached-p camera) (within-reach-p robot x y))
              (in-sight-p world own-x own-y x y))
@@ -60,14 +62,6 @@ miss it though nothing obstructs it. During an approach a line to a corner of it
           (:clear t)
           (:obstructed nil)
           ((nil) (in-sight-p world own-x own-y x y))))))
-
-(defun visible-p (designator camera)
-  "True if nothing hides DESIGNATOR's denotation from CAMERA, or if NIL its robot (reading 141)."
-  (let ((robot (designator-robot designator)))
-    (cond ((null (designator-denotation designator)) t)
-          (camera (seen-by-p camera designator))
-          (t (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot)
-                         (designator-x designator) (designator-y designator))))))
 
 ;;; A track updates angle and distance of its designator, never the data, and points the camera
 ;;; there. It is lost:
@@ -111,10 +105,10 @@ changed (reading 226)."
         (let ((distance (distance-to robot x y)))
           (setf (designator-distance designator) distance)
           (if (> distance +no-distance+)
-              (swing-to designator (bearing-to robot x y) before dice)
+              (update-bearing designator (bearing-to robot x y) before dice)
               (setf (designator-bearing-p designator) nil)))))))
 
-(defun swing-to (designator bearing before dice)
+(defun update-bearing (designator bearing before dice)
   "Update DESIGNATOR to the true direction BEARING; BEFORE is its previous distance."
   (let* ((robot (designator-robot designator))
          (relative (- bearing (robot-angle robot)))
@@ -147,9 +141,8 @@ changed (reading 226)."
   (in-same-cell-p (designator-robot designator)
                   (designator-x designator) (designator-y designator)))
 
-(defun trackable-p (designator &optional camera)
-  "True if CAMERA, in the open, can track the non-local DESIGNATOR now, wherever it points; without
-CAMERA, if one may."
+(defun trackable-p (designator camera)
+  "True if CAMERA, in the open, can track the non-local DESIGNATOR now, wherever CAMERA points."
   (and (designator-valid-p designator)
        (followable-p designator)
        (not (arrived-p designator))
@@ -166,7 +159,7 @@ not count, as the approach reports it (reading 112)."
   (if (arrived-p designator)
       (not (approached-p camera))
       (or (not (trackable-p designator camera))
-          ;; As reading 141 says.
+          ;; See reading 141.
           (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))
 
 (defun keep-or-lose-track (camera designator dice)
@@ -210,7 +203,7 @@ not count, as the approach reports it (reading 112)."
                           (not (tracked-p designator)))
                  (drop-designator designator))))))
 
-;; As readings 87 and 112 say.
+;; See readings 87 and 112.
 (defun tend-robot (robot tick)
   (when (plusp (length (robot-designators robot)))
     (loop with dice = (world-dice (robot-world robot) :tracking)

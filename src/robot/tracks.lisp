@@ -14,7 +14,7 @@
 ;;; invalid when its denotation moves, unless a hand grasps it or sets it down; a local one also
 ;;; when its denotation is out of reach.
 
-;; As reading 82 says.
+;; See reading 82.
 (define-kind (track :constructor (make-track (designator operation)))
     "What a camera does while it tracks a designator."
   (:state
@@ -85,8 +85,8 @@ See reading 161."
       (track-designator track))))
 
 (defun drop-designator (designator &key silently)
-  "Make DESIGNATOR invalid and its number free; the cameras that track it lose it. Warnings say
-so unless SILENTLY."
+  "Make DESIGNATOR invalid and its number free; the cameras that track it lose it. Queue warnings
+unless SILENTLY."
   (when (designator-valid-p designator)
     (unless silently
       (let ((*robot-told-of* (robot-name (designator-robot designator))))
@@ -140,7 +140,7 @@ BY-HAND is true, as it was grasped or set down, and it is and stays local (readi
 
 (defun part-moved (part old-location)
   "Account for the move of PART, a camera or hand, from OLD-LOCATION to PART-LOCATION: a camera
-loses its track, and what a hand holds has moved. Warnings say so."
+loses its track, and what a hand holds has moved. Warnings are queued."
   (unless (eq old-location (part-location part))
     (etypecase part
       (camera
