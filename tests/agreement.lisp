@@ -135,7 +135,7 @@ RECORD."
              (moments (cons before (go-on-by-script (script-ticks *script*)))))
         (append (compared :rewind record moments)
                 (loop for (tick nil nil texts) in moments
-                      when (find-if (lambda (text) (search "Not all is as it was" text)) texts)
+                      when (find-if (lambda (text) (search "The rewound run differs" text)) texts)
                         collect (list :rewind :strayed tick)))))))
 
 (defun load-differences (record file)

@@ -37,7 +37,7 @@
       (loop repeat 2 do (robot:place-robot old 3 3 0))
       (let ((text (displayed)))
         (is (= 1 (length (lines-of text))) "~A" text)
-        (is-true (has-words-p text "place-robot changes what nobody sees any more" "is over"))))))
+        (is-true (has-words-p text "place-robot changes an object of a past run" "is over"))))))
 
 (test changes.for-a-later-run-are-told-of-inside-of-another
   (let ((later (robot:find-robot 'barge)))

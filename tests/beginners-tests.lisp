@@ -187,7 +187,7 @@
   (rover-writes ()
     (driver:begin-plan (rpl:make-plan '(loop (rpl:wait-time 1))))
     (run:run-ticks 2)
-    (is-false (run::tell-of-vain-wait (time:current-simulation) 60))
+    (is-false (run::warn-of-timeout (time:current-simulation) 60))
     (is-true (has-words-p (displayed) "await-idle has waited for 60 s, and gives up"
                           "the plan (loop (wait-time 1)) did not end"))))
 

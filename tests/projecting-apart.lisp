@@ -51,7 +51,7 @@
                           (lambda () (run-ticks 1 simulation))))
         (let ((failure (trespassed deed)))
           (is (typep failure 'lisp-failure))
-          (is (search "That is of another run" (princ-to-string failure)) "~A" failure)))
+          (is (search "That belongs to another run" (princ-to-string failure)) "~A" failure)))
       (is (= digest (state-digest)))
       (run-ticks 5)
       (is (eq :waiting (task-state *true-task*)))

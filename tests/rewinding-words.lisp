@@ -195,7 +195,7 @@
   (rewind-to (first moment))
   (let ((now (moment-now nil)))
     (append (unless (equal (subseq now 0 3) (subseq moment 0 3)) (list now))
-            (remove-if-not (lambda (text) (search "Not all is as it was" text)) (fifth now)))))
+            (remove-if-not (lambda (text) (search "The rewound run differs" text)) (fifth now)))))
 
 (defun wrong-after-rewind (seed)
   "Let a run go on, be rewound, and go on; return what is not as it was, or as in a run that has

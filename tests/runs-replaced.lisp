@@ -113,8 +113,9 @@ function and its arguments."
            (custody (time:timeline-custody (run:simulation-timeline old))))
       (coming-between (run::end-rewound (end old new)
                  (funcall end old new)
-                 (setf thread (base:start-thread (lambda () (setf found (run::find-again 'dray)))
-                                                 "finds the robot"))
+                 (setf thread (base:start-thread
+                               (lambda () (setf found (run::find-current-robot 'dray)))
+                               "finds the robot"))
                  (awaiting (time:custody-questions custody)))
         (run:rewind 1))
       (is-true (ends-p thread))

@@ -159,7 +159,7 @@ have been."
                    ("new dice 9" "new dice 8" "not as many")
                    ("new dice 9" "new dice -9" "more objects")
                    ("new agenda 1 1" "new agenda 2 1" "not as many")
-                   ("new agenda 1 1" "new agenda 1 0" "too much")
+                   ("new agenda 1 1" "new agenda 1 0" "too many values")
                    ("t (9) nil" "t (4000000000) nil" "more room")
                    ("t (9) nil" "nil (9) nil" "arrays makes no sense")
                    ("|ARS-MAGNA.WORLD::THING|" "|COMMON-LISP::PATHNAME|" "not loaded")

@@ -312,7 +312,7 @@
         (with-rover ()
           (setf (world:thing-attributes (world:find-thing 'crate))
                 `((:odd ,(make-hash-table :test 'geo:equal))))
-          (refused-p "a test of its own"))
+          (refused-p "a user-defined test"))
         (with-rover ()
           (run:set-seed (expt 10 10000))
           (refused-p "too long")))

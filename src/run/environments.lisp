@@ -1,19 +1,19 @@
-;;;; environments.lisp -- what a run has bound for those who work in it.
+;;;; environments.lisp -- the variables that a run binds for code that works in it.
 
 (in-package :ars-magna.run)
 
 (export '(environment-of note-environment fork-p *simulation-variables*))
 
-;;; Robots' names, and what *SIMULATION-VARIABLES* lists, are bound by WITH-SIMULATION; for a live
-;;; run they are global. A fork keeps their values, and they are bound while somebody works in it.
+;;; Robots' names and the *SIMULATION-VARIABLES* are bound by WITH-SIMULATION; for a live run they
+;;; are global. A fork keeps their values, and they are bound while code works in it.
 
 (defvar *simulation-variables* '()
-  "Symbols that a headless simulation binds, to the values they have, so that what is set in it
-ends with it and simulations side by side do not meet.")
+  "Symbols that a headless simulation binds to their current values, so that assignments in it are
+undone at its end and do not affect other simulations.")
 
 (pushnew '*simulation-variables* *kept-variables*)
 
-;; What CLEAN-SIMULATION has changed goes with the parameters of the run.
+;; CLEAN-SIMULATION sets it together with the parameters of the run.
 (pushnew '*noise-before-cleaning* *simulation-variables*)
 
 (defun fork-p (simulation)
@@ -21,7 +21,7 @@ ends with it and simulations side by side do not meet.")
   (timeline-fork-p (simulation-timeline simulation)))
 
 (defun environment-here (simulation)
-  "Return a list (symbol . value) of what the variables of SIMULATION are here."
+  "Return a list (symbol . value) of the variables of SIMULATION as this thread sees them."
   (let ((value-of (if (or (headless-p simulation) (eq simulation *simulation*))
                       #'symbol-value
                       #'global-value)))
@@ -31,16 +31,16 @@ ends with it and simulations side by side do not meet.")
           when (boundp symbol)
             collect (cons symbol (funcall value-of symbol)))))
 
-;;; A live run that is started inside of WITH-SIMULATION is current there only. When that ends, the
-;;; one that is current outside has its variables again.
+;;; A live run that is started inside WITH-SIMULATION is current there only. At the end, the
+;;; variables of the one that is current outside are restored.
 
 (defvar *outer-globals* nil
   "In a headless simulation, a list. Its rest is (run (symbol . value)...): the live run that is
-current outside and what *SIMULATION-VARIABLES* were before another was started here; or ().")
+current outside and its *SIMULATION-VARIABLES* before another was started here; or ().")
 
 (defun note-outer-globals (simulation)
-  "Note what *SIMULATION-VARIABLES* are globally, if SIMULATION is about to set them inside of a
-headless one while another live run is current outside."
+  "Store the global values of *SIMULATION-VARIABLES* if SIMULATION, inside a headless one, is about
+to set them while another live run is current outside."
   (let ((current (global-value '*simulation*)))
     (when (and *outer-globals*
                (null (rest *outer-globals*))
@@ -52,22 +52,22 @@ headless one while another live run is current outside."
                                 collect (cons symbol (global-value symbol))))))))
 
 (defun restore-outer-globals ()
-  "Set *SIMULATION-VARIABLES* globally to what they were before a live run was started in here."
+  "Restore the global values of *SIMULATION-VARIABLES* from before a live run was started here."
   (destructuring-bind (&optional run &rest values) (rest *outer-globals*)
     (when (and run (eq run (global-value '*simulation*)))
       (loop for (symbol . value) in values
             do (setf (global-value symbol) value)))))
 
 (defun publish-variables (simulation)
-  "Let all threads of the live SIMULATION see what *SIMULATION-VARIABLES* are here, where a headless
-simulation around it may have bound them."
+  "Set *SIMULATION-VARIABLES* globally to their values here, for all threads of the live SIMULATION.
+A headless simulation around it may have bound them."
   (when (live-p simulation)
     (note-outer-globals simulation)
     (dolist (symbol *simulation-variables*)
       (setf (global-value symbol) (symbol-value symbol)))))
 
 (defun note-environment (simulation)
-  "Let SIMULATION, in which this thread works, know what its variables are."
+  "Store the current values of its variables in SIMULATION, in which this thread works."
   (setf (simulation-environment simulation) (environment-here simulation))
   (publish-variables simulation))
 
@@ -82,8 +82,8 @@ the dice that SIMULATION was loaded with, if any."
             (acons *lisps-dice* dice environment)
             environment))))
 
-(defun take-up-environment (simulation)
-  "Set the variables of SIMULATION, to which this thread comes back, to what they have become."
+(defun adopt-environment (simulation)
+  "Set the variables of SIMULATION, to which this thread returns, to the values stored in it."
   (when (headless-p simulation)
     (loop for (symbol . value) in (simulation-environment simulation)
           do (unless (eq value (symbol-value symbol)) (setf (symbol-value symbol) value)))))
@@ -102,18 +102,18 @@ their last values in SIMULATION, or globally if that is live."
                   do (unless (eq value (symbol-value symbol))
                        (setf (global-value symbol) (symbol-value symbol)))))))))
 
-(defun call-elsewhere (simulation function)
+(defun call-in-other-run (simulation function)
   "Call FUNCTION with the parameters and variables of SIMULATION, which is not the current one."
   (let ((around *simulation*))
     (when around (note-environment around))
     (in-any-case
       (call-with-parameter-values (simulation-known-parameters simulation)
                                   (lambda () (call-in-environment simulation function)))
-      (when around (take-up-environment around)))))
+      (when around (adopt-environment around)))))
 
 (defun call-inside (simulation function)
-  "Call FUNCTION where SIMULATION is the current one: with its world, its message queue and, if it
-is not the current one out here, its parameters and, of a fork, its variables."
+  "Call FUNCTION with SIMULATION as the current one, with its world and message queue. If it is not
+the current one already, also with its parameters and variables."
   (flet ((call ()
            (let ((*simulation* simulation)
                  (*world* (simulation-world simulation))
@@ -123,4 +123,4 @@ is not the current one out here, its parameters and, of a fork, its variables."
     (declare (dynamic-extent #'call))
     (if (eq simulation *simulation*)
         (call)
-        (call-elsewhere simulation #'call))))
+        (call-in-other-run simulation #'call))))

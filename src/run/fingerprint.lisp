@@ -1,4 +1,4 @@
-;;;; fingerprint.lisp -- which definitions decide a run, and how they differ from those at hand.
+;;;; fingerprint.lisp -- the definitions that a run depends on, and how the current ones differ.
 
 (in-package :ars-magna.run)
 
@@ -6,15 +6,14 @@
 
 ;;; A journal has a list (kind name number) for each definition that the run depends on, where the
 ;;; number is a digest of the form that was read. It has (:file name number) for each file that
-;;; these definitions are from, as the run may depend on other forms there too. Comments and layout
-;;; do not count. A definition that a function made has no form: it has no number, and is not
+;;; contains these definitions, as the run may depend on other forms there too. Comments and layout
+;;; do not count. A definition made by a function has no form, so it has no number and is not
 ;;; compared.
 ;;;
-;;; A run depends on what it uses: its map and robots; the kickers on its things, and the attributes
-;;; of these; the place types, substances and users' kinds of clauses in the map; the robots' parts
-;;; of users' kinds; the kickers, manipulations and users' commands that it was asked for. It also
-;;; depends on everything in the files that define these. Functions that stand in other files, or
-;;; were typed, are not covered.
+;;; A run depends on what it uses: its map and robots; the kickers and attributes of its things; the
+;;; place types, substances and users' map clauses in the map; the robots' parts of users' kinds;
+;;; the kickers, manipulations and users' commands in its journal. It also depends on everything in
+;;; the files that define these. Functions in other files, or typed, are not covered.
 
 (defparameter *definition-kinds*
   (list (cons :map *maps*) (cons :robot *robots*) (cons :kicker *kickers*)
@@ -24,11 +23,11 @@
   "The kinds of definitions, and the registry of each. Manipulations have methods instead.")
 
 (defun qualified-name (symbol)
-  "Return a string that names SYMBOL with its package, for FIND-ROBOT and kin."
+  "Return a string that names SYMBOL with its package, for FIND-ROBOT and similar functions."
   (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
           (symbol-name symbol)))
 
-;;; What is used. A definition is here a list (kind name).
+;;; Definitions in use, as lists (kind name).
 
 (defun names-on-things (simulation name entries)
   "Return the NAMEs of all ENTRIES of things in SIMULATION, each once. Both are functions."
@@ -39,7 +38,7 @@
     names))
 
 (defun elements-in-use (numbers elements)
-  "Return those of the vector ELEMENTS, but the first, whose indices are among NUMBERS, a vector."
+  "Return the elements of the vector ELEMENTS, except the first, whose indices are in NUMBERS."
   (let ((used (make-array (length elements) :element-type 'bit :initial-element 0)))
     (loop for number across numbers do (setf (sbit used number) 1))
     (loop for index from 1 below (length elements)
@@ -91,7 +90,7 @@
           (loop for name in (asked-for 'manipulate 0 simulation)
                 collect (list :manipulation (name-string name)))))
 
-;;; Where they are from.
+;;; The files that contain them.
 
 (defun definition-entry (definition)
   "Return the registry entry of DEFINITION, (kind name ...), or NIL."
@@ -99,13 +98,13 @@
     (and registry (lookup-entry (second definition) registry))))
 
 (defun methods-of (definition)
-  "Return the methods of DEFINITION if that is of a manipulation."
+  "Return the methods of DEFINITION if that is a manipulation."
   (let ((manipulation (and (same-name-p :manipulation (first definition))
                            (find-manipulation (second definition) nil))))
     (and manipulation (manipulation-methods manipulation))))
 
 (defun sources-of (definitions)
-  "Return the sources of DEFINITIONS that are files, each once."
+  "Return the sources of DEFINITIONS that are files, without duplicates."
   (remove-duplicates
    (loop for definition in definitions
          for entry = (definition-entry definition)
@@ -115,7 +114,7 @@
    :test #'equal))
 
 (defun definitions-from (sources)
-  "Return the definitions, but maps and robots, that are from SOURCES."
+  "Return all definitions from SOURCES, except maps and robots."
   (append (loop for (kind . registry) in *definition-kinds*
                 unless (member kind '(:map :robot))
                   append (loop for entry in (registry-entries registry)
@@ -129,15 +128,15 @@
 (defun file-name-of (source)
   (name-in-directory (native-path (source-file source))))
 
-;;; What they are.
+;;; Their digests.
 
-(defun sum-of (numbers)
-  "Return one number for NUMBERS, whatever their order."
+(defun sum-of-digests (numbers)
+  "Return one number for NUMBERS that does not depend on their order."
   (ldb (byte 64 0) (reduce #'+ numbers)))
 
-(defun number-at-hand (definition sources)
-  "Return the number of DEFINITION as it is now, and whether there is one. SOURCES are those of all
-definitions that are looked at."
+(defun current-digest (definition sources)
+  "Return the digest of DEFINITION as it is now, and true if it is defined. SOURCES are those of all
+definitions that are compared."
   (destructuring-bind (kind name &rest number) definition
     (declare (ignore number))
     (let ((entry (definition-entry definition))
@@ -145,15 +144,15 @@ definitions that are looked at."
           (files (and (same-name-p :file kind)
                       (remove name sources :key #'file-name-of :test-not #'string=))))
       (values (cond (entry (entry-digest entry))
-                    (methods (sum-of (remove nil (mapcar #'method-digest methods))))
-                    (files (sum-of (mapcar #'second files))))
+                    (methods (sum-of-digests (remove nil (mapcar #'method-digest methods))))
+                    (files (sum-of-digests (mapcar #'second files))))
               (or entry methods files)))))
 
-(defun at-hand (definitions)
-  "Return those of DEFINITIONS that are loaded, with their numbers as they are now."
+(defun current-definitions (definitions)
+  "Return those of DEFINITIONS that are loaded, with their current digests."
   (loop with sources = (sources-of definitions)
         for definition in definitions
-        for (number there) = (multiple-value-list (number-at-hand definition sources))
+        for (number there) = (multiple-value-list (current-digest definition sources))
         when there collect (list (first definition) (second definition) number)))
 
 (defun same-definition-p (a b)
@@ -161,7 +160,7 @@ definitions that are looked at."
        (string= (second a) (second b))))
 
 (defun undefined-attributes (simulation)
-  "Return, as definitions, the attributes that things in SIMULATION have and nobody has defined."
+  "Return, as definitions, the attributes of things in SIMULATION that are not defined."
   (loop for name in (names-in-use :attribute simulation)
         unless (lookup-entry name *attributes*)
           collect (list :attribute (name-string name) :undefined)))
@@ -170,28 +169,28 @@ definitions that are looked at."
   (same-name-p :undefined (or (and (symbolp (third definition)) (third definition)) "")))
 
 (defun definitions-of (simulation)
-  "Return what stands for the definitions that decide SIMULATION, lists (kind name number)."
+  "Return the definitions that SIMULATION depends on, as lists (kind name number)."
   (let* ((used (definitions-in-use simulation)) (sources (sources-of used)))
-    (append (at-hand (remove-duplicates
-                      (append used
-                              (definitions-from sources)
-                              (mapcar (lambda (source) (list :file (file-name-of source)))
-                                      sources))
-                      :test #'same-definition-p :from-end t))
+    (append (current-definitions
+             (remove-duplicates
+              (append used
+                      (definitions-from sources)
+                      (mapcar (lambda (source) (list :file (file-name-of source))) sources))
+              :test #'same-definition-p :from-end t))
             (undefined-attributes simulation))))
 
 ;;; How they differ.
 
 (defun unchanged-p (definition now)
-  "True if DEFINITION is among those that are at hand NOW, or still undefined as it was."
+  "True if DEFINITION is in NOW, the current definitions, or is still undefined as before."
   (if (undefined-p definition)
       (not (member definition now :test #'same-definition-p))
       (member definition now :test #'equal)))
 
 (defun merge-definitions (before after)
-  "Return the definitions BEFORE with those AFTER that they lack. One that is not what it was has
-:CHANGED for its number."
-  (let ((now (at-hand before)))
+  "Return the definitions BEFORE, and those AFTER that are not among them. The number of a changed
+one is :CHANGED."
+  (let ((now (current-definitions before)))
     (append (loop for definition in before
                   for (kind name number) = definition
                   collect (if (unchanged-p definition now)
@@ -208,7 +207,7 @@ definitions that are looked at."
               (same-name-p :file kind) bare))))
 
 (defun difference-text (definition others)
-  "Return in words how DEFINITION, (kind name number), differs from what OTHERS say, or NIL."
+  "Return a text about how DEFINITION, (kind name number), differs from that in OTHERS, or NIL."
   (let ((other (find definition others :test #'same-definition-p))
         (number (third definition)))
     (cond ((undefined-p definition)
@@ -221,6 +220,6 @@ definitions that are looked at."
            (format nil "~A is not as it was" (definition-words definition))))))
 
 (defun differences (definitions)
-  "Return in words, in a list, how DEFINITIONS of a journal differ from those at hand."
-  (let ((others (at-hand definitions)))
+  "Return a list of texts about how DEFINITIONS of a journal differ from the current ones."
+  (let ((others (current-definitions definitions)))
     (remove nil (mapcar (lambda (definition) (difference-text definition others)) definitions))))

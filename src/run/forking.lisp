@@ -1,18 +1,18 @@
-;;;; forking.lisp -- a copy of a run in its present state, plans included, that continues by itself.
+;;;; forking.lisp -- copying a run in its current state, plans included.
 
 (in-package :ars-magna.run)
 
 (export '(call-with-fork *fork-asker* refuse-fork counterpart-here))
 
-;;; A fork is a headless run with a world of its own. The variables bound in the original (its
-;;; robots, the fluents of plans) belong to it too: a fork keeps their values as its environment,
-;;; which is bound while code works in the fork.
+;;; A fork is a headless run with its own world. The variables bound in the original (its robots,
+;;; the fluents of plans) are copied as well: the fork keeps their values as its environment, which
+;;; is bound while code works in the fork.
 
 (defvar *fork-asker* 'fork-simulation
-  "What a user has called that wants a fork: refusals are headed by it.")
+  "The operator that the user has called and that makes a fork; error messages begin with it.")
 
 (defun refuse-fork (reason &rest arguments)
-  "Signal MISUSE: there is no fork, for REASON, a format control for ARGUMENTS."
+  "Signal MISUSE with the message REASON, a format control for ARGUMENTS: no fork can be made."
   (reject-use "~(~A~): ~?" *fork-asker* reason arguments))
 
 (defmethod copy-plan-value ((simulation simulation) fork)
@@ -26,7 +26,7 @@
       timeline))
 
 (defun copy-of-run (simulation copier)
-  "Return a copy by COPIER of SIMULATION, with what is said to take part in it, but no journal."
+  "Return a copy of SIMULATION by COPIER, with the participants in its options, without a journal."
   (let ((copy (copying (copier)
                 (forked (simulation-world simulation) copier)
                 (let ((copy (forked simulation copier)))
@@ -46,8 +46,8 @@
     copy))
 
 (defun fork-options (simulation continuations decisions)
-  "Return what a copier must know to fork SIMULATION. CONTINUATIONS says whether it copies those of
-commands under way, DECISIONS, an alist, what the fork is to have for what cannot be copied."
+  "Return the options of a copier that forks SIMULATION. If CONTINUATIONS is true, it copies those
+of commands in progress. DECISIONS is an alist of replacements for values that cannot be copied."
   (list :simulation simulation
         :world (simulation-world simulation)
         :participants (simulation-participants simulation)
@@ -57,15 +57,15 @@ commands under way, DECISIONS, an alist, what the fork is to have for what canno
                     (some (lambda (participant) (participant-place participant value))
                           (simulation-participants simulation)))))
 
-(defun copy-alone (simulation)
-  "Return a copy of SIMULATION, which stands still here, without anything that takes part in it."
+(defun copy-without-participants (simulation)
+  "Return a copy of SIMULATION, which is between ticks, without its participants."
   (with-copier (copier :options (list :simulation simulation
                                       :world (simulation-world simulation)))
     (copy-of-run simulation copier)))
 
 (defun environment-of-fork (simulation)
-  "Return a list (symbol . value) of what is copied for those who work in a fork of SIMULATION. Of
-a live run's there are no dice: each of its threads has its own, and plans take theirs along."
+  "Return the environment, a list (symbol . value), to copy for a fork of SIMULATION. If that has no
+dice, as a live run where each thread has its own, they are made."
   (let ((environment (environment-of simulation)))
     (if (assoc *lisps-dice* environment)
         environment
@@ -73,17 +73,16 @@ a live run's there are no dice: each of its threads has its own, and plans take 
                                                   (simulation-tick simulation)))
                environment))))
 
-;; A continuation may have made the fork: others of that tick are yet to be called, and plans are
-;; yet to act.
+;; If a continuation makes a fork, other continuations and plans have not acted yet in that tick.
 (defun finish-tick (fork phase)
-  "Do in FORK what is still to be done in the tick in which it was made, in PHASE of that."
+  "Do in FORK what remains of the tick in which it was made, in PHASE of that."
   (when (<= (phase-number :continuations) phase (phase-number :observers))
     (call-inside fork (lambda ()
                         (deliver-notifications (simulation-timeline fork))
                         (let-participants-act fork)))))
 
 (defun fork-now (simulation continuations decisions)
-  "Return a fork of SIMULATION, which stands still here; see FORK-OPTIONS. Signals MISUSE inside a
+  "Return a fork of SIMULATION, which is between ticks; see FORK-OPTIONS. Signals MISUSE inside a
 tick, and CANNOT-FORK."
   (when (simulation-ticking-p simulation)
     (refuse-fork "a tick is under way. Fork the run between ticks, as in a continuation."))
@@ -99,18 +98,17 @@ tick, and CANNOT-FORK."
     (finish-tick copy (timeline-phase (simulation-timeline simulation)))
     copy))
 
-;;; A participant may be busy at the moment, in another thread.
+;;; A participant may be busy in another thread.
 
-(defun call-around (caller participants function)
-  "Call FUNCTION within calls of CALLER, such as PARTICIPANT-AT-REST, for all PARTICIPANTS. Return
-what it returns."
+(defun call-nested (caller participants function)
+  "Call FUNCTION inside nested calls of CALLER, such as PARTICIPANT-AT-REST, one for each of the
+PARTICIPANTS. Return its value."
   (if participants
       (funcall caller (first participants)
-               (lambda () (call-around caller (rest participants) function)))
+               (lambda () (call-nested caller (rest participants) function)))
       (funcall function)))
 
-(defconstant +patience+ 2000 "How often in a row a fork tries to find all at rest, once a tick or
-once in some milliseconds.")
+(defconstant +patience+ 2000 "How many times a fork is tried, once a tick or some milliseconds.")
 
 (defun keep-trying-to-fork (simulation try)
   "Return a fork of SIMULATION as soon as the function TRY does not return :BUSY. Signals MISUSE if
@@ -125,23 +123,23 @@ that takes too long."
                              (simulation-name simulation))))
 
 (defun await-fork (simulation continuations decisions)
-  "Return a fork of SIMULATION as soon as it, and all that takes part in it, stands still. See
+  "Return a fork of SIMULATION as soon as it is between ticks and its participants are at rest. See
 FORK-NOW."
   (flet ((try ()
            (asking (simulation)
-             (call-around #'participant-at-rest (simulation-participants simulation)
+             (call-nested #'participant-at-rest (simulation-participants simulation)
                           (lambda () (fork-now simulation continuations decisions))))))
     (let ((fork (try)))
       (if (eq :busy fork)
-          (call-around #'call-as-participant-makes-way (simulation-participants simulation)
+          (call-nested #'call-as-participant-makes-way (simulation-participants simulation)
                        (lambda () (keep-trying-to-fork simulation #'try)))
           fork))))
 
 ;; The restarts are established here, in the thread that asked for the fork: another thread may own
 ;; the run.
 (defun decide-on-fork (condition)
-  "Signal CONDITION, a CANNOT-FORK. Return what the fork is to have for its value, and true; or NIL
-and false if there is to be no fork."
+  "Signal CONDITION, a CANNOT-FORK. Return the replacement for its value in the fork, and true; or
+NIL and false if no fork is to be made."
   (restart-case (error condition)
     (share-value ()
       :report "Let both runs have the same one."
@@ -149,8 +147,8 @@ and false if there is to be no fork."
     (leave-out-value () :report "Let the fork have NIL instead." (values nil t))
     (make-no-fork () :report "Make no fork, but return NIL." (values nil nil))))
 
-(defun fork-deciding (simulation continuations)
-  "Return a fork of SIMULATION, or NIL if somebody has given that up."
+(defun fork-or-ask (simulation continuations)
+  "Return a fork of SIMULATION, or NIL if the user has chosen to make none."
   (let ((decisions '()))
     (make-room (octets-of-copy (simulation-world simulation)))
     (loop
@@ -161,7 +159,7 @@ and false if there is to be no fork."
             (push (cons (cannot-fork-value condition) replacement) decisions)))))))
 
 (defun fork-arguments (arguments)
-  "Return what ARGUMENTS of FORK-SIMULATION say: the simulation, and a plist."
+  "Return the simulation in ARGUMENTS, those of FORK-SIMULATION, and the plist of options."
   (if (keywordp (first arguments))
       (values (current-simulation) arguments)
       (values (if arguments (simulation-meant (first arguments) *fork-asker*) (current-simulation))
@@ -200,7 +198,7 @@ CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL.
     (check-not-over simulation *fork-asker*)
     (mapc #'check-forkable (simulation-participants simulation))
     (setf (simulation-forked-p simulation) t)
-    (let ((fork (fork-deciding simulation (getf options :continuations)))
+    (let ((fork (fork-or-ask simulation (getf options :continuations)))
           (seed (getf options :seed)))
       (when fork
         (setf (message-queue-error-policy (simulation-messages fork))
@@ -248,11 +246,11 @@ successor."
   (check-argument call-in-fork function (functionp function) "a function of no arguments")
   (call-inside (latest fork) function))
 
-;;; What an object of a run is in a fork of that.
+;;; The copy of an object in a fork.
 
 (defgeneric counterpart-here (object)
-  (:documentation "Return what OBJECT, of another run, is in the current simulation, a fork of that
-run; or NIL. Signals WRONG-ARGUMENT for what has no counterpart.")
+  (:documentation "Return the copy of OBJECT, of another run, in the current simulation, a fork of
+that run; or NIL. Signals WRONG-ARGUMENT for an object that is not of a run.")
   (:method (object)
     (reject-argument 'counterpart "object" object
                      (one-line "a robot, a part of one, a thing, a designator, an odometer, a

@@ -30,7 +30,7 @@ mode."
                                                (thinking :free) (errors :report) variables)
   "Call FUNCTION, with no arguments, in a fresh headless simulation of ROBOTS, a robot, its name or
 a list of such, and return its values: what WITH-SIMULATION does with its body. VARIABLES are
-symbols by which FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
+further symbols, of any package, that name some of the ROBOTS in FUNCTION."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking 'with-simulation thinking)
   (check-argument with-simulation errors (typep errors 'error-policy)
@@ -47,9 +47,9 @@ symbols by which FUNCTION calls some of the ROBOTS, of other packages than their
                          :variables variables :keep keep)))))
 
 (defun call-as-headless (function simulation &key variables keep)
-  "Call FUNCTION where SIMULATION, a headless one, is the current one, and the variables of its
-robots are bound to these; so are the symbols VARIABLES, which name some of them. It keeps forks as
-KEEP says, see KEEP-FORKS. Then the run is over."
+  "Call FUNCTION with the headless SIMULATION as the current one and its robots as the values of
+their names and of VARIABLES, symbols that name some of them. The run keeps forks as KEEP says, see
+KEEP-FORKS, and is over at the end."
   (when *simulation* (note-environment *simulation*))
   (let* ((*message-queue* (simulation-messages simulation))
          (*simulation* simulation)
@@ -78,8 +78,8 @@ KEEP says, see KEEP-FORKS. Then the run is over."
         (restore-outer-globals)))))
 
 (defun call-telling-errors (function simulation)
-  "Call FUNCTION in the headless SIMULATION, whose run is then over. What has gone wrong that nobody
-has been told is told, or signalled, as its message queue says."
+  "Call FUNCTION in the headless SIMULATION; then end the run. Show or signal unread errors, by the
+error policy of its message queue."
   (let ((queue (simulation-messages simulation)) (left-p t))
     (multiple-value-prog1
         (in-any-case
@@ -89,7 +89,7 @@ has been told is told, or signalled, as its message queue says."
           (look-at-end simulation left-p)
           (show-unseen queue)
           (end-headless simulation)
-          ;; What is interrupted then is not wrong.
+          ;; What the end interrupts is no error.
           (show-unseen queue (lambda (message)
                                (and (message-cause message)
                                     (or left-p
@@ -97,8 +97,8 @@ has been told is told, or signalled, as its message queue says."
       (signal-trouble queue))))
 
 (defun look-at-end (simulation left-p)
-  "Warn if something was requested in SIMULATION, whose run is to end, and no ticks, or too few,
-have passed. Do not if the run is LEFT-P, as by an error, or if ticks may have passed in a fork."
+  "Warn if SIMULATION, which ends, has passed no ticks or too few for its requests. Do not if it is
+LEFT-P, by a non-local exit such as an error, or was forked, as ticks may have passed in the fork."
   (let ((text (and (not left-p)
                    (not (simulation-forked-p simulation))
                    (text-at-end simulation))))
@@ -109,11 +109,10 @@ have passed. Do not if the run is LEFT-P, as by an error, or if ticks may have p
                      (simulation-messages simulation)))))
 
 (define-event *rewound-end-hooks*
-  "Functions of a headless run that was rewound, and of the one that went on in its place and is
-over now.")
+  "Functions of a headless run that was rewound, and of its last successor, which is over now.")
 
 (defun end-headless (simulation)
-  "End SIMULATION, or its successor."
+  "End SIMULATION or, if it was rewound, its successor."
   (let ((reason "the headless simulation that it was in has ended") (last (latest simulation)))
     (retire-robots (simulation-robots last) reason)
     (end-simulation last reason)
@@ -126,8 +125,8 @@ over now.")
                  (ensure-list names)))
 
 (defun robots-meant (names)
-  "Return the robots of the current simulation that NAMES, of any package, mean."
-  ;; Their definitions may be gone by now.
+  "Return the robots of the current simulation that are called NAMES, symbols of any package."
+  ;; Their definitions may no longer exist.
   (loop with robots = (world-robots *world*)
         for name in names
         collect (or (find name robots :key #'robot-name :test #'eq)
@@ -146,15 +145,15 @@ of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION.
     (errors-in (simulation-messages simulation)
                (lambda (run) (or (null run) (eq simulation (latest run)))))))
 
-;;; The macro, and what is said of one that is not written as it should be.
+;;; The macro, and warnings about misspelt forms.
 
 (defun unquoted (form)
-  "Return FORM without the quote that people put before names elsewhere."
+  "Return FORM without a leading quote."
   (if (and (consp form) (eq 'quote (first form))) (second form) form))
 
 (defun robots-form-p (form environment)
-  "True if FORM, for the robots of WITH-SIMULATION, is an expression that returns them, and no name
-or list of names."
+  "True if FORM, the robots of WITH-SIMULATION, is an expression that returns them: no name or list
+of names."
   (typecase form
     (symbol (and form (known-variable-p form environment) (not (find-blueprint form nil))))
     (cons (let ((head (first form)))
@@ -165,7 +164,7 @@ or list of names."
                      (known-function-p head environment)))))))
 
 (defun doubt-values-of-commands (body)
-  "Warn of each place in BODY, that of a WITH-SIMULATION, that uses the value of a command."
+  "Warn about each form in BODY, that of a WITH-SIMULATION, that uses the value of a command."
   (map-calls (lambda (form)
                (let ((call (find-if (lambda (used)
                                       (and (typep used '(cons symbol))
@@ -178,7 +177,7 @@ or list of names."
              body))
 
 (defun unquoted-settings-p (form)
-  "True if FORM, for a list of settings, is such a list itself, or a setting: neither is a call."
+  "True if FORM, to be evaluated to a list of settings, is itself such a list or a setting."
   (and (consp form)
        (let ((head (first form)))
          (if (consp head)
@@ -186,7 +185,7 @@ or list of names."
              (and (symbolp head) (not (fboundp head)) (find-parameter head nil))))))
 
 (defun settings-form (form)
-  "Return FORM, that of the list :parameters. Signals MALFORMED-DEFINITION if a quote is missing."
+  "Return FORM, the value of :parameters. Signals MALFORMED-DEFINITION if its quote is missing."
   (when (unquoted-settings-p form)
     (reject-clause "with-simulation" (list :parameters form)
                    (let ((*print-case* :downcase))

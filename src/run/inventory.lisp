@@ -1,14 +1,14 @@
-;;;; inventory.lisp -- all the objects of a run, met by going from one to the next, and numbered.
+;;;; inventory.lisp -- finding and numbering all objects of a run, to save them.
 
 (in-package :ars-magna.run)
 
-;;; Maps, robots' definitions, kickers and the like are not of one run; neither are some functions
-;;; of ours that its objects hold. A saved run names them, and they must be defined where it is
-;;; loaded.
+;;; Some objects do not belong to one run: maps, robots' definitions, kickers and other definitions,
+;;; and some functions of the simulator. A saved run refers to these outer objects by name, and they
+;;; must be defined where it is loaded.
 
 (defgeneric outer-name (object)
-  (:documentation "Return the name, a list (KIND argument...) of a keyword and plain data, by which
-OUTER-OBJECT finds OBJECT, which is not of any one run; or NIL if it is of one.")
+  (:documentation "Return the name of OBJECT for OUTER-OBJECT, a list (KIND argument...) of a
+keyword and plain data, if it does not belong to one run; else NIL.")
   (:method (object) (declare (ignore object)) nil)
   (:method ((map map)) (list :map (qualified-name (map-name map))))
   (:method ((blueprint blueprint)) (list :robot (qualified-name (blueprint-name blueprint))))
@@ -38,7 +38,7 @@ OUTER-OBJECT finds OBJECT, which is not of any one run; or NIL if it is of one."
       (error "~(~A~) has not so many methods" name)))
 
 (defun outer-object (kind argument &optional more)
-  "Return what the name (KIND ARGUMENT [MORE]) means here. Signals an error if it means nothing."
+  "Return the object named (KIND ARGUMENT [MORE]) here. Signals an error if there is none."
   (or (typecase argument
         (string (case kind
                   (:map (find-map argument))
@@ -56,8 +56,8 @@ OUTER-OBJECT finds OBJECT, which is not of any one run; or NIL if it is of one."
                          (error "~A is no function that objects of a run hold" argument)))))
       (error "~A is nothing that a run uses" (short-text kind))))
 
-(defun name-at-hand (object)
-  "Return the OUTER-NAME of OBJECT; a second value is true if that means another, or nothing, now."
+(defun current-outer-name (object)
+  "Return the OUTER-NAME of OBJECT, and true if that no longer means OBJECT."
   (let ((name (outer-name object)))
     (values name
             (and name
@@ -65,40 +65,40 @@ OUTER-OBJECT finds OBJECT, which is not of any one run; or NIL if it is of one."
 
 ;;;; The inventory
 
-;;; From the simulation every object is reached that it would need to go on. What has an identity
-;;; gets a number: structures, arrays and tables; and lists and strings that are met twice, or would
-;;; make a line of a file too long. All else is written where it is met. Objects of one shape make a
-;;; batch, and have successive numbers.
+;;; The inventory contains all objects that can be reached from the simulation. Structures, arrays
+;;; and tables get numbers, and so do lists and strings that are found twice or would make a line of
+;;; the file too long. Other values are written where they are found. Objects of one shape form a
+;;; batch and have successive numbers.
 
-(defconstant +longest-text+ 1000 "How many characters a string has at most that has no number.")
-(defconstant +longest-row+ 1000 "How many elements of a list or array a line has at most.")
-(defconstant +deepest-text+ 50 "How deep lists without numbers stand in lists at most.")
-(defconstant +room-of-object+ 300000 "About how many characters may be written for one object.")
+(defconstant +longest-text+ 1000 "The most characters of a string without a number.")
+(defconstant +longest-row+ 1000 "The most elements of a list or array in a line.")
+(defconstant +deepest-text+ 50 "The deepest nesting of lists without numbers.")
+(defconstant +room-of-object+ 300000 "About the most characters that are written for one object.")
 
 (defstruct (batch (:constructor make-batch (shape fields)) (:copier nil))
-  "Objects of one SHAPE. FIELDS are those of structures."
+  "Objects of one SHAPE. FIELDS are the slots of structures."
   (shape '() :type list :read-only t)
   (fields '() :type list :read-only t)
   (members (make-array 4 :adjustable t :fill-pointer 0) :type vector :read-only t))
 
 (defstruct (inventory (:constructor make-inventory ()) (:copier nil))
-  "The objects of a run. STATES has for each that was met :MET, :NUMBERED, or in the end its number,
-if it is to have one."
+  "The objects of a run. STATES maps each object found to :MET or :NUMBERED and, at the end, the
+latter to their numbers."
   (states (make-hash-table :test 'eql) :type hash-table :read-only t)
   (outer '() :type list)
   (batches (make-hash-table :test 'equal) :type hash-table :read-only t)
   (shapes '() :type list)
   (waiting '() :type list)
-  ;; About how many characters may yet be written for the object that is looked at.
+  ;; About how many more characters may be written for the current object.
   (room 0 :type fixnum)
-  ;; The object that is looked at, and the field in which, for messages.
+  ;; The current object and its current field, for messages.
   (holder nil)
   (field nil))
 
-;;; What cannot be saved.
+;;; Objects that cannot be saved.
 
 (defun reject-object (object why inventory)
-  "Signal MISUSE: OBJECT, met in what INVENTORY looks at, cannot be saved, and WHY."
+  "Signal MISUSE: OBJECT, found in the current object of INVENTORY, cannot be saved; WHY is a text."
   (let ((field (inventory-field inventory)))
     (reject-use "The run cannot be saved: in ~@[the slot ~(~A~) of ~]~A is ~A, ~A."
                 (and field (kind-slot-name field)) (short-text (inventory-holder inventory))
@@ -114,10 +114,10 @@ if it is to have one."
                                 collect (list 'unsigned-byte bits)
                                 collect (list 'signed-byte bits))))
            :test #'equal))
-  "What arrays that are saved can have as elements.")
+  "The element types of arrays that can be saved.")
 
 (defparameter *table-tests* '(eq eql equal equalp)
-  "The tests that tables which are saved can have.")
+  "The tests of hash tables that can be saved.")
 
 (defun array-shape (array)
   (list :array (array-element-type array) (if (array-has-fill-pointer-p array)
@@ -127,7 +127,7 @@ if it is to have one."
               ((adjustable-array-p array) :adjustable))))
 
 (defun savable-type-p (type)
-  "True if structures called TYPE, a symbol, can be saved by what is in their slots."
+  "True if structures of TYPE, a symbol, can be saved slot by slot."
   (or (kind-called type)
       (member type '(place cell interruption command-failure pt interval pt-interval))
       (not (or (lisps-own-p type) (our-own-p type)))))
@@ -135,16 +135,16 @@ if it is to have one."
 (defun structure-shape (object inventory)
   (let ((type (type-of object)))
     (unless (and (symbolp type) (savable-type-p type))
-      (reject-object object "which only its own Lisp knows" inventory))
+      (reject-object object "which only the Lisp that made it knows" inventory))
     (list :object type)))
 
 (defun table-shape (table inventory)
   (unless (member (hash-table-test table) *table-tests*)
-    (reject-object table "a table with a test of its own" inventory))
+    (reject-object table "a table with a user-defined test" inventory))
   (list :table (hash-table-test table) (hash-table-count table)))
 
 (defun shape-in-inventory (object inventory)
-  "Return what must be known of OBJECT before what is in it: a list of a keyword and plain data.
+  "Return the shape of OBJECT, a list of a keyword and plain data that suffices to make a new one.
 Signals MISUSE."
   (typecase object
     (cons (list :list))
@@ -153,16 +153,16 @@ Signals MISUSE."
     (dice (list :dice))
     (agenda (list :agenda (agenda-pending object)))
     (structure-object (structure-shape object inventory))
-    (t (reject-object object "which only its own Lisp knows" inventory))))
+    (t (reject-object object "which only the Lisp that made it knows" inventory))))
 
 (defun shape-fields (shape)
   (and (eq :object (first shape))
        (remove-if-not #'slot-kept-p (fields-of-type (second shape)))))
 
-;;; Meeting objects.
+;;; Finding objects.
 
-(defun enlist (object inventory)
-  "Give OBJECT a place in its batch in INVENTORY."
+(defun add-to-batch (object inventory)
+  "Add OBJECT to its batch in INVENTORY."
   (let* ((shape (shape-in-inventory object inventory))
          (batch (or (gethash shape (inventory-batches inventory))
                     (progn (push shape (inventory-shapes inventory))
@@ -171,19 +171,20 @@ Signals MISUSE."
     (vector-push-extend object (batch-members batch))))
 
 (defun meet (object numbered-p inventory)
-  "Note that OBJECT was met, to have a number if NUMBERED-P is true. True if it was met before."
+  "Note that OBJECT was found. It gets a number if NUMBERED-P is true or it was found before; return
+true in the latter case."
   (let ((state (gethash object (inventory-states inventory))))
     (when (or (eq :met state) (and numbered-p (null state)))
       (setf (gethash object (inventory-states inventory)) :numbered)
-      (enlist object inventory))
+      (add-to-batch object inventory))
     (unless (or state numbered-p)
       (setf (gethash object (inventory-states inventory)) :met))
     state))
 
 (defun meet-object (object inventory)
-  "Meet OBJECT, which has a number: one of the run, to be looked at later, or one beside it."
+  "Note OBJECT, which gets a number. If it belongs to the run, its contents are surveyed later."
   (unless (gethash object (inventory-states inventory))
-    (multiple-value-bind (name other-p) (name-at-hand object)
+    (multiple-value-bind (name other-p) (current-outer-name object)
       (cond ((null name)
              (meet object t inventory)
              (push object (inventory-waiting inventory)))
@@ -194,7 +195,7 @@ Signals MISUSE."
                (push (cons object name) (inventory-outer inventory)))))))
 
 (defun take-room (characters inventory)
-  "Note that some CHARACTERS will be written for the object at hand. True if there is room."
+  "Note that CHARACTERS more will be written for the current object. True if there is room."
   (plusp (decf (inventory-room inventory) characters)))
 
 (defun survey-text (text inventory)
@@ -202,13 +203,13 @@ Signals MISUSE."
     (meet text (not (and (take-room (* 2 (length text)) inventory) short-p)) inventory)))
 
 (defun survey-list (list depth inventory)
-  "Meet the conses of LIST, which stands DEPTH deep in others, and what is in them."
+  "Survey the conses of LIST, which is nested DEPTH deep, and their contents."
   (loop for tail = list then (cdr tail)
         for position from 1
         while (consp tail)
         do (let ((far-p (or (not (take-room 2 inventory)) (= depth +deepest-text+))))
              (when (meet tail (or far-p (= position +longest-row+)) inventory) (return))
-             ;; What follows in a line of its own can be looked at by itself.
+             ;; The rest gets its own line and is surveyed later.
              (when (or far-p (= position +longest-row+))
                (push tail (inventory-waiting inventory))
                (return))
@@ -216,7 +217,7 @@ Signals MISUSE."
         finally (survey tail depth inventory)))
 
 (defun survey (value depth inventory)
-  "Meet VALUE, and what is in it if it has no number. Signals MISUSE."
+  "Note VALUE, and its contents if it gets no number. Signals MISUSE."
   (typecase value
     ((or null fixnum) (take-room 20 inventory))
     (double-float (if (finite-p value)
@@ -231,7 +232,7 @@ Signals MISUSE."
     (string (survey-text value inventory))
     (t (meet-object value inventory))))
 
-;;; Looking at what was met.
+;;; Contents of objects.
 
 (defun survey-fields (object inventory)
   (let ((batch (gethash (shape-in-inventory object inventory) (inventory-batches inventory))))
@@ -245,7 +246,7 @@ Signals MISUSE."
       (survey (row-major-aref array index) 0 inventory))))
 
 (defun survey-contents (object inventory)
-  "Meet what is in OBJECT, which has a number."
+  "Survey the contents of OBJECT, which has a number."
   (setf (inventory-room inventory) +room-of-object+
         (inventory-holder inventory) object
         (inventory-field inventory) nil)
@@ -262,7 +263,7 @@ Signals MISUSE."
     (t (survey-fields object inventory))))
 
 (defun survey-all (inventory)
-  "Look at all that INVENTORY has met and not yet looked at, and at what is met there."
+  "Survey the contents of all objects in INVENTORY, until no new ones are found."
   (loop while (inventory-waiting inventory)
         do (dolist (object (reverse (shiftf (inventory-waiting inventory) '())))
              (survey-contents object inventory))))
@@ -272,7 +273,7 @@ Signals MISUSE."
         collect (gethash shape (inventory-batches inventory))))
 
 (defun give-numbers (inventory)
-  "Number what is in INVENTORY: first what is beside the run, then each batch."
+  "Number the objects in INVENTORY: first the outer ones, then each batch."
   (let ((number 0) (states (inventory-states inventory)))
     (setf (inventory-outer inventory) (reverse (inventory-outer inventory)))
     (loop for (object) in (inventory-outer inventory)
@@ -282,8 +283,8 @@ Signals MISUSE."
             do (setf (gethash object states) (incf number))))))
 
 (defun take-inventory (simulation requests)
-  "Return the inventory of SIMULATION and of REQUESTS, a list of those that wait to be taken. The
-first batch is SIMULATION alone. Signals MISUSE."
+  "Return the inventory of SIMULATION and REQUESTS, a list of those in its inbox. The first batch is
+SIMULATION alone. Signals MISUSE."
   (let ((inventory (make-inventory)))
     (setf (inventory-holder inventory) simulation)
     (survey simulation 0 inventory)

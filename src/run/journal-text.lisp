@@ -1,12 +1,12 @@
-;;;; journal-text.lisp -- journals as text: plain data that executes nothing and interns nothing.
+;;;; journal-text.lisp -- writing and reading journals as plain data.
 
 (in-package :ars-magna.run)
 
 (export '(write-journal read-journal))
 
-;;; The first line is a comment, then comes the head, one line for each entry, and the end. Behind
-;;; each a comment has a check sum of it and all before it, so that damage is found, and where. See
-;;; plain-data.lisp for what they look like.
+;;; The first line is a comment. Then come the head, one line for each entry, and the end. A comment
+;;; after each has a check sum of the file up to there, which shows where damage is. Reading
+;;; executes nothing and interns nothing. See plain-data.lisp for the syntax.
 
 (defconstant +journal-version+ 2)
 (define-constant +journal-title+ ";;;; A journal of ARS MAGNA." :test #'string=
@@ -18,7 +18,7 @@
 ;;; Writing.
 
 (defun check-printable (journal)
-  "Signal MISUSE if JOURNAL has something that could not be read from a file again."
+  "Signal MISUSE if JOURNAL contains anything that could not be read from a file again."
   (dolist (entry (journal-entries journal))
     (let ((object (unprintable-in (cddr entry))))
       (when object
@@ -35,7 +35,7 @@
                 (journal-end journal) +latest-end+)))
 
 (defun entry-datum (entry)
-  "Return ENTRY as it stands in a file: the operator by name."
+  "Return ENTRY as written to a file, with a keyword for the operator."
   (list* (first entry) (make-keyword (symbol-name (second entry))) (cddr entry)))
 
 (defun journal-data (journal)
@@ -47,7 +47,7 @@
           (list (list :end (journal-end journal)))))
 
 (defun write-data (data out)
-  "Write DATA, a line for each, with check sums to OUT."
+  "Write each of DATA as a line with a check sum to OUT."
   (write-line +journal-title+ out)
   (let ((sum 0))
     (dolist (datum data) (setf sum (write-sealed (datum-text datum) sum out)))))
@@ -55,7 +55,7 @@
 ;;; Reading.
 
 (defun check-head-line (line)
-  "Signal an error unless LINE begins as the head of a journal of this version does."
+  "Signal an error unless LINE begins like the head of a journal of this version."
   (flet ((begins-p (text) (starts-with-subseq text line :test #'char-equal)))
     (when (or (begins-p "(:ars-magna-journal 1 ") (begins-p "(ars-magna-journal 1 "))
       (error "it is of the old format 1, whose entries could call any function, and is not read ~
@@ -63,14 +63,13 @@
     (unless (begins-p "(ars-magna-journal ") (error "it does not begin like one"))))
 
 (defun numbered-datum (number line sum)
-  "Return what CHECKED-DATUM does. Signals an error that names the entry by its NUMBER."
+  "Return the values of CHECKED-DATUM. Signals an error with the NUMBER of the entry."
   (handler-case (checked-datum line sum)
     (error (trouble)
       (error "~[its head~:;~:*entry ~D~] is damaged: ~A" number (one-line-text trouble)))))
 
 (defun read-data (in)
-  "Return a list of all data of the journal that the stream IN has. Signals an error that says what
-is wrong, and in which entry."
+  "Return a list of all data of the journal in the stream IN. Signals errors that name the entry."
   (loop with sum = 0
         for number from 0
         for line = (next-line in)
@@ -80,7 +79,7 @@ is wrong, and in which entry."
                   (setf sum new)
                   datum)))
 
-;;; What the data come to.
+;;; Checking the data.
 
 (defun plist-p (object)
   (and (listp object)
@@ -104,16 +103,16 @@ is wrong, and in which entry."
              object))
 
 (defun settings-trouble (settings)
-  "Return what is wrong with SETTINGS of parameters, lists (name value), or NIL."
+  "Return a text about what is wrong with SETTINGS of parameters, lists (name value), or NIL."
   (handler-case (call-with-parameters settings (constantly nil))
     (ars-magna-error (trouble) (one-line-text trouble))))
 
 (defun twice-p (names)
-  "True if NAMES, strings, has a name twice."
+  "True if the strings NAMES contain duplicates."
   (/= (length names) (length (remove-duplicates names :test #'string-equal))))
 
 (defun header-trouble (header)
-  "Return what is wrong with HEADER, or NIL."
+  "Return a text about what is wrong with HEADER, or NIL."
   (flet ((wrong-p (key predicate) (not (funcall predicate (getf header key)))))
     (cond ((not (plist-p header)) "it is no list of names and values")
           ((wrong-p :map #'stringp) "it names no map")
@@ -124,12 +123,12 @@ is wrong, and in which entry."
           ((not (thinking-mode-p (getf header :thinking :free))) "its thinking mode makes no sense")
           ((wrong-p :parameters #'settings-p) "its parameters make no sense")
           ((wrong-p :definitions #'definitions-p) "its definitions make no sense")
-          ((wrong-p :remarks #'remarks-p) "what is remarked of the run makes no sense")
+          ((wrong-p :remarks #'remarks-p) "its remarks make no sense")
           ((undescribed header) (format nil "it does not say what ~A was" (undescribed header)))
           ((settings-trouble (getf header :parameters))))))
 
 (defun undescribed (header)
-  "Return the name in HEADER, of the map or a robot, for which it has no definition, or NIL."
+  "Return the name of the map or a robot in HEADER that has no definition there, or NIL."
   (flet ((described-p (kind name)
            (find (list kind name) (getf header :definitions) :test #'same-definition-p)))
     (if (described-p :map (getf header :map))
@@ -137,11 +136,11 @@ is wrong, and in which entry."
         (getf header :map))))
 
 (defun entry-trouble (entry tick)
-  "Return what is wrong with ENTRY, which comes after one at TICK, or NIL."
+  "Return a text about what is wrong with ENTRY, which comes after one at TICK, or NIL."
   (cond ((not (typep entry '(cons tick-count (cons symbol list)))) "it is no list (tick name ...)")
         ((< (first entry) tick) (format nil "its tick, ~D, comes after ~D" (first entry) tick))
         ((null (find-operator (second entry) nil))
-         (format nil "nothing that can be asked of a run is called ~A"
+         (format nil "there is no operator called ~A"
                  (short-text (plain-name (second entry)))))))
 
 (defun entries-of (data)
@@ -152,7 +151,7 @@ is wrong, and in which entry."
         for trouble = (entry-trouble entry tick)
         when trouble do (error "entry ~D makes no sense: ~A" number trouble)
         do (setf tick (first entry))
-        ;; With the name of the operator as that was defined.
+        ;; Use the symbol with which the operator was defined.
         collect (list* tick (operator-name (find-operator (second entry))) (cddr entry))))
 
 (defun check-head (head)
@@ -171,7 +170,7 @@ is wrong, and in which entry."
     (error "it ends at tick ~D, before its last entry" (second end))))
 
 (defun journal-from (data)
-  "Return the journal that DATA, all that its file has, come to. Signals an error if it is none."
+  "Return the journal made of DATA, all those in its file. Signals an error if they make none."
   (check-head (first data))
   (let ((journal (make-journal (uiop:remove-plist-key :remarks (third (first data)))))
         (entries (entries-of (butlast (rest data))))
@@ -184,13 +183,13 @@ is wrong, and in which entry."
     journal))
 
 (defun read-journal (file &optional (operator 'read-journal))
-  "Return the journal in FILE, an argument of OPERATOR. Signals DAMAGED-JOURNAL if it is none, or
-incomplete, and says which entry is to blame; WRONG-ARGUMENT unless FILE is a name."
+  "Return the journal in FILE, an argument of OPERATOR. Signals DAMAGED-JOURNAL, which names the
+entry, if it is none or incomplete; WRONG-ARGUMENT unless FILE is a name."
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file "a journal, or the name of a file that holds one"))
   (reading-file (in file :journal 'damaged-journal) (journal-from (read-data in))))
 
-;;; Writing, and reading on trial: so saving refuses what loading would refuse, by the same checks.
+;;; Writing. The new file is read on trial, so saving refuses what loading would refuse.
 
 (defun check-readable (path)
   "Signal MISUSE unless the journal in the file PATH can be read."
@@ -201,9 +200,9 @@ incomplete, and says which entry is to blame; WRONG-ARGUMENT unless FILE is a na
                   (reason-of-refusal trouble)))))
 
 (defun write-journal (journal file)
-  "Write JOURNAL to FILE, replacing it when all is written and has been read on trial. Return the
-file's truename. Signals MISUSE if that cannot be, as when an entry holds a function, or another
-object without a readable form; then FILE is as it was."
+  "Write JOURNAL to FILE, replacing it after all is written and has been read on trial. Return the
+file's truename. Signals MISUSE if that fails, as when an entry contains a function or another
+object without a readable form; then FILE is unchanged."
   (check-printable journal)
   (write-file-anew (lambda (out) (write-data (journal-data journal) out)) file "the journal"
                    :kind :journal :check #'check-readable))

@@ -1,31 +1,30 @@
-;;;; journal.lisp -- the requests to a run and their ticks, so that it can be repeated exactly.
+;;;; journal.lisp -- recording the requests to a run, so that it can be repeated exactly.
 
 (in-package :ars-magna.run)
 
 (export '(journal remark unremark note begin-journal end-of-journal))
 
 ;;; A journal is a header, entries (tick operator argument ...) in the order in which they took
-;;; effect, and the tick at which it ended. An operator is a name that DEFINE-OPERATOR has
-;;; defined; robots, parts, things and designators stand in an entry as lists that name them (see
-;;; references.lisp). What commands do is not in it, and need not be: a run is a function of what
-;;; is.
+;;; effect, and the tick at which it ended. An operator is a name defined by DEFINE-OPERATOR;
+;;; robots, parts, things and designators are written as references (references.lisp). What commands
+;;; do is not recorded: it follows from the journal.
 
 (addition *journal-limit*)
 (defparameter *journal-limit* 1000000
-  "How many entries a journal holds at most (about 200 bytes each). One that is full says so, and
-repeats the run up to there.")
+  "The most entries of a journal (about 200 bytes each). When it is full, a warning says so; it then
+repeats the run up to that tick.")
 
 (addition journal-p)
 (define-record (journal (:constructor make-journal (header)))
   "The record of one run."
-  (header '() list "the plist with which the run began: map, robots, seed, parameters, and what the
-definitions were that decide it" :writable :addition)
+  (header '() list "a plist of how the run began: map, robots, seed, parameters, and the definitions
+that it depends on" :writable :addition)
   (newest-first '() list "its entries, the newest first" :writable)
   (length 0 fixnum "how many entries the journal has" :writable :addition)
   (end 0 tick-count "the tick at which the journal ends" :writable :addition)
-  (remarks '() list "lists (tick kind text robot x y), the newest first: what is told of the run
-that a replay cannot know. ROBOT is a name, a string, or NIL" :writable :export)
-  (full-p nil boolean "there was something to note and no room for it" :writable))
+  (remarks '() list "lists (tick kind text robot x y), the newest first: events of the run that a
+replay does not repeat. ROBOT is a name, a string, or NIL" :writable :export)
+  (full-p nil boolean "an entry was left out as there was no room" :writable))
 
 (defmethod print-object ((journal journal) stream)
   (print-unreadable-object (journal stream :type t)
@@ -39,15 +38,14 @@ Signals WRONG-ARGUMENT."
   (reverse (journal-newest-first journal)))
 
 (defun copied-journal (journal tick)
-  "Return a journal that is like JOURNAL, of a run that has come to TICK, and goes on by itself."
+  "Return a copy of JOURNAL, of a run that has come to TICK, for a fork of that."
   (let ((copy (copy-structure journal)))
     (setf (journal-header copy) (copy-list (journal-header journal)))
     (unless (journal-full-p copy) (setf (journal-end copy) tick))
     copy))
 
 (defun truncated-journal (journal tick)
-  "Return a journal that ends at TICK and until then is like JOURNAL. Signals WRONG-ARGUMENT for a
-TICK that it does not reach."
+  "Return a copy of JOURNAL that ends at TICK. Signals WRONG-ARGUMENT if JOURNAL ends before."
   (unless (typep tick `(integer 0 ,(journal-end journal)))
     (reject-argument "replay" "until" tick
                      (format nil "a tick of the journal, from 0 to ~D" (journal-end journal))))
@@ -60,10 +58,10 @@ TICK that it does not reach."
           (journal-end copy) tick)
     copy))
 
-;;;; Noting what is asked
+;;;; Recording requests
 
 (defun close-full-journal (journal tick)
-  "Let JOURNAL end at TICK, and say so."
+  "End JOURNAL, which is full, at TICK, and warn."
   (setf (journal-full-p journal) t
         (journal-end journal) tick)
   (warn-notably (format nil "The journal is full: with ~D entries it ends at tick ~D. The run goes ~
@@ -71,37 +69,36 @@ TICK that it does not reach."
                        (journal-length journal) tick)))
 
 (defun room-left-p (journal)
-  "True if JOURNAL may have another entry. A limit that is no number does not count."
+  "True if JOURNAL may have another entry. A limit that is no number is ignored."
   (not (and (finite-p *journal-limit*)
             (>= (journal-length journal) *journal-limit*))))
 
 (defun add-entry (journal tick entry)
-  "Enter ENTRY, a list of an operator and its arguments, into JOURNAL as of TICK, if there is room."
+  "Add ENTRY, a list of an operator and its arguments, at TICK to JOURNAL, if there is room."
   (cond ((journal-full-p journal))
         ((not (room-left-p journal)) (close-full-journal journal tick))
         (t (push (cons tick entry) (journal-newest-first journal))
            (incf (journal-length journal))
            (setf (journal-end journal) tick))))
 
-(defun lasting-arguments (arguments)
-  "Return ARGUMENTS, which are externalized, to be kept: functions in them with the variables that
-they see as these are now. See ARGUMENTS-AGAIN."
+(defun arguments-to-keep (arguments)
+  "Return the externalized ARGUMENTS for a journal entry: functions are copied with the values they
+close over. See RESTORED-ARGUMENTS."
   (if (some #'functionp arguments) (memorized arguments) arguments))
 
-(defun arguments-again (arguments simulation)
-  "Return what LASTING-ARGUMENTS has returned for SIMULATION, a repetition of that run."
+(defun restored-arguments (arguments simulation)
+  "Return ARGUMENTS, a value of ARGUMENTS-TO-KEEP, for SIMULATION, a repetition of that run."
   (if (some #'functionp arguments) (recalled arguments simulation) arguments))
 
-;; What the tick itself has asked for, as kickers and events do, it asks for again when repeated.
+;; Requests made inside the tick, by kickers and events, are made again when it is repeated.
 (defun note (simulation operator arguments &optional request)
-  "Enter that OPERATOR, a symbol, was asked for with the list ARGUMENTS, by REQUEST if that is
-given, into the journal of SIMULATION, as of now, if it keeps one, and into what it remembers of its
-past."
+  "Record a call of OPERATOR, a symbol, with the list ARGUMENTS, or the REQUEST for it, at the
+current tick, in the journal and the past of SIMULATION, if it keeps them."
   (when (noting-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
       (when (and journal (not (and request (asked-inside-p request))))
         (add-entry journal (simulation-tick simulation)
-                   (cons operator (lasting-arguments arguments))))
+                   (cons operator (arguments-to-keep arguments))))
       (remember simulation operator arguments request))))
 
 (defun settings-by-name (settings)
@@ -114,8 +111,8 @@ past."
         collect (list (parameter-symbol (find-parameter name)) value)))
 
 (defun follow-settings (simulation)
-  "Let the journal of SIMULATION know which parameters somebody has set, and what DIRTY-SIMULATION
-would restore now."
+  "Record in the journal of SIMULATION the parameters set since the last call, and what
+DIRTY-SIMULATION would restore now, if that has changed."
   (follow-parameters (simulation-known-parameters simulation)
                      (and (simulation-thread simulation) t)
                      (lambda (symbol value)
@@ -125,20 +122,20 @@ would restore now."
     (setf (simulation-known-noise simulation) *noise-before-cleaning*)
     (note simulation 'cleaning (list (settings-by-name *noise-before-cleaning*)))))
 
-;;; Remarks. Plans and programs are not repeated in a replay; so what became of them is remarked, by
-;;; whatever thread, for people to read. It changes nothing.
+;;; Remarks. Plans and programs are not repeated in a replay. So the journal has remarks about them
+;;; for users, made by any thread. They do not affect the replay.
 
-(define-constant +remark-limit+ 1000 :documentation "How many remarks a journal has at most.")
+(define-constant +remark-limit+ 1000 :documentation "The most remarks of a journal.")
 (define-constant +part-limit+ 500
-  :documentation "How many remarks a journal has when no more of parts of plans are added: a plan
-that tries again and again has many such, and others are to have room.")
+  :documentation "With this many remarks, no more about parts of plans are added: a plan that tries
+repeatedly makes many, and there must be room for others.")
 
 (defun room-for-remark-p (journal kind)
   (< (length (journal-remarks journal)) (if (eq kind :part) +part-limit+ +remark-limit+)))
 
 (defun remark (simulation kind text &optional robot)
-  "Let the journal of SIMULATION, if it keeps one, say that something of KIND, a keyword, happened
-now, of which TEXT tells, to ROBOT, if given. Return the remark, or NIL."
+  "Add a remark of KIND, a keyword, with TEXT about ROBOT, if given, at the current tick to the
+journal of SIMULATION, if it keeps one. Return the remark, or NIL."
   (let ((journal (simulation-journal simulation)))
     (when (and journal (room-for-remark-p journal kind))
       (let ((remark (list (simulation-tick simulation) kind text
@@ -148,7 +145,7 @@ now, of which TEXT tells, to ROBOT, if given. Return the remark, or NIL."
         remark))))
 
 (defun unremark (simulation remark)
-  "Let the journal of SIMULATION say no more what REMARK, as REMARK has returned it, says."
+  "Remove REMARK, a value of the function REMARK, from the journal of SIMULATION."
   (let ((journal (simulation-journal simulation)))
     (when journal
       (loop for remarks = (journal-remarks journal)
@@ -156,7 +153,7 @@ now, of which TEXT tells, to ROBOT, if given. Return the remark, or NIL."
                            (remove remark remarks :test #'eq))))))
 
 (defun remark-error (text)
-  "Let the journal of the run at work here, if any, tell of an error in users' code."
+  "Add a remark about an error in users' code, TEXT, to the journal of the current run, if any."
   (when *simulation*
     (let ((robots (simulation-robots *simulation*)))
       (remark *simulation* :error text (and (null (rest robots)) (first robots))))))
@@ -166,7 +163,7 @@ now, of which TEXT tells, to ROBOT, if given. Return the remark, or NIL."
 ;;; Beginning and end.
 
 (defun begin-journal (simulation)
-  "Let SIMULATION keep a journal from now on, at its beginning. Return the journal."
+  "Make SIMULATION, which has passed no tick, keep a journal. Return the journal."
   (setf (simulation-journal simulation)
         (make-journal (list :map (qualified-name
                                   (map-name (world-map (simulation-world simulation))))
@@ -177,15 +174,15 @@ now, of which TEXT tells, to ROBOT, if given. Return the remark, or NIL."
                             :definitions (definitions-of simulation)))))
 
 (defun begin-thinking (simulation mode)
-  "Let thinking in SIMULATION, which has passed no tick, cost from the beginning what MODE says."
+  "Set the thinking mode of SIMULATION, which has passed no tick, to MODE, also in its journal."
   (set-timeline-thinking (simulation-timeline simulation) mode)
   (when (simulation-journal simulation)
     (setf (getf (journal-header (simulation-journal simulation)) :thinking)
           (simulation-thinking simulation))))
 
 (defun renew-definitions (simulation)
-  "Let the journal of SIMULATION, which has passed no tick, say what the definitions are now: until
-then they may change."
+  "Store the current definitions in the journal of SIMULATION, which has passed no tick. They may
+have changed since the journal was begun."
   (let ((header (copy-list (journal-header (simulation-journal simulation)))))
     (setf (getf header :definitions) (definitions-of simulation)
           (journal-header (simulation-journal simulation)) header)))
@@ -194,15 +191,15 @@ then they may change."
   (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
 
 (defun end-of-journal (simulation)
-  "Return the journal of SIMULATION, marked as reaching to now unless it was full before. Signals
-MISUSE if it keeps none."
+  "Return the journal of SIMULATION, extended to the current tick unless it is full. Signals MISUSE
+if it keeps none."
   (let ((journal (or (simulation-journal simulation)
                      (reject-use "This simulation keeps no journal. Ask for one: ~
                                   (with-simulation (ROBOT :journal t) ...), and do not say ~
                                   (simulator ROBOT :journal nil)."))))
     (when (eq simulation *simulation*) (follow-settings simulation))
     (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
-    ;; Some may have been defined since it began.
+    ;; Robots may have been added and definitions changed since it began.
     (let ((header (copy-list (journal-header journal))))
       (setf (getf header :robots) (robot-names simulation)
             (getf header :definitions) (merge-definitions (getf header :definitions)
@@ -212,41 +209,39 @@ MISUSE if it keeps none."
 
 ;;;; Changes from outside
 
-;;; A change is made and noted between ticks, by the thread that has the world in custody. Another
-;;; thread takes custody first, or has the change made by the thread that has it; as the world may
-;;; have changed by then, the arguments are checked again there. What a tick itself does, kickers
-;;; included, is not noted, since a replay does it again. Nor is what is done to a world whose run
-;;; is over.
+;;; A change is made and recorded between ticks, by the owner of the world. Another thread takes
+;;; custody first, or has the owner make the change. As the world may have changed by then, the
+;;; arguments are checked again there. Changes inside a tick, as by kickers, are not recorded, since
+;;; a replay repeats them. Nor are changes of a world whose run is over.
 
 (defun check-not-of-past-run (timeline operator)
-  "Signal MISUSE if what OPERATOR is to change belongs to TIMELINE, which is over, and this code
-works in another run."
+  "Signal MISUSE if TIMELINE, whose world OPERATOR is to change, is over and this code works in
+another run."
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own (timeline-over timeline) (not (eq own timeline)))
-      (reject-outlived "~(~A~): that is of another run in ~(~A~), which is over: ~A. FIND-THING ~
-                        and robots' names lead to those of the run at hand."
+      (reject-outlived "~(~A~): that belongs to another run in ~(~A~), which is over: ~A. ~
+                        FIND-THING and robots' names return those of the current run."
                        operator (timeline-name timeline) (timeline-over timeline)))))
 
-(defun doubt-elsewhere (world operator)
-  "Say once for WORLD if OPERATOR changes it, which is not that of the run at hand, and in which no
-time passes."
+(defun warn-of-change-elsewhere (world operator)
+  "Warn once for WORLD if OPERATOR changes it though its run is over, or though it is between runs
+and this code works in another run."
   (let ((over (timeline-over (world-timeline world))))
     (cond (over
            (warn-once (list :past) world
-                      (format nil "~(~A~) changes what nobody sees any more: the run in ~(~A~) is ~
-                                   over, as ~A. What is there now is had from robots' names and ~
-                                   FIND-THING."
+                      (format nil "~(~A~) changes an object of a past run: the run in ~(~A~) is ~
+                                   over, as ~A. Robots' names and FIND-THING return the current ~
+                                   objects."
                               operator (timeline-name (world-timeline world)) over)))
           ((and *simulation* (between-runs-p world))
            (warn-once (list :elsewhere) world
                       (format nil "~(~A~) changes ~(~A~) for a later run of (simulator ...), not ~
-                                   for the run at hand. Inside of WITH-SIMULATION robots' names ~
-                                   and (find-thing 'NAME) lead to what is in that."
+                                   for the current run. Inside WITH-SIMULATION, robots' names and ~
+                                   (find-thing 'NAME) return the objects of that."
                               operator (timeline-name (world-timeline world))))))))
 
-(defun change-again (world operator arguments)
-  "Do to WORLD, which this thread has in custody, what OPERATOR does with ARGUMENTS, if that makes
-sense now."
+(defun perform-change (world operator arguments)
+  "Call OPERATOR with ARGUMENTS to change WORLD, which this thread owns. It checks them again."
   (let ((*world* world)
         (*simulation* (world-simulation world)))
     (apply (operator-function (find-operator operator)) arguments)))
@@ -255,7 +250,7 @@ sense now."
   (check-own-run timeline)
   (check-not-of-past-run timeline operator)
   (unless (and *simulation* (eq timeline (timeline-of *simulation*)))
-    (doubt-elsewhere world operator))
+    (warn-of-change-elsewhere world operator))
   (if (owner-p timeline)
       (deferring-interrupts
         (let ((simulation (world-simulation world)))
@@ -265,13 +260,13 @@ sense now."
       (let ((by-itself-p (goes-on-in-forks-p)))
         (asking (timeline)
           (let ((*goes-on-in-forks-p* by-itself-p))
-            (change-again world operator arguments))))))
+            (perform-change world operator arguments))))))
 
 (defmethod parameters-bound ((timeline timeline) world)
   (let ((simulation (world-simulation world)))
     (flet ((changed () (changed-parameters (simulation-known-parameters simulation))))
       (cond ((headless-p simulation) (and (eq simulation *simulation*) (changed)))
             ((and (live-p timeline) (not (owner-p timeline)))
-             ;; Those that only this thread has bound.
+             ;; Return those that only this thread has bound.
              (remove-if (lambda (binding) (eql (cdr binding) (global-value (car binding))))
                         (changed)))))))

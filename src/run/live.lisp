@@ -8,11 +8,11 @@
   "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
 
 (defvar *hook-options* '()
-  "The keywords of SIMULATOR that its hooks take, as symbols without the colon.")
+  "The options of SIMULATOR that its hooks take, as symbols without the colon.")
 
 (defun call-as-owner (simulation function)
-  "Call FUNCTION with the bindings under which the thread of SIMULATION runs. They include the
-robots' names where it was begun: those of WITH-SIMULATION, around SIMULATOR."
+  "Call FUNCTION with the bindings of the thread of SIMULATION. They include the robots' names that
+were bound where it began: those of WITH-SIMULATION around SIMULATOR."
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
@@ -26,13 +26,12 @@ robots' names where it was begun: those of WITH-SIMULATION, around SIMULATOR."
                         (funcall function)))))))
 
 (defun start-clock (simulation &key (rate *default-rate*) (real t) paused-p)
-  "Run SIMULATION live, in a thread of its own, at RATE; if PAUSED-P, from when it is told to
-RESUME. Plans have a thread as well if REAL is true and thinking is not charged for. Return
-SIMULATION. Signals MISUSE if it runs live already, WRONG-ARGUMENT for a rate that is neither a
-positive number nor :FREE."
+  "Run SIMULATION live, in a new thread, at RATE; if PAUSED-P is true, only after RESUME. Plans get
+a thread as well if REAL is true and thinking is not charged for. Return SIMULATION. Signals MISUSE
+if it runs live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
   (check-parameters)
   (let ((output (editors-output))
-        ;; What users' code reads and prints there, also in a debugger, is as here.
+        ;; Users' code there, and its debugger, read and print as in this thread.
         (caller (spread-specials
                  (lambda (function)
                    (in-any-case
@@ -52,12 +51,12 @@ positive number nor :FREE."
   simulation)
 
 (defun stop-clock (simulation)
-  "End the thread of the live SIMULATION after its current tick and wait for that. Commands under
-way stay as they are; START-CLOCK goes on with them. If it was rewound, stop what goes on in its
-place. Return SIMULATION."
+  "End the thread of the live SIMULATION after its current tick and wait until it has ended.
+Commands in progress stay pending; START-CLOCK continues them. If it was rewound, stop its
+successor. Return SIMULATION."
   (let ((timeline (simulation-timeline simulation)))
     (stop-pacing timeline)
-    ;; A thread that is rewinding it looks for this last, after it has let it have a successor.
+    ;; A thread that rewinds it checks this last, after it has linked the successor.
     (unclaim-pacing timeline)
     (let ((latest (latest simulation)))
       (unless (eq simulation latest)
@@ -67,8 +66,8 @@ place. Return SIMULATION."
 ;;; Starting and stopping.
 
 (defun restart-world (world seed)
-  "Make WORLD, which this thread has in custody, and its robots what they were at the start, with a
-timeline and run of their own. Return the run."
+  "Reset WORLD, which this thread owns, and its robots to their initial state, with a new timeline
+and run. Return the run."
   (let ((custody (timeline-custody (world-timeline world)))
         (variables (simulation-variables (world-simulation world))))
     (deferring-interrupts
@@ -77,17 +76,17 @@ timeline and run of their own. Return the run."
             (simulation-variables (world-simulation world)) variables)))
   (world-simulation world))
 
-(defun fresh-p (simulation journal)
-  "True if SIMULATION can begin, with a journal if JOURNAL is true."
+(defun startable-p (simulation journal)
+  "True if SIMULATION has not begun, is not over, and keeps a journal if JOURNAL is true."
   (and (zerop (simulation-tick simulation))
        (not (simulation-over simulation))
        (or (not journal) (simulation-journal simulation))))
 
 (defun run-to-start (world seed journal)
   "Return the simulation of WORLD to run live: a new one if the last has passed ticks, or if JOURNAL
-is true and it keeps none. With SEED, all chance in it comes from that."
+is true and it keeps none. With SEED, that seeds its dice."
   (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation)))
-    (cond ((not (fresh-p simulation journal))
+    (cond ((not (startable-p simulation journal))
            (end-simulation simulation "it has been started anew")
            (restart-world world (or seed (simulation-seed simulation))))
           (t (when seed
@@ -96,8 +95,8 @@ is true and it keeps none. With SEED, all chance in it comes from that."
              simulation))))
 
 (defun call-starting (world function)
-  "Stop WORLD, and call FUNCTION with it in custody, to start it. Signals MISUSE if this thread is
-starting it already, and has come here on the way."
+  "Stop WORLD, and call FUNCTION, which starts it, with custody. Signals MISUSE if this thread is
+already starting it, and this is a nested call."
   (let* ((timeline (ensure-timeline world)) (custody (timeline-custody timeline)))
     (flet ((start ()
              (when (eq (current-thread) (custody-starter custody))
@@ -111,7 +110,7 @@ starting it already, and has come here on the way."
       (call-alone timeline #'start))))
 
 (defun make-current (simulation everywhere)
-  "Let SIMULATION be the current one; EVERYWHERE, not only where this thread has bound that."
+  "Make SIMULATION the current one: in this thread's bindings, and globally if EVERYWHERE is true."
   (setf *simulation* simulation
         *world* (simulation-world simulation))
   (when everywhere
@@ -119,9 +118,8 @@ starting it already, and has come here on the way."
           (global-value '*world*) (simulation-world simulation))))
 
 (defun start-world (world rate seed journal keep thinking everywhere)
-  "Run WORLD, which this thread is starting, live at RATE, with SEED and a JOURNAL or without, let
-it KEEP forks or not, in the mode THINKING, and make its run the current one, EVERYWHERE or here.
-Return the run."
+  "Run WORLD, which this thread owns, live with the options of SIMULATOR, and make its run the
+current one as MAKE-CURRENT does. Return the run."
   (let ((simulation (run-to-start world seed journal)))
     (begin-thinking simulation thinking)
     (if journal
@@ -136,7 +134,7 @@ Return the run."
 (defun start-live (robot rate seed journal keep thinking)
   "Run the world of ROBOT as START-WORLD does. True unless ROBOT has been replaced meanwhile."
   (let ((world (robot-world robot))
-        ;; This thread may pass the ticks of the current simulation, also if told to stop.
+        ;; This thread may be that of the current simulation, even if asked to stop.
         (everywhere (and *simulation* (pacer-p (simulation-timeline *simulation*)))))
     (call-starting world (lambda ()
                            ;; Its map may have been replaced while it was made.
@@ -184,7 +182,7 @@ MISUSE if the robot no longer fits into its map. See reading 238."
     (publish-variables (robot-simulation robot))
     robot))
 
-;; Lisp itself says no more of that than that the number of keyword arguments is odd.
+;; Lisp itself only says that the number of keyword arguments is odd.
 (define-compiler-macro simulator (&whole form &rest arguments)
   (when (and arguments (evenp (length arguments)) (not (keywordp (second arguments))))
     (doubt-definition "simulator takes one robot, and then keywords: all robots of its map are in ~
@@ -198,7 +196,7 @@ Commands in progress stay pending. If SIMULATION was rewound, stop its successor
 See reading 89."
   (let ((simulation (simulation-meant simulation 'stop-simulator)))
     (stop-clock simulation)
-    ;; Somebody may have started it again.
+    ;; Another thread may have started it again.
     (asking (simulation)
       (when (plusp (simulation-tick simulation))
         (let ((*message-queue* (simulation-messages simulation)))

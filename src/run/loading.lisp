@@ -1,4 +1,4 @@
-;;;; loading.lisp -- continue a run from a file.
+;;;; loading.lisp -- loading a saved run.
 
 (in-package :ars-magna.run)
 
@@ -6,7 +6,7 @@
 
 (addition load-anyway)
 (document-restarts
- 'load-anyway "Load the saved run although what is defined now is not what was defined then.")
+ 'load-anyway "Load the saved run although the definitions have changed since it was saved.")
 
 ;;; The head.
 
@@ -21,7 +21,7 @@
     (when trouble (error "its head makes no sense: ~A" trouble))))
 
 (defun saved-head-trouble (head)
-  "Return what is wrong with HEAD besides what HEADER-TROUBLE finds, or NIL."
+  "Return a text about what is wrong with HEAD, besides what HEADER-TROUBLE finds, or NIL."
   (cond ((not (settings-p (getf head :noise))) "its noise makes no sense")
         ((settings-trouble (getf head :noise)))
         ((not (or (null (getf head :dice)) (lisps-dice-numbers-p (getf head :dice))))
@@ -29,10 +29,10 @@
         ((not (typep (getf head :tick) 'tick-count)) "its tick is none")
         ((not (typep (getf head :digest) '(unsigned-byte 64))) "its digest is none")))
 
-;;; Lines. What comes in which order is known: so each is read knowing what it must be.
+;;; Lines. Their order is fixed, so the meaning of each is known.
 
 (defstruct (reading (:constructor make-reading (in sum number)) (:copier nil))
-  "What is being read: a stream, the check sum so far, and the number of the line."
+  "The stream that is read, the check sum so far, and the number of the line."
   (in nil :read-only t)
   (sum 0 :type (unsigned-byte 32))
   (number 0 :type fixnum))
@@ -52,18 +52,18 @@
   (and (consp datum) (eq tag (first datum)) (proper-list-p datum)))
 
 (defun read-numbers (reading loaded)
-  "Learn from READING what the numbers in it stand for."
+  "Read the definitions of numbers from READING."
   (loop for datum = (next-datum reading)
         until (tagged-p :objects datum)
         do (cond ((tagged-p :found datum) (add-outer (rest datum) loaded))
                  ((and (tagged-p :new datum) (<= 3 (length datum)))
                   (add-batch (second datum) (third datum) (nthcdr 3 datum) loaded))
-                 (t (error "it does not say what its numbers stand for")))
+                 (t (error "it does not define its numbers")))
         finally (unless (equal (rest datum) (list (1- (length (loaded-objects loaded)))))
                   (error "it has not as many objects as it says"))))
 
 (defun read-contents (reading loaded)
-  "Learn from READING what is in the objects that are LOADED. Return the requests that wait."
+  "Read the contents of the objects LOADED from READING. Return the waiting requests."
   (let ((*numbered* (loaded-objects loaded)))
     (loop until (all-said-p loaded) do (fill-next (next-datum reading) loaded))
     (fill-tables loaded)
@@ -74,7 +74,7 @@
           collect (second datum))))
 
 (defun read-entries (reading)
-  "Return the entries of the journal in READING, and the datum behind them."
+  "Return the entries of the journal in READING, and the datum after them."
   (loop for datum = (next-datum reading)
         until (tagged-p :end datum)
         collect datum into entries
@@ -97,7 +97,7 @@
         (tick (getf head :tick)))
     (multiple-value-bind (entries end) (read-entries reading)
       (unless (equal end (list :end tick)) (error "its end is not that of the run"))
-      (when (next-line (reading-in reading)) (error "something stands behind its end"))
+      (when (next-line (reading-in reading)) (error "there is something behind its end"))
       (when (and entries (null first)) (error "it has entries of a journal that it does not keep"))
       (let ((journal (and first (journal-of-data first entries))))
         (when (and journal (not (if (journal-full-p journal)
@@ -106,17 +106,17 @@
           (error "its journal does not end where the run is"))
         journal))))
 
-;;; What the objects come to.
+;;; Putting the run together.
 
 (defun sole-object (type loaded)
-  "Return the one object of TYPE, a kind, among those LOADED. Signals an error if there is another."
+  "Return the only object of TYPE, a kind, in LOADED. Signals an error unless there is exactly one."
   (let ((objects (remove-if-not (lambda (object) (typep object type)) (loaded-objects loaded))))
     (unless (= 1 (length objects))
-      (error "it has ~R of what there is one of in a run, ~(~A~)" (length objects) type))
+      (error "it has ~R objects of the kind ~(~A~), and a run has one" (length objects) type))
     (aref objects 0)))
 
 (defun renamed-parameters (values settings)
-  "Return the VALUES of the parameters that SETTINGS name, in order, as a vector of those at hand."
+  "Return VALUES, those of SETTINGS, as a vector for the current parameters; others have defaults."
   (unless (and (= (length values) (length settings))
                (every (lambda (value setting) (eql value (second setting))) values settings))
     (error "its parameters contradict each other"))
@@ -128,30 +128,30 @@
        (all-parameters)))
 
 (defun check-objects (simulation requests)
-  "Signal an error unless what was put together for SIMULATION could have come about by itself."
+  "Signal an error unless the objects of SIMULATION are consistent."
   (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
     (must-hold (and world timeline (eq timeline (world-timeline world)))
                "its world is not that of its run")
     (check-world world)
-    (must-hold (proper-list-p (world-robots world)) "its robots go round")
+    (must-hold (proper-list-p (world-robots world)) "its list of robots is circular")
     (dolist (robot (world-robots world)) (check-robot robot world))
     (dolist (request requests)
       (check-request request)
       (let ((resource (resource-of request)))
         (must-hold (or (not (typep resource 'resource)) (eq timeline (timeline-of resource)))
-                   "something is asked of another run")))))
+                   "a request is to another run")))))
 
 (defun resource-of (request)
-  "Return what REQUEST, an operation or one with a resource as its argument, is to occupy or free."
+  "Return the resource that REQUEST, an operation or one with it as an argument, occupies or frees."
   (if (operation-p request) (operation-resource request) (first (request-arguments request))))
 
 (defun complete-loading (simulation head loaded requests)
-  "Let SIMULATION, which is all that was LOADED, be ready to go on, with REQUESTS waiting."
+  "Make SIMULATION, which was LOADED, ready to continue, with REQUESTS waiting. Return it."
   (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
     (destructuring-bind (agenda tick . events) (loaded-agenda loaded)
       (unless (eq agenda (timeline-agenda timeline)) (error "its agenda is not that of its run"))
       (check-commands timeline events)
-      (must-hold (null (intersection events requests)) "a request that waits is under way already")
+      (must-hold (null (intersection events requests)) "a waiting request is in progress already")
       (fill-agenda agenda tick events))
     (check-objects simulation requests)
     (setf (timeline-inbox timeline) (reverse requests)
@@ -166,7 +166,7 @@
     simulation))
 
 (defun simulation-from (reading head octets)
-  "Return the simulation whose saved run, of so many OCTETS, READING is, behind its HEAD."
+  "Return the simulation in READING, a saved run of OCTETS whose HEAD has been read."
   (let ((loaded (begin-loading octets)))
     (read-numbers reading loaded)
     (let* ((requests (read-contents reading loaded))
@@ -181,7 +181,7 @@
     (check-saved-head datum)
     (third datum)))
 
-;;; Loading. The head is read first, so that it can be said what else must be loaded.
+;;; Loading. The head is read first, so that an error can name the definitions that are missing.
 
 (defun saved-head (file)
   "Return the head of the saved run in FILE. Signals DAMAGED-SIMULATION."
@@ -194,14 +194,14 @@
            (head (read-head reading))
            (simulation (simulation-from reading head (file-length in))))
       (unless (= (getf head :tick) (simulation-tick simulation))
-        (error "its tick is not what it says"))
+        (error "its tick is not the one in its head"))
       (unless (= (getf head :digest) (state-digest simulation))
-        (error "what it comes to is not what was saved"))
+        (error "the loaded state is not what was saved"))
       simulation)))
 
 (defun check-saved-definitions (head)
-  "Signal UNKNOWN-NAME if a robot that HEAD of a saved run names is not defined, and
-DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if what is defined is not what it was."
+  "Signal UNKNOWN-NAME if a robot in HEAD, of a saved run, is not defined, and
+DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if definitions have changed."
   (let ((differences (differences-from head (mapcar #'find-blueprint (getf head :robots)))))
     (when differences
       (restart-case (error 'different-definitions :differences differences
@@ -210,7 +210,7 @@ DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if what is defined is not w
           :report "Load it all the same.")))))
 
 (defun load-saved (file anyway)
-  "Do what LOAD-SIMULATION says. Return also, as settings by symbol, what noise may come back."
+  "Do what LOAD-SIMULATION does. Return also what DIRTY-SIMULATION restores, as settings by symbol."
   (check-argument load-simulation file (typep file '(or string pathname)) "the name of a file")
   (let ((head (saved-head file)))
     (unless anyway (check-saved-definitions head))

@@ -1,8 +1,8 @@
-;;;; package.lisp -- the run layer: worlds with robots in them, as time goes by.
+;;;; package.lisp -- the run layer: runs of worlds with robots in them.
 
 (ars-magna.host:define-package :ars-magna.run
-  (:documentation "A run: its tick, its journal and replay, its digest; headless or live, and what
-takes part in it. Manual 2.3 and appendix A.")
+  (:documentation "A run, headless or live: its tick, journal and replay, digest, forks and
+participants. Manual 2.3 and appendix A.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.world :ars-magna.time :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.geometry #:pt #:interval #:pt-interval)

@@ -1,4 +1,4 @@
-;;;; participant.lisp -- how something else takes part in a run, such as a runner of plans.
+;;;; participant.lisp -- the interface of participants of a run, such as a runner of plans.
 
 (in-package :ars-magna.run)
 
@@ -8,14 +8,13 @@
           participant-around-p participant-at-rest check-forkable call-as-participant-makes-way
           participant-place))
 
-;;; A participant acts on what happens in a run, by way of requests only. It may keep ticks coming,
-;;; has chance of its own, and knows when the run ends. What it asks for is in the journal, so a
-;;; run is repeated without it. Of what follows, a participant needs only PARTICIPANT-AFTER-TICK. If
-;;; it is of a kind (see DEFINE-KIND), the roles of its slots say what digests and forks make of it.
+;;; A participant reacts to a run, by requests only. It may keep an idle run ticking, may have its
+;;; own dice, and is told when the run ends. Its requests are in the journal, so a run is repeated
+;;; without it. A participant needs a method for PARTICIPANT-AFTER-TICK; the others are optional. If
+;;; it is of a kind (DEFINE-KIND), the roles of its slots determine how it is copied and digested.
 
 (defmacro define-participation (name lambda-list documentation &body otherwise)
-  "Define the generic function NAME, what a participant does or answers; and OTHERWISE, what holds
-of one that has no method for it."
+  "Define the generic function NAME of a participant; the body of its default method is OTHERWISE."
   `(defgeneric ,name ,lambda-list
      (:documentation ,documentation)
      (:method ,lambda-list
@@ -23,15 +22,15 @@ of one that has no method for it."
        ,@otherwise)))
 
 (define-participation participant-after-tick (participant simulation)
-  "Let PARTICIPANT act, after each tick of SIMULATION. Called by the owner."
+  "Act after each tick of SIMULATION. Called by the owner."
   (values))
 
 (define-participation participant-after-ticks (participant simulation)
-  "Let PARTICIPANT look at SIMULATION, headless, when somebody has let ticks pass."
+  "Act when RUN-TICKS or RUN-UNTIL has passed ticks of the headless SIMULATION."
   (values))
 
 (define-participation participant-origin (participant)
-  "Return how messages and restarts call PARTICIPANT, as for CALL-USER-CODE."
+  "Return the name of PARTICIPANT for messages and restarts, as CALL-USER-CODE takes it."
   "what takes part in the run")
 
 (define-participation participant-busy-p (participant simulation)
@@ -39,12 +38,12 @@ of one that has no method for it."
   nil)
 
 (define-participation participant-at-work-p (participant)
-  "True if PARTICIPANT is at something, has something to hear, or waits for time.
-For any thread."
+  "True if PARTICIPANT is working, has a notification to process, or waits for a time.
+May be called by any thread."
   nil)
 
 (define-participation participant-reseed (participant seed)
-  "Let all chance of PARTICIPANT come from the integer SEED from now on."
+  "Seed all dice of PARTICIPANT with the integer SEED."
   (values))
 
 (define-participation participant-digest (participant digest)
@@ -52,47 +51,46 @@ For any thread."
   (digest-state participant digest))
 
 (define-participation participant-copy (participant simulation copier)
-  "Return what takes the part of PARTICIPANT in SIMULATION, a fork of its run that COPIER makes, or
-NIL if it does not go on there. One of a kind does. See COPY-PLAN-VALUE."
+  "Return the copy of PARTICIPANT for SIMULATION, a fork of its run that COPIER makes, or NIL for
+none. By default, participants of a kind are copied. See COPY-PLAN-VALUE."
   (and (kind-of participant) (forked participant copier)))
 
 (define-participation participant-place (participant value)
-  "Return a text that says where PARTICIPANT has VALUE, or NIL if it does not."
+  "Return a text that says where PARTICIPANT refers to VALUE, or NIL."
   nil)
 
 (define-participation check-forkable (participant)
-  "Signal MISUSE if PARTICIPANT does something around this call, so that its run
-cannot be forked here."
+  "Signal MISUSE if PARTICIPANT has made this call, so that its run cannot be forked here."
   (values))
 
 (define-participation participant-at-rest (participant function)
-  "Call FUNCTION while PARTICIPANT does nothing, and return its value; or :BUSY if
-it does something just now in another thread."
+  "Call FUNCTION while PARTICIPANT is at rest, and return its value. Return :BUSY if
+PARTICIPANT is working in another thread."
   (funcall function))
 
 (define-participation call-as-participant-makes-way (participant function)
   "Call FUNCTION, which tries until PARTICIPANT is at rest, and return its value.
-Meanwhile what PARTICIPANT does in another thread stops as soon as it can."
+Meanwhile the work of PARTICIPANT in another thread stops as soon as it can."
   (funcall function))
 
 (define-participation participant-clock-stopped (participant)
-  "Let PARTICIPANT know that no ticks pass by themselves any more. For any thread."
+  "Act when the clock of the run has stopped. May be called by any thread."
   (values))
 
 (define-participation participant-end (participant simulation)
-  "Let PARTICIPANT know that SIMULATION is over."
+  "Act when SIMULATION is over."
   (values))
 
 (define-participation participant-unfinished (participant)
-  "Return in words, in a list, what PARTICIPANT has begun and not finished, such as
-\"the plan p\". No file can hold it."
+  "Return a list of texts about unfinished work of PARTICIPANT, such as \"the plan p\".
+It cannot be saved to a file."
   '())
 
 (define-participation participant-around-p (participant)
-  "True if PARTICIPANT does something around this call, as a step of a plan."
+  "True if PARTICIPANT has made this call, as in a step of a plan."
   nil)
 
 (define-participation participant-cut-off (participant)
-  "Return in words, in a list, what PARTICIPANT has begun that the end of the run
-cuts off, though it would have ended by itself, such as \"the plan p\"."
+  "Return a list of texts about work of PARTICIPANT that the end of the run cuts off
+though it would have ended by itself, such as \"the plan p\"."
   '())

@@ -1,4 +1,4 @@
-;;;; passing.lisp -- letting ticks pass in a headless run, and waiting for a live one.
+;;;; passing.lisp -- passing ticks of a headless run, and waiting for a live one.
 
 (in-package :ars-magna.run)
 
@@ -12,7 +12,7 @@
                  Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
 
 (defun check-passable (simulation)
-  "Signal MISUSE where ticks of SIMULATION are being passed already."
+  "Signal MISUSE if this thread is already passing ticks of SIMULATION."
   (when (and (owner-p simulation)
              (or (simulation-ticking-p simulation)
                  (timeline-passing-p (simulation-timeline simulation))))
@@ -20,18 +20,18 @@
                  A plan can be begun there, by (begin-plan ...) instead of (run-plan ...); a plan ~
                  waits by (wait-time N).")))
 
-(defun await-free (simulation)
-  "Wait a moment for another thread that has SIMULATION in custody only to look at it. Signals
-MISUSE if it passes its ticks."
+(defun await-custody (simulation)
+  "Wait a moment for another thread that owns SIMULATION to inspect it. Signals MISUSE if that
+thread passes ticks of it."
   (when (timeline-passing-p (simulation-timeline simulation))
     (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. One at a time can."
                 (simulation-name simulation)))
-  (answer-meanwhile)
+  (answer-own-questions)
   (yield-thread))
 
 (defun pass-freely (count simulation)
-  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before, or
-an error in users' code is to be signalled."
+  "Pass COUNT ticks of SIMULATION, which this thread owns. Stop early if the run ends or an error in
+users' code is to be signalled."
   (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline))
          (queue (simulation-messages simulation)))
     (loop repeat count
@@ -40,23 +40,23 @@ an error in users' code is to be signalled."
              (when (custody-questions custody) (answer-questions custody)))))
 
 (defun pass-ticks (count simulation)
-  "Pass COUNT ticks as PASS-FREELY does, as many at a time as the gate allows, if there is one. No
-other code, not even a continuation, can pass ticks of SIMULATION meanwhile."
+  "Pass COUNT ticks as PASS-FREELY does, as many at a time as the gate, if any, allows. No other
+code, not even a continuation, can pass ticks of SIMULATION meanwhile."
   (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
     (setf (timeline-passing-p timeline) t)
     (in-any-case
       (loop with left = count
             until (or (zerop left) (timeline-over timeline)
                       (message-queue-unsignalled (simulation-messages simulation)))
-            ;; A gate may wait, or leave.
+            ;; The gate may wait, or make a non-local exit.
             do (let ((now (if gate (min left (funcall gate simulation)) left)))
                  (pass-freely now simulation)
                  (decf left now)))
       (setf (timeline-passing-p timeline) nil))))
 
-(defun doubt-passing (operator simulation)
-  "Say once if a step of a plan calls OPERATOR, which lets ticks of SIMULATION pass before the plan
-goes on."
+(defun warn-of-ticks-in-plan (operator simulation)
+  "Warn once if a step of a plan calls OPERATOR, which passes ticks of SIMULATION while the plan
+stands still."
   (when (some #'participant-around-p (simulation-participants simulation))
     (warn-once (list :in-plan operator) (simulation-world simulation)
                (format nil "~(~A~) was called inside of a step of a plan, which stands still ~
@@ -71,26 +71,26 @@ live or is inside a tick, or if another thread passes its ticks. If errors in us
 signalled, signals USER-CODE-ERROR after the tick of the first one, with a restart CONTINUE that
 passes the other ticks."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
-  (let ((simulation (going-on simulation)))
-    (doubt-passing :run-ticks simulation)
+  (let ((simulation (successor-of-fork simulation)))
+    (warn-of-ticks-in-plan :run-ticks simulation)
     (prog1 (pass-ticks-of simulation count)
       (look-after-ticks simulation))))
 
 (defun look-after-ticks (simulation)
-  "Let those who take part in SIMULATION look at what the ticks have brought that have passed."
+  "Let the participants of SIMULATION act on the ticks that have passed."
   (dolist (participant (simulation-participants simulation))
     (participant-after-ticks participant simulation)))
 
-(defun going-on (simulation)
-  "Return SIMULATION or, if it is a fork that was rewound, the one that goes on in its place."
+(defun successor-of-fork (simulation)
+  "Return SIMULATION or, if it is a fork that was rewound, its successor."
   (if (fork-p simulation) (latest simulation) simulation))
 
 (defun pass-ticks-alone (simulation count)
-  "Pass COUNT ticks of SIMULATION, as PASS-TICKS does, once no other thread looks at it."
+  "Pass COUNT ticks of SIMULATION as PASS-TICKS does, as soon as no other thread owns it."
   (flet ((pass () (pass-ticks count simulation)))
     (declare (dynamic-extent #'pass))
     (flet ((pass-inside () (call-inside simulation #'pass) t)
-           (wait () (await-free simulation) nil))
+           (wait () (await-custody simulation) nil))
       (declare (dynamic-extent #'pass-inside #'wait))
       (loop with custody = (timeline-custody (simulation-timeline simulation))
             until (call-with-custody custody #'pass-inside #'wait)))))
@@ -107,9 +107,9 @@ passes the other ticks."
         until (or (simulation-over simulation) (<= last (simulation-tick simulation))))
   (simulation-tick simulation))
 
-(defun note-how-met (answer limit-p limit simulation)
-  "Note that RUN-UNTIL has come to an end in SIMULATION: by ANSWER, or if that is NIL by LIMIT,
-which the program has given if LIMIT-P. If it has not, say so once in the run."
+(defun note-run-until-result (answer limit-p limit simulation)
+  "Note that RUN-UNTIL has ended in SIMULATION: with ANSWER or, if that is NIL, at LIMIT. Warn once
+in the run if that is the default, as LIMIT-P is false."
   (cond (answer (note-looked-after (simulation-world simulation)))
         ((not (or limit-p (simulation-over simulation)))
          (warn-once '(:limit :run-until) (simulation-world simulation)
@@ -129,16 +129,16 @@ RUN-TICKS does."
                                         (and (symbolp predicate) (fboundp predicate)))
                   "a function of no arguments, such as (lambda () (< 9 (simulation-tick)))")
   (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
-  (let ((simulation (going-on simulation)))
+  (let ((simulation (successor-of-fork simulation)))
     (check-headless simulation 'run-until)
     (check-not-over simulation 'run-until)
-    (doubt-passing :run-until simulation)
+    (warn-of-ticks-in-plan :run-until simulation)
     (let ((answer (loop for left downfrom limit
                         thereis (funcall predicate)
                         until (zerop left)
-                        do (pass-ticks-of (going-on simulation) 1))))
-      (note-how-met answer limit-p limit (going-on simulation))
-      (look-after-ticks (going-on simulation))
+                        do (pass-ticks-of (successor-of-fork simulation) 1))))
+      (note-run-until-result answer limit-p limit (successor-of-fork simulation))
+      (look-after-ticks (successor-of-fork simulation))
       (values answer (simulation-tick simulation)))))
 
 (addition step-ticks)
@@ -170,10 +170,10 @@ simulator is paused after a failure: the wait would never end."
            (reject-use "await-idle: a plan would wait for itself. Wait for a fluent there, such as ~
                         robot-stopped*."))
           ((wait-until-idle simulation seconds))
-          ((and (not given-p) (live-p simulation)) (tell-of-vain-wait simulation seconds)))))
+          ((and (not given-p) (live-p simulation)) (warn-of-timeout simulation seconds)))))
 
-(defun tell-of-vain-wait (simulation seconds)
-  "Queue a warning that AWAIT-IDLE has waited SECONDS for SIMULATION in vain. Return NIL."
+(defun warn-of-timeout (simulation seconds)
+  "Queue a warning that SIMULATION was not idle after AWAIT-IDLE has waited SECONDS. Return NIL."
   (let ((names (remove-duplicates (unfinished-in-participants simulation) :test #'string=))
         (*message-queue* (simulation-messages simulation)))
     (warn-at-once (format nil "await-idle has waited for ~A s, and gives up, as ~:[something is ~
@@ -181,16 +181,15 @@ simulator is paused after a failure: the wait would never end."
                           seconds names))
     nil))
 
-;; Plans first: what they have asked for by the time that they rest is seen then.
-(defun all-still-p (simulation)
-  "True if nothing that comes to an end is left in SIMULATION, and nobody who takes part in it is at
-work."
+;; Check plans first: their requests are in the inbox when they are at rest.
+(defun all-at-rest-p (simulation)
+  "True if SIMULATION is settled and no participant of it is working."
   (asking (simulation)
     (and (notany #'participant-at-work-p (simulation-participants simulation))
          (settled-p simulation))))
 
 (defun wait-until-idle (simulation seconds)
-  "Do what AWAIT-IDLE says, for one that is live and passes its ticks in another thread."
+  "Wait as AWAIT-IDLE does for a live SIMULATION that another thread paces."
   (let ((idle (make-semaphore "idle")))
     (flet ((look (simulation)
              (when (settled-p simulation) (signal-semaphore idle))))
@@ -200,18 +199,18 @@ work."
         (remove-observer #'look simulation)))))
 
 (defun await-stillness (idle seconds simulation)
-  "Wait until nothing is left to do in SIMULATION, at most SECONDS; true if so. The semaphore IDLE
-says that it may be so; plans come to rest without a word. Signals MISUSE if SIMULATION has failed."
+  "Wait until SIMULATION is idle, at most SECONDS; true if it is. The semaphore IDLE is signalled
+when it may be; plans signal nothing. Signals MISUSE if SIMULATION has failed."
   (loop with due = (+ (seconds-now) seconds)
         do (check-not-failed simulation)
-        thereis (all-still-p simulation)
+        thereis (all-at-rest-p simulation)
         while (and (< (seconds-now) due) (live-p simulation))
         do (doubt-wait 'await-idle simulation)
            (wait-patiently idle (min 0.02 (max 0 (- due (seconds-now)))))))
 
 (defun doubt-wait (operator simulation)
-  "Let OPERATOR not wait in vain for the live SIMULATION, if that is paused. Signal MISUSE if nobody
-is there who can let it go on; else queue a warning, once in a run."
+  "Check that OPERATOR does not wait for a live SIMULATION that is paused. Signal MISUSE if no user
+can resume it; else queue a warning, once in a run."
   (when (stands-still-p simulation)
     (unless *waits-while-paused-p*
       (reject-use "~(~A~): the run is paused, so nothing that this would wait for can happen. ~
@@ -225,6 +224,6 @@ is there who can let it go on; else queue a warning, once in a run."
   "Signal MISUSE if the live SIMULATION has failed and is paused for that."
   (let ((trouble (clock-trouble simulation)))
     (when trouble
-      (reject-use "await-idle: the simulator has failed and is paused, so nothing goes on: ~A. ~
-                   (resume) lets it go on."
+      (reject-use "await-idle: the simulator has failed and is paused, so no ticks pass: ~A. ~
+                   (resume) continues it."
                   (string-right-trim "." trouble)))))

@@ -1,4 +1,4 @@
-;;;; past.lisp -- what a run remembers of its past, so that it can be rewound.
+;;;; past.lisp -- what a run records of its past, so that it can be rewound.
 
 (in-package :ars-magna.run)
 
@@ -6,16 +6,16 @@
 
 ;;; A run that keeps forks has a PAST: these forks, and its ACTS, everything done to the run since
 ;;; the oldest fork, in order: the entries of the journal, and requests to plans from outside. A
-;;; fork of the past goes the same way as the run if the acts that it does not repeat by itself are
-;;; done to it again (redoing.lisp).
+;;; kept fork goes the same way as the run if the acts that it does not repeat by itself are
+;;; repeated in it (redoing.lisp).
 
 (defstruct (act (:constructor make-act (kind tick phase moment own-p operator arguments asker))
                 (:copier nil))
-  "That something was done. KIND is :REQUEST, for what a tick has begun with, or else :CHANGE. TICK
-had passed, or was under way in its PHASE, a number, 0 between ticks; of a request PHASE says when
-it was asked for. MOMENT is how often by then in the tick what goes on in forks too had acted. OWN-P
-is true of what a fork does by itself. OPERATOR is the name of an operator, and ARGUMENTS are
-externalized, or a function; they are memorized. ASKER is a note of who asked for it, or NIL."
+  "A request or change to a run. KIND is :REQUEST for one performed at the start of a tick, else
+:CHANGE. TICK is the number of the last tick, or of the current one, in whose PHASE it was made (0:
+between ticks). MOMENT is the number of acts in that tick, by then, that forks repeat. OWN-P is true
+of an act that forks repeat. OPERATOR is the name of an operator, with externalized ARGUMENTS, or a
+function; ARGUMENTS are memorized. ASKER is a note of who made it, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -26,7 +26,7 @@ externalized, or a function; they are memorized. ASKER is a note of who asked fo
   (asker nil :read-only t))
 
 (defstruct (kept (:constructor make-kept (fork tick acts)) (:copier nil))
-  "FORK, which was made at the end of TICK, when ACTS, the newest first, had been done."
+  "FORK was made at the end of TICK, when ACTS, the newest first, had been done."
   (tick 0 :type fixnum :read-only t)
   (fork nil :type simulation :read-only t)
   (acts '() :type list :read-only t))
@@ -51,30 +51,30 @@ due that could not be made, as the run was busy; or NIL."
   (rolled nil)
   (warned-p nil :type boolean))
 
-(defun of-itself-p (request)
-  "True if a fork comes to REQUEST by itself, as what goes on there too has asked for it."
+(defun repeated-by-fork-p (request)
+  "True if a fork makes REQUEST by itself, as the code that made it also runs there."
   (or (request-forked-p request) (asked-inside-p request)))
 
 (defun request-act (request simulation operator arguments)
-  "Return the act that SIMULATION begins a tick with REQUEST: for OPERATOR, with ARGUMENTS, which
-are externalized and memorized."
+  "Return the act for REQUEST, which SIMULATION performs, with OPERATOR and ARGUMENTS, which are
+externalized and memorized."
   (make-act :request (simulation-tick simulation) (request-phase request) 0
-            (of-itself-p request) operator arguments (request-asker request)))
+            (repeated-by-fork-p request) operator arguments (request-asker request)))
 
 (defun change-act (simulation operator arguments)
-  "Return the act that OPERATOR is done here and now with ARGUMENTS."
+  "Return the act for a change by OPERATOR with ARGUMENTS at the current tick and phase."
   (let ((timeline (simulation-timeline simulation)))
     (make-act :change (simulation-tick simulation) (phase-here timeline)
               (timeline-moments timeline)
               (goes-on-in-forks-p) operator arguments nil)))
 
 (defun remember (simulation operator arguments &optional request)
-  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, which are
-externalized or OPERATOR is a function, see ACT; by REQUEST, if that is given."
+  "If SIMULATION has a past, record that OPERATOR was called with ARGUMENTS, or requested by
+REQUEST. ARGUMENTS are externalized unless OPERATOR is a function, see ACT."
   (let ((past (simulation-past simulation)))
     (when past
       (let ((arguments (memorized arguments)))
-        ;; Whoever acts may be in any thread.
+        ;; Any thread may act.
         (atomic-push (if request
                          (request-act request simulation operator arguments)
                          (change-act simulation operator arguments))
@@ -82,94 +82,92 @@ externalized or OPERATOR is a function, see ACT; by REQUEST, if that is given."
         (incf (past-count past))))))
 
 (defun pending-acts (simulation)
-  "Return what is asked of SIMULATION and waits for the next tick, as acts, the newest first."
+  "Return the requests that wait for the next tick of SIMULATION as acts, the newest first."
   (loop for request in (timeline-inbox (simulation-timeline simulation))
         for (operator . arguments) = (request-entry request)
         collect (request-act request simulation operator
                              (memorized (externalize arguments)))))
 
-;;; Programs around the run, and continuations, roll dice that plans roll too; and are not repeated.
+;;; Programs around the run and continuations use the same CL:RANDOM state as plans, but are not
+;;; repeated in forks. So its state is recorded after they have changed it.
 
-(defun look-at-dice (simulation past)
-  "Let PAST know what the dice of programs of SIMULATION are here and now. Return that if they have
-been rolled since it was last looked at, or NIL. Only a headless run has dice that all its programs
-roll."
+(defun update-rolled-dice (simulation past)
+  "Store the current dice of programs of SIMULATION in PAST. Return them if they were rolled since
+the last call, or NIL. Only a headless run has dice that all its programs share."
   (when (member *lisps-dice* (simulation-variables simulation) :test #'eq)
     (let ((before (past-rolled past)))
       (setf (past-rolled past) (dice-rolled before))
       (if (eq before (past-rolled past)) nil (past-rolled past)))))
 
-(defun note-dice (simulation)
-  "Let SIMULATION, which has a past, remember what the dice of programs are here and now, if they
-have been rolled by what a fork may not do again."
-  (let ((rolled (look-at-dice simulation (simulation-past simulation))))
+(defun remember-dice (simulation)
+  "Record the dice of programs in the past of SIMULATION if code that a fork may not repeat has
+rolled them."
+  (let ((rolled (update-rolled-dice simulation (simulation-past simulation))))
     (when rolled (remember simulation #'roll-back (list rolled)))))
 
 (defun note-doing (simulation function &rest arguments)
-  "Let SIMULATION, if it has a past, remember that from outside something was done that no journal
-has: FUNCTION, of ARGUMENTS, does it again. What a fork does by itself does not count. Return
-nothing."
+  "If SIMULATION has a past, record an act from outside that is not in the journal: a call of
+FUNCTION with ARGUMENTS repeats it. Acts that a fork repeats are not recorded. Return nothing."
   (when (and (simulation-past simulation)
              (not (goes-on-in-forks-p))
-             ;; In these phases only what a fork has too can act.
+             ;; In these phases only code that a fork runs, too, can act.
              (not (changing-phase-p (phase-here (simulation-timeline simulation)))))
-    (when (eq simulation *simulation*) (note-dice simulation))
+    (when (eq simulation *simulation*) (remember-dice simulation))
     (remember simulation function arguments))
   (values))
 
-;;; Which part of the past is before a moment.
+;;; The part of the past before a moment.
 
-(defun asked-in-tick-p (act tick)
-  "True if ACT is a request that was made inside of TICK, and is carried out after that."
+(defun requested-in-tick-p (act tick)
+  "True if ACT is a request that was made inside TICK, and performed later."
   (and (eq :request (act-kind act))
        (= (act-tick act) tick)
        (plusp (act-phase act))))
 
-(defun settled-by-p (act tick)
-  "True if ACT, and all before it, was done before the end of TICK."
+(defun done-by-end-p (act tick)
+  "True if ACT, and so all acts before it, was done before the end of TICK."
   (or (< (act-tick act) tick)
       (and (= (act-tick act) tick)
            (eq :change (act-kind act))
            (telling-phase-p (act-phase act)))))
 
 (defun acts-until (tick acts)
-  "Return those of ACTS, the newest first, that were done before the end of TICK, a tail of it; and
-in a list, the newest first, what had been asked for by then and not yet been done."
-  (let ((tail (member-if (lambda (act) (settled-by-p act tick)) acts)))
+  "Return the tail of ACTS, the newest first, that was done before the end of TICK; and a list, the
+newest first, of requests made but not performed by then."
+  (let ((tail (member-if (lambda (act) (done-by-end-p act tick)) acts)))
     (values tail
-            (remove-if-not (lambda (act) (asked-in-tick-p act tick)) (ldiff acts tail)))))
+            (remove-if-not (lambda (act) (requested-in-tick-p act tick)) (ldiff acts tail)))))
 
 ;;;; Keeping forks
 
-;;; A fork is made at the end of a tick. If there are too many, the one is dropped whose loss
-;;; matters least for its age. So recent forks are close together, old ones far apart, and the first
-;;; is always kept. The clock determines how often forks are made: keeping them must take only a
-;;; small part of the time. No result depends on it, as rewinding repeats what happened between two
-;;; forks.
+;;; A fork is made at the end of a tick. If there are too many, the one is dropped whose gap is
+;;; smallest for its age. So recent forks are close together, old ones far apart, and the first is
+;;; always kept. The clock determines how often forks are made, so that they take only a small part
+;;; of the time. No result depends on it, as rewinding repeats what happened between two forks.
 
 (addition *forks-to-keep*)
 (defvar *forks-to-keep* nil
-  "What SIMULATOR takes for :KEEP unless it is told: how many forks a live run keeps, so that REWIND
-can go back; T for a usual number, NIL for none. The prompt sets it to T.")
+  "The default of :KEEP of SIMULATOR: how many forks a live run keeps, so that REWIND can go back; T
+for a usual number, NIL for none. The prompt sets it to T.")
 
-(defconstant +usual-forks+ 30 "How many forks a run keeps if nobody says how many.")
-(defconstant +longest-pace+ 1024 "After how many ticks a run looks at the clock at the latest.")
+(defconstant +usual-forks+ 30 "How many forks a run keeps by default.")
+(defconstant +longest-pace+ 1024 "The most ticks that a run passes before it reads the clock.")
 
-(defconstant +least-cost+ 1d-4 "How many seconds a fork is taken to cost at least.")
+(defconstant +least-cost+ 1d-4 "The least seconds that a fork is taken to cost.")
 
 (defparameter *keeping-share* 1/100
-  "Which part of its time a run may spend on keeping forks; 1: it keeps one at each tick.")
+  "The part of its time that a run may spend on keeping forks; 1: it keeps one at each tick.")
 (defparameter *most-kept-octets* (expt 2 28)
-  "How many octets the kept forks of a run may take, as far as that can be foreseen.")
+  "The most octets that the kept forks of a run may take, by an estimate.")
 
 (defun room-for-forks (simulation past)
-  "Return how many forks SIMULATION, of PAST, may keep."
+  "Return how many forks SIMULATION, which has PAST, may keep."
   (let ((octets (+ 50000 (octets-of-copy (simulation-world simulation))))) ; of a fork, roughly
     (clamp (floor *most-kept-octets* octets) 3 (max 3 (past-limit past)))))
 
 (defun least-needed (forks)
-  "Return the one of FORKS, the newest first, without which the gap is smallest for its age. The
-first and the last are needed."
+  "Return the one of FORKS, the newest first, whose removal leaves the smallest gap for its age. It
+is neither the first nor the last."
   (loop with now = (kept-tick (first forks))
         with best = nil and least = nil
         for (newer kept older) on forks
@@ -181,31 +179,31 @@ first and the last are needed."
         finally (return best)))
 
 (defun warn-of-no-fork (simulation past condition)
-  "Say, once, that CONDITION keeps SIMULATION, of PAST, from keeping a fork."
+  "Warn once that SIMULATION, which has PAST, cannot keep a fork because of CONDITION."
   (unless (past-warned-p past)
     (setf (past-warned-p past) t)
-    (warn-notably (format nil "What is so at tick ~D cannot be kept for REWIND: ~A."
+    (warn-notably (format nil "The state at tick ~D cannot be kept for REWIND: ~A."
                          (simulation-tick simulation)
                          (string-right-trim "." (brief-text condition))))))
 
 (defun fork-to-keep (simulation past)
-  "Return a fork of SIMULATION, of PAST; :BUSY if somebody is at work in it, NIL if it cannot be."
-  (handler-case (call-around #'participant-at-rest (simulation-participants simulation)
+  "Return a fork of SIMULATION, which has PAST; :BUSY if a participant is, NIL if none can be made."
+  (handler-case (call-nested #'participant-at-rest (simulation-participants simulation)
                              (lambda () (fork-now simulation nil '())))
     (misuse () :busy)
     (error (condition) (warn-of-no-fork simulation past condition))))
 
 (defun forget-if-full (simulation past)
-  "Forget all that PAST has of SIMULATION if that is too much."
+  "Discard the forks and acts of SIMULATION, which has PAST, if there are too many acts."
   (when (and (finite-p *journal-limit*) (> (past-count past) *journal-limit*))
     (setf (past-forks past) '() (past-acts past) '() (past-count past) 0)
-    (warn-notably (format nil "So much has been asked of this run that REWIND can go back to tick ~
+    (warn-notably (format nil "This run has had so many requests that REWIND can go back to tick ~
                               ~D at most; see *JOURNAL-LIMIT*."
                          (simulation-tick simulation)))))
 
-;; The clock is coarse: of what one fork takes it tells little.
+;; The clock is coarse, so the cost is averaged over many forks.
 (defun note-cost (past began)
-  "Let PAST know that making a fork began at BEGAN, in seconds, and has ended."
+  "Note in PAST the cost of a fork that was begun at BEGAN, in seconds, and has just been made."
   (let ((cost (+ (* 15/16 (past-cost past)) (* 1/16 (- (seconds-now) began)))))
     (setf (past-cost past) cost
           (past-due past) (if (< *keeping-share* 1)
@@ -213,8 +211,8 @@ first and the last are needed."
                               began))))
 
 (defun keep-fork (simulation past)
-  "Let SIMULATION, which stands still, keep a fork in PAST, if that can be now. If somebody is at
-work in it, that is to be at the end of the next tick."
+  "Keep a fork of SIMULATION, which is between ticks, in PAST, if one can be made. If a participant
+is busy, it is due again at the end of the next tick."
   (forget-if-full simulation past)
   (let* ((began (or (past-wanted past) (seconds-now)))
          (tick (simulation-tick simulation))
@@ -231,11 +229,11 @@ work in it, that is to be at the end of the next tick."
       (note-cost past began))))
 
 (defconstant +looks-for-fork+ 100
-  "How often who makes way for a fork looks whether it has been made, before it gives that up.")
+  "How many times a thread that waits for a fork checks whether it was made, before it gives up.")
 
 (defun let-fork-be-kept (simulation)
-  "If SIMULATION could not keep a fork because this thread, which is at rest now, was at work, wait
-until the tick has ended and there is one; not for long, as no tick may pass."
+  "If SIMULATION could not keep a fork because this thread, now at rest, was busy, wait until the
+next tick has ended and there is one; but not long, as no tick may pass."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
     (when (and past (past-wanted past))
       (loop repeat +looks-for-fork+
@@ -243,23 +241,23 @@ until the tick has ended and there is one; not for long, as no tick may pass."
             do (wait-a-while moment 0.002))
       (setf (past-wanted past) nil))))
 
-(defun keep-fork-in-time (simulation past)
-  "Let SIMULATION keep a fork in PAST unless it has spent too much time on that."
+(defun keep-fork-if-affordable (simulation past)
+  "Keep a fork of SIMULATION in PAST unless too much time was spent on that."
   (cond ((>= (seconds-now) (past-due past)) (keep-fork simulation past))
         (t (setf (past-next past) (+ (simulation-tick simulation) (past-pace past))
                  (past-pace past) (min +longest-pace+ (* 2 (past-pace past)))))))
 
-;;; How it is asked for.
+;;; Keeping forks on request.
 
 (define-argument-type 'fork-count
   (lambda (value) (or (typep value 'boolean) (whole-p value 2 1000)))
   "a number of forks from 2 to 1000, T for a usual one, or NIL for none")
 
 (defun begin-keeping (simulation limit)
-  "Let SIMULATION, which this thread has in custody, keep forks, at most LIMIT, from now on."
+  "Make SIMULATION, which this thread owns, keep forks, at most LIMIT, from now on."
   (let ((past (setf (simulation-past simulation) (make-past limit))))
-    (when (eq simulation *simulation*) (look-at-dice simulation past))
-    ;; One can go back as far as here: what has been asked for stays so.
+    (when (eq simulation *simulation*) (update-rolled-dice simulation past))
+    ;; Requests made before this tick, the earliest for REWIND, are not undone by it.
     (dolist (request (timeline-inbox (simulation-timeline simulation)))
       (when (zerop (request-phase request))
         (setf (request-phase request) (phase-number :continuations))))

@@ -1,23 +1,23 @@
-;;;; plain-data.lisp -- lists, numbers, strings and names as text, to be written and read again.
+;;;; plain-data.lisp -- writing and reading lists, numbers, strings and names as text.
 
 (in-package :ars-magna.run)
 
 (export '(tree-p))
 
-;;; A bare name is a keyword, NIL or T; other symbols stand between bars, with their package. In
-;;; strings and between bars a backslash begins the code of a character, in hexadecimal, up to a
-;;; semicolon; so every datum is one line. The Lisp reader sees nothing but numbers. Reading interns
-;;; nothing: a symbol that does not exist becomes one without a home.
+;;; A bare name is a keyword, NIL or T; other symbols are written between bars, with their package.
+;;; In strings and between bars, a backslash begins the code of a character, in hexadecimal, up to a
+;;; semicolon; so each datum is one line. The Lisp reader only gets numbers. Reading interns
+;;; nothing: a name without a symbol becomes an uninterned one.
 ;;;
-;;; What is saved of a run has two things more: @7 stands for the object with the number 7, and a
-;;; list may end in ". tail". There keywords that are not known become so.
+;;; Saved runs have two extensions: @7 is the object with the number 7, and a list may end in
+;;; ". tail". Unknown keywords are interned there.
 
-(defconstant +deepest+ 200 "How deep lists stand in lists at most.")
-(defconstant +largest-datum+ 100000 "How many conses a datum has at most.")
-(defconstant +longest-number+ 1000 "How many characters a number has at most.")
+(defconstant +deepest+ 200 "The deepest nesting of lists.")
+(defconstant +largest-datum+ 100000 "The most conses of a datum.")
+(defconstant +longest-number+ 1000 "The most characters of a number.")
 
 (defun tree-p (datum)
-  "True if DATUM is a tree of conses within these bounds, and so not circular."
+  "True if DATUM is a tree of conses within these limits, and so not circular."
   (let ((left +largest-datum+))
     (labels ((visit (datum depth)
                (loop while (consp datum)
@@ -28,7 +28,7 @@
       t)))
 
 (defun short-text (object)
-  "Return OBJECT as text, the beginning of it if it is long or has no end."
+  "Return the printed form of OBJECT, shortened if it is long or circular."
   (let* ((*print-length* 8) (*print-level* 4) (*print-circle* nil)
          (text (if (and (integerp object) (< 1000 (integer-length object)))
                    (format nil "an integer of ~D bits" (integer-length object))
@@ -52,14 +52,14 @@
         (t tree)))
 
 (defun unprintable-in (datum)
-  "Return something in DATUM that could not be read back, or NIL."
+  "Return a part of DATUM that could not be read back, or NIL."
   (if (tree-p datum) (unprintable-part datum) datum))
 
 (defun ascii-digit-p (char)
   (char<= #\0 char #\9))
 
 (defun bare-name-p (name)
-  "True if NAME, a string, can stand in a text as it is, for a keyword."
+  "True if a keyword called NAME, a string, can be written without bars."
   (and (plusp (length name))
        (char<= #\A (char name 0) #\Z)
        (every (lambda (char)
@@ -68,7 +68,7 @@
        (not (member name '("NIL" "T") :test #'string=))))
 
 (defun plain-char-p (char)
-  "True if CHAR, other than a quote, can stand in a string as it is."
+  "True if CHAR, other than a quote, can be written in a string without a code."
   (let ((code (char-code char)))
     (not (or (< code 32) (<= 127 code 159) (<= #xD800 code #xDFFF) (char= char #\\)))))
 
@@ -100,13 +100,13 @@
     (t (prin1 datum stream))))
 
 (defmacro with-plain-syntax (&body body)
-  "Run BODY, in which numbers are printed and read in one way, whatever the user has set."
+  "Run BODY, which prints and reads numbers in standard syntax, whatever the user has set."
   `(with-standard-io-syntax
      (let ((*read-default-float-format* 'double-float) (*read-eval* nil) (*print-readably* nil))
        ,@body)))
 
 (defun datum-text (datum)
-  "Return the text of DATUM, in which nothing is unprintable, for READ-DATUM."
+  "Return the text of DATUM, which has no unprintable part, for READ-DATUM."
   (with-plain-syntax
     (with-output-to-string (out) (write-datum datum out))))
 
@@ -123,7 +123,7 @@
   (and (< start (length word)) (= (length word) (skip-digits word start))))
 
 (defun exponent-p (word start)
-  "True if WORD ends at START with an exponent, not too long to be reckoned with."
+  "True if WORD ends at START with an exponent of at most six characters."
   (and (find (char word start) "desfDESF")
        (< (- (length word) start) 7)
        (digits-p word (skip-sign word (1+ start)))))
@@ -143,7 +143,7 @@
                (#\. (fraction-p word (1+ end))))))))
 
 (defun short-integer-p (word)
-  "True if WORD, a number, is an integer that fits into a word of the machine."
+  "True if WORD, a number, is an integer that fits into a machine word."
   (and (< (length word) 18)
        (= (length word) (skip-digits word (skip-sign word 0)))))
 
@@ -155,7 +155,7 @@
       (handler-case (with-plain-syntax (values (read-from-string word)))
         (error () (error "it has ~A, a number that Lisp does not have" word)))))
 
-;;; Reading. Each function returns what it has read in TEXT from START on, and where that ends.
+;;; Reading. Each function returns what it has read in TEXT from START on, and its end position.
 
 (defun char-at (text position)
   (if (< position (length text))
@@ -184,28 +184,27 @@
                          (setf position end))))
             (1+ position))))
 
-(defvar *homeless* (make-hash-table :test 'equal)
-  "The symbols without a home that were made for names, by what was read.")
+(defvar *uninterned* (make-hash-table :test 'equal)
+  "The uninterned symbols that were made for names, by text.")
 
-(defun homeless-symbol (text name)
-  "Return the symbol called NAME that stands for TEXT: always the same, as long as *HOMELESS* is."
-  (or (gethash text *homeless*)
-      (setf (gethash text *homeless*) (make-symbol name))))
+(defun uninterned-symbol (text name)
+  "Return the uninterned symbol called NAME for TEXT, always the same one in *UNINTERNED*."
+  (or (gethash text *uninterned*)
+      (setf (gethash text *uninterned*) (make-symbol name))))
 
 (defun symbol-called (text)
-  "Return the symbol that TEXT, PACKAGE::NAME, stands for, or one without a home."
+  "Return the symbol that TEXT, PACKAGE::NAME, names; if there is none, an uninterned one."
   (let* ((colons (or (search "::" text) (error "it has a name without its package")))
          (package (find-package (subseq text 0 colons)))
          (name (subseq text (+ 2 colons))))
     (or (and package (find-symbol name package))
-        (homeless-symbol text name))))
+        (uninterned-symbol text name))))
 
 (defvar *numbered* nil
-  "A vector of the objects that @1, @2 and so on stand for, the first of them at 1; NIL where there
-are none.")
+  "A vector of the objects that @1, @2 and so on mean, from index 1 on; NIL if there are none.")
 
 (defun numbered-object (word)
-  "Return the object that WORD, such as @7, stands for."
+  "Return the object that WORD, such as @7, means."
   (let ((number (and (< 1 (length word) 12)
                      (digits-p word 1)
                      (parse-integer word :start 1))))
@@ -214,13 +213,13 @@ are none.")
         (error "nothing in it has the number ~A" (subseq word 1 (min 40 (length word)))))))
 
 (defun keyword-called (name word)
-  "Return the keyword called NAME, as WORD says, or a symbol without a home if there is none."
+  "Return the keyword called NAME, written as WORD; if there is none, an uninterned symbol."
   (cond ((find-symbol name :keyword))
         (*numbered* (make-keyword name))
-        (t (homeless-symbol word name))))
+        (t (uninterned-symbol word name))))
 
 (defun word-meaning (word)
-  "Return the number, NIL, T, keyword or numbered object that WORD stands for."
+  "Return the number, NIL, T, keyword or numbered object that WORD means."
   (cond ((number-text-p word) (read-number word))
         ((string= word "nil") nil)
         ((string= word "t") t)
@@ -236,13 +235,13 @@ are none.")
     (values (word-meaning (subseq text start end)) end)))
 
 (defun tail-follows-p (text position)
-  "True if the tail of a list stands in TEXT behind POSITION."
+  "True if the tail of a dotted list follows in TEXT at POSITION."
   (and *numbered*
        (char= #\. (char text position))
        (char= #\Space (char-at text (1+ position)))))
 
 (defun read-tail (text start depth)
-  "Return the datum in TEXT from START on that a list ends in, and where that list ends."
+  "Return the datum in TEXT from START on that is the tail of a list, and its end position."
   (multiple-value-bind (tail end) (read-datum text start depth)
     (unless (char= #\) (char-at text end)) (error "something stands behind the tail of a list"))
     (values tail end)))
@@ -261,8 +260,7 @@ are none.")
     (values (nreconc elements tail) (1+ position))))
 
 (defun read-datum (text &optional (start 0) (depth 0))
-  "Return the datum in TEXT from START on, and where it ends. Signals an error that says what is
-wrong."
+  "Return the datum in TEXT from START on, and its end position. Signals an error with the reason."
   (case (char-at text start)
     (#\( (read-list text start (1+ depth)))
     (#\" (read-quoted text start))

@@ -4,12 +4,12 @@
 
 (export '(externalize internalize dereference))
 
-;;; A journal outlives its run, so robots, parts and things stand in it as (:the KIND ARGUMENT...),
-;;; by name, index or serial number. Lists that begin with :THE themselves are written as (:the
-;;; :list ...), those that do not end in NIL as (:the :list* ...).
+;;; A journal is used after its run, so robots, parts and things are written in it as (:the KIND
+;;; ARGUMENT...), with a name, index or serial number. Lists that begin with :THE are written as
+;;; (:the :list ...), dotted lists as (:the :list* ...).
 
 (defun nameable-p (object)
-  "True if OBJECT is of a kind that DEREFERENCE finds by its reference."
+  "True if DEREFERENCE can find OBJECT by its reference."
   (typep object '(or thing attachment robot part designator odometer map kicker recipe)))
 
 (defun externalize-list (list)
@@ -33,33 +33,32 @@
              tree)))))
 
 (defun externalize (datum)
-  "Return DATUM with each object of a run in it replaced by what names it, for INTERNALIZE to find
-its like in another run. What cannot be named stands for itself, as do circular and very large
-lists."
+  "Return DATUM with each object of a run in it replaced by a reference, by which INTERNALIZE finds
+its counterpart in another run. Other objects, circular lists and very large lists are unchanged."
   (if (tree-p datum) (externalize-tree datum) datum))
 
 (defgeneric dereference (kind arguments simulation)
   (:documentation
-   "Return what the reference with KIND, a symbol, and ARGUMENTS names in SIMULATION.")
+   "Return the object in SIMULATION that a reference with the symbol KIND and ARGUMENTS names.")
   (:method (kind arguments simulation)
     (unless (and (typep arguments '(cons t (cons (integer 0) null)))
                  (find-kind-name kind 'part))
-      (reject-use "~S names nothing that a run has." (cons kind arguments)))
+      (reject-use "~S is no reference to an object of a run." (cons kind arguments)))
     (robot-part (robot-in simulation (first arguments)) kind (second arguments))))
 
 (defmacro define-dereference (kind lambda-list &body body)
-  "Define what a reference of KIND, a keyword, with arguments as LAMBDA-LIST takes them, names in
-SIMULATION, which BODY may refer to."
+  "Define how to find the object in SIMULATION that a reference of KIND, a keyword, names. BODY can
+use SIMULATION and the variables of LAMBDA-LIST, for the arguments of the reference."
   `(defmethod dereference ((kind (eql ,kind)) arguments simulation)
      (declare (ignorable simulation))
      (destructuring-bind ,lambda-list arguments ,@body)))
 
 (defun find-referent (reference simulation)
-  "Return what REFERENCE, (kind argument...), names in SIMULATION. Signals MISUSE."
+  "Return the object that REFERENCE, (kind argument...), names in SIMULATION. Signals MISUSE."
   (handler-case (dereference (first reference) (internalize-all (rest reference) simulation)
                              simulation)
     (ars-magna-error (trouble) (error trouble))
-    (error () (reject-use "~A names nothing that a run has." (short-text reference)))))
+    (error () (reject-use "~A is no reference to an object of a run." (short-text reference)))))
 
 (defun internalize-all (list simulation)
   (mapcar (lambda (tree) (internalize-tree tree simulation)) list))
@@ -71,7 +70,7 @@ SIMULATION, which BODY may refer to."
         (t (internalize-all tree simulation))))
 
 (defun internalize (datum simulation)
-  "Return DATUM, what EXTERNALIZE has returned, with what it names in SIMULATION."
+  "Return DATUM, a value of EXTERNALIZE, with its references replaced by objects of SIMULATION."
   (if (tree-p datum) (internalize-tree datum simulation) datum))
 
 (define-dereference :list (&rest elements)
@@ -94,7 +93,7 @@ SIMULATION, which BODY may refer to."
 (define-dereference :robot (name)
   (robot-in simulation name))
 
-;; One that had been destroyed when the journal was told of it is made up.
+;; The thing may have been destroyed before the entry was made; then a stand-in is made.
 (define-dereference :thing (serial)
   (check-type serial unsigned-byte)
   (let ((world (simulation-world simulation)))
@@ -110,7 +109,7 @@ SIMULATION, which BODY may refer to."
 (define-dereference :kicker (name)
   (find-kicker name))
 
-;; Nor need a kicker be there any more.
+;; The kicker may have been detached; then a stand-in is made.
 (define-dereference :attachment (serial name)
   (check-type name (and symbol (not null)))
   (let ((thing (dereference :thing (list serial) simulation)))
@@ -123,26 +122,25 @@ SIMULATION, which BODY may refer to."
 (define-dereference :recipe (name attributes contents kickers)
   (make-recipe name attributes contents :kickers kickers))
 
-;; One that had been dropped when the journal was told of it is made up.
+;; The designator may have been dropped; then a stand-in is made.
 (define-dereference :designator (name serial number type)
   (let ((robot (robot-in simulation name)))
     (or (serial-designator robot serial)
         (make-designator :robot robot :serial serial :number number :type type :valid-p nil))))
 
-;;;; Remembering
+;;;; Memorizing arguments
 
-;;; Whoever has given a plan a list or a structure, or a fluent a value, may change that later; so
-;;; may the plan. What is remembered of it is therefore a copy, and what is done again with it has a
-;;; copy of that. Objects of a run in it are named, as in a journal, to be found in another run. A
-;;; function is copied with what it has closed over: what SCHEDULE is to do acts on the run in which
-;;; it happens.
+;;; Programs and plans may later change a list or structure that was given to a plan or a fluent.
+;;; So a copy is memorized, and each repetition gets a copy of that. Objects of a run in it are
+;;; replaced by references, as in a journal. A function is copied with the values it closes over, so
+;;; that a function given to SCHEDULE acts on the run in which it is called.
 
 (defstruct (named (:constructor make-named (reference)) (:copier nil))
-  "Stands for the object of a run that REFERENCE, which EXTERNALIZE has returned, names."
+  "Stands for the object of a run that REFERENCE, a value of EXTERNALIZE, names."
   (reference nil :type list :read-only t))
 
 (defun name-object (object)
-  "Return what stands for OBJECT, of which no copy is to be made, in what is remembered."
+  "Return what represents OBJECT, which is not copied, in memorized arguments."
   (cond ((nameable-p object)
          (let ((reference (externalize object)))
            (if (eq reference object) object (make-named reference))))
@@ -152,21 +150,21 @@ SIMULATION, which BODY may refer to."
         (t object)))
 
 (defun memorized (arguments)
-  "Return the list ARGUMENTS, to be remembered as they are now. See RECALLED."
+  "Return a copy of the list ARGUMENTS as they are now, for RECALLED."
   (copy-values arguments #'name-object))
 
 (defun recalled (arguments simulation)
-  "Return ARGUMENTS, which MEMORIZED has returned, as they were, for SIMULATION."
+  "Return a copy of ARGUMENTS, a value of MEMORIZED, with the objects of SIMULATION."
   (copy-values arguments (lambda (object)
                            (if (named-p object)
                                (internalize (named-reference object) simulation)
                                object))))
 
-;;; Whether what a fork asks for is what was asked for.
+;;; Comparing arguments of two runs.
 
 (defun alike-atoms-p (one other)
-  "True if ONE and OTHER, no conses, are EQUAL, functions of one code, or of one type and nameless:
-each run has its own."
+  "True if the atoms ONE and OTHER are EQUAL, functions with the same code, or objects of the same
+class without a reference, as each run has its own."
   (or (equal one other)
       (and (functionp one) (functionp other) (same-code-p one other))
       (not (or (typep one '(or number symbol character string function))
@@ -178,7 +176,7 @@ each run has its own."
   (alike-atoms-p one other))
 
 (defun alike-p (one other)
-  "True if ONE and OTHER, externalized or memorized, may be the same for two runs."
+  "True if ONE and OTHER, externalized or memorized, may be the same in two runs."
   (and (tree-p one) (tree-p other) (alike-trees-p one other)))
 
 (define-shared named)

@@ -1,4 +1,4 @@
-;;;; replay.lisp -- a run repeated from its journal, to the bit.
+;;;; replay.lisp -- repeating a run from its journal, to the bit.
 
 (in-package :ars-magna.run)
 
@@ -6,7 +6,7 @@
 
 (addition different-definitions replay-anyway)
 (document-restarts
- 'replay-anyway "Replay the journal although what is defined now is not what was defined then.")
+ 'replay-anyway "Replay the journal although the definitions have changed since its recording.")
 (define-condition different-definitions (ars-magna-error)
   ((differences :initarg :differences :reader different-definitions-differences)
    (file :initarg :file :initform "journal" :reader different-definitions-file)
@@ -21,8 +21,8 @@
   (:documentation "A journal or saved run is of other definitions than those that are loaded."))
 
 (defun differences-from (header blueprints)
-  "Return in words, in a list, how what is at hand differs from what HEADER says: definitions, and
-the maps of BLUEPRINTS, of robots."
+  "Return a list of texts about differences between HEADER and the current definitions, and about
+those of BLUEPRINTS, of robots, that are in another map."
   (append (differences (getf header :definitions))
           (loop with map = (find-map (getf header :map) nil)
                 for blueprint in blueprints
@@ -32,8 +32,8 @@ the maps of BLUEPRINTS, of robots."
                                   (blueprint-name blueprint) (and other (map-name other))))))
 
 (defun check-definitions (header blueprints)
-  "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if HEADER is of a run with other
-definitions than those at hand."
+  "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if HEADER has other definitions
+than the current ones."
   (let ((differences (differences-from header blueprints)))
     (when differences
       (restart-case (error 'different-definitions :differences differences)
@@ -41,20 +41,19 @@ definitions than those at hand."
           :report "Replay it all the same.")))))
 
 (defun repeated-words (journal)
-  "Return a sentence that says that JOURNAL is of a run with other definitions than those at hand,
-for those who show it anyway; or NIL if it is not."
+  "Return a sentence about JOURNAL if it has other definitions than the current ones; or NIL."
   (let ((header (journal-header journal)))
     (and (differences-from header (mapcar #'find-blueprint (getf header :robots)))
          "Repeated with other definitions than it began with.")))
 
-;;; Silence. A journal may say that a run went on for very many ticks in which nothing was asked
-;;; for; whoever replays it may not want to wait for so long.
+;;; A run may have passed very many ticks without requests. Their repetition takes long, so it must
+;;; be asked for.
 
 (defconstant +longest-silence+ 10000000
-  "For how many ticks without an entry a journal is repeated unless somebody says how far.")
+  "The most ticks without an entry that are repeated without :UNTIL.")
 
 (defun check-silence (journal)
-  "Signal MISUSE if nothing is asked for in JOURNAL for too long."
+  "Signal MISUSE if JOURNAL has too many ticks without an entry."
   (loop with before = 0
         for tick in (append (mapcar #'first (journal-entries journal))
                             (list (journal-end journal)))
@@ -67,12 +66,12 @@ for those who show it anyway; or NIL if it is not."
 ;;; Entries.
 
 (defun entry-text (entry number)
-  "Return what ENTRY is called in messages."
+  "Return the name of ENTRY for messages."
   (format nil "entry ~D, ~(~A~) at tick ~D" number (second entry) (first entry)))
 
 (defun perform-operator (name arguments simulation asker)
-  "Ask SIMULATION, which is the current one, on behalf of ASKER for what the operator called NAME
-does with ARGUMENTS, which are externalized."
+  "Call the operator NAME with ARGUMENTS, which are externalized, on behalf of ASKER in SIMULATION,
+which is the current one."
   (let ((operator (find-operator name))
         (arguments (internalize arguments simulation))
         (*asker* asker))
@@ -80,23 +79,23 @@ does with ARGUMENTS, which are externalized."
     (apply (operator-function operator) arguments)))
 
 (defun perform-entry (entry number simulation)
-  "Ask SIMULATION again for what ENTRY says. Signals MISUSE if that cannot be."
+  "Repeat ENTRY in SIMULATION. Signals MISUSE if that fails."
   (destructuring-bind (tick name . arguments) entry
     (run-ticks (- tick (simulation-tick simulation)) simulation)
     (handler-case
-        (perform-operator name (arguments-again arguments simulation) simulation "the journal")
+        (perform-operator name (restored-arguments arguments simulation) simulation "the journal")
       (error (trouble)
         (reject-use "The journal cannot be replayed: its ~A: ~A."
                     (entry-text entry number) (one-line-text trouble))))))
 
 (defun perform-entries (entries number simulation)
-  "Ask SIMULATION again for what ENTRIES say, of which the first has NUMBER."
+  "Repeat ENTRIES in SIMULATION; the first has NUMBER."
   (loop for entry in entries
         for each from number
         do (perform-entry entry each simulation)))
 
 (defun perform-journal (journal simulation beginning)
-  "Repeat JOURNAL in SIMULATION. Call BEGINNING with that before its first tick passes."
+  "Repeat JOURNAL in SIMULATION. Call BEGINNING with SIMULATION before its first tick passes."
   (let* ((entries (journal-entries journal))
          (before (count 0 entries :key #'first))
          (*repeated* (simulation-timeline simulation)))
@@ -106,21 +105,21 @@ does with ARGUMENTS, which are externalized."
     (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation)))
 
 (defun full-settings (settings)
-  "Return SETTINGS, a list (name value), with the defaults of the parameters it leaves out."
+  "Return SETTINGS, lists (name value), completed by the defaults of other parameters."
   (loop for parameter in (all-parameters)
         collect (or (find parameter settings :key (lambda (setting)
                                                     (find-parameter (first setting))))
                     (list (parameter-name parameter) (parameter-default parameter)))))
 
 (defun journal-given (journal operator)
-  "Return the journal that JOURNAL, an argument of OPERATOR, is, or that is in the file so called."
+  "Return JOURNAL, an argument of OPERATOR, or the journal in the file of that name."
   (if (journal-p journal) journal (read-journal journal operator)))
 
 (defun call-with-replay (function journal &key until anyway keep observer
                                             (beginning #'identity))
   "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
-after each tick of that, with the simulation; BEGINNING before the first one, when what was done by
-then has been done again."
+with the simulation after each repeated tick; BEGINNING when the entries before the first tick have
+been repeated."
   (let* ((journal (journal-given journal 'with-replay))
          (journal (if (and until (not (eql until (journal-end journal))))
                       (truncated-journal journal until)
@@ -134,7 +133,7 @@ then has been done again."
        (let ((simulation (current-simulation)))
          (when observer (add-observer observer simulation))
          (perform-journal journal simulation beginning)
-         ;; Of what is repeated nobody needs to hear again.
+         ;; Messages of the repetition are not shown again.
          (take-unseen (simulation-messages simulation))
          (when observer (remove-observer observer simulation))
          (funcall function)))
@@ -163,13 +162,13 @@ the definitions are not those of the recording, unless ANYWAY is true."
     (funcall function)))
 
 (defmacro replaying ((anyway) &body body)
-  "Run BODY, which replays a journal: if ANYWAY is true, all the same where what is defined is not
-what the run was recorded with."
+  "Run BODY, which replays a journal; if ANYWAY is true, even if the definitions differ from those
+of the recording."
   `(call-replaying (lambda () ,@body) ,anyway))
 
 (defun journal-meant (journal operator)
-  "Return the journal that JOURNAL, an argument of OPERATOR, is: one, the name of a file with one,
-or, if it is NIL, that of the current simulation up to now."
+  "Return the journal that JOURNAL, an argument of OPERATOR, means: a journal, the name of a file,
+or NIL for that of the current simulation up to now."
   (if journal
       (journal-given journal operator)
       (let ((simulation (current-simulation)))

@@ -1,15 +1,14 @@
-;;;; residents.lisp -- the runs and robots that names mean at top level, also when maps change.
+;;;; residents.lisp -- the runs and robots that names mean at top level, also after maps change.
 
 (in-package :ars-magna.run)
 
-;;; One rule for threads that start, stop and replace simulators.
-;;; - Only the thread that has a world in custody changes which run the world has, whether that is
-;;;   over, which thread passes its ticks, whether the world is resident in its map, and which robot
-;;;   there a name means. Another thread may only tell the one that passes ticks to stop.
+;;; Rules for threads that start, stop and replace simulators.
+;;; - Only the thread that owns a world changes which run the world has, whether that is over, which
+;;;   thread passes its ticks, whether the world is resident in its map, and which robot there has
+;;;   which name. Another thread may only tell the one that passes ticks to stop.
 ;;; - Worlds and runs that follow one another in a map share one custody.
-;;; - A thread that has got custody looks again. It starts and settles nothing in a run that is
-;;;   over, in a world that is no longer resident, or for a retired robot; it looks up what is there
-;;;   now.
+;;; - A thread that has taken custody checks again. It starts or settles nothing in a run that is
+;;;   over, in a world that is no longer resident, or for a retired robot; it looks up the new ones.
 
 (defun blueprints-in (map)
   (remove map (all-blueprints)
@@ -25,7 +24,7 @@
                     (map-name map)))))
 
 (defun reject-robots (designators)
-  "Signal UNKNOWN-NAME: a list of DESIGNATORS is to be run."
+  "Signal UNKNOWN-NAME, as a list of DESIGNATORS was given instead of one robot."
   (error 'unknown-name
          :kind "robot or map" :name designators
          :remedy (format nil "Give one robot~@[, as '~(~A~)~]: all robots of its map are in its ~
@@ -34,7 +33,7 @@
 
 (defun robot-to-start (designator)
   "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of either.
-One whose map or definition has been replaced means the robot that is called so now."
+A robot whose map or definition has been replaced means the current robot of that name."
   (let ((robot (cond ((map-p designator) (first-robot-in designator))
                      ((find-robot designator nil))
                      ((find-map designator nil) (first-robot-in (find-map designator)))
@@ -43,37 +42,37 @@ One whose map or definition has been replaced means the robot that is called so 
                                      (append (mapcar #'blueprint-name (all-blueprints))
                                              (mapcar #'map-name (all-maps))))))))
     (if (robot-retired robot)
-        (find-again (robot-name robot))
+        (find-current-robot (robot-name robot))
         robot)))
 
-(defun set-robot (blueprint robot)
-  "Let the variable of BLUEPRINT's name hold ROBOT at top level."
+(defun bind-robot-name (blueprint robot)
+  "Set the global value of the variable named by BLUEPRINT to ROBOT."
   (setf (global-value (blueprint-name blueprint)) robot))
 
-(defun settle-by-name (blueprint)
-  "Return the robot that SETTLE-ROBOT returns for BLUEPRINT, after letting its name mean it."
+(defun settle-named-robot (blueprint)
+  "Return the robot that SETTLE-ROBOT returns for BLUEPRINT, after setting its variable to it."
   (loop
     (let ((robot (settle-robot blueprint)))
-      ;; A thread that has replaced its world meanwhile has retired it.
+      ;; Another thread that has replaced its world meanwhile has retired it.
       (asking (robot)
-        (unless (robot-retired robot) (set-robot blueprint robot)))
+        (unless (robot-retired robot) (bind-robot-name blueprint robot)))
       (unless (robot-retired robot) (return robot)))))
 
-(defun find-again (name)
-  "Return the robot called NAME now, made anew if that has not been possible before."
+(defun find-current-robot (name)
+  "Return the current robot called NAME; make it if that was not possible before."
   (let* ((blueprint (find-blueprint name))
          (robot (blueprint-robot blueprint)))
     (if (or (null robot) (robot-retired robot))
-        (settle-by-name blueprint)
+        (settle-named-robot blueprint)
         robot)))
 
 ;;; When a map is defined anew.
 
-;;; The run of the old map's world ends. The robots that are defined in the map are made anew in the
-;;; new one, as far as they fit. Headless runs under way have worlds of their own and go on.
+;;; The run of the old map's world ends. The robots defined in the map are made again in the new
+;;; map, if they fit. Headless runs have their own worlds and continue.
 
-(defun say-stopped (map simulation new)
-  "Say that SIMULATION of MAP has ended, if it was under way: the map is NEW now, or NIL."
+(defun warn-of-ended-run (map simulation new)
+  "Warn that SIMULATION of MAP has ended, if it was under way. NEW is the new map, or NIL."
   (when (or (live-p simulation)
             (and (plusp (simulation-tick simulation)) (not (idle-p simulation))))
     (warn-of-definition "Map ~(~A~) is ~:[no longer defined~;defined anew~]. Its simulation has ~
@@ -81,27 +80,28 @@ One whose map or definition has been replaced means the robot that is called so 
                         (map-name map) new (simulation-tick simulation)
                         (and new (map-name new)))))
 
-(defun leave-out (name reason)
-  "Let the robot called NAME have no place in its new map, for REASON."
+(defun retire-named-robot (name reason)
+  "Retire the robot called NAME, which has no place in the new map, for REASON."
   (unless (from-this-file-p name *robots*)
     (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." name reason))
-  ;; Not the one that a headless run may have bound the variable to here.
+  ;; A headless run may have bound the variable to another robot here.
   (let ((robot (ignore-errors (global-value name))))
     (when (robot-p robot) (retire-robot robot reason))))
 
 (defun move-robots (map)
-  "Put robots made by the blueprints that are defined in MAP, which is new, into it."
+  "Make the robots that are defined in the new MAP, if they fit."
   (dolist (blueprint (blueprints-in map))
     (let ((trouble (start-trouble map (blueprint-x blueprint) (blueprint-y blueprint))))
       (if trouble
-          (leave-out (blueprint-name blueprint)
-                     (format nil "it does not fit into the new map ~(~A~), as ~A; define it anew"
-                             (map-name map) trouble))
-          (settle-by-name blueprint)))))
+          (retire-named-robot
+           (blueprint-name blueprint)
+           (format nil "it does not fit into the new map ~(~A~), as ~A; define it anew"
+                   (map-name map) trouble))
+          (settle-named-robot blueprint)))))
 
 (defun end-world (world reason)
-  "End whatever run WORLD has, and let its robots take no more commands, for REASON. Nobody can
-start it meanwhile, nor afterwards. True unless another world is resident in its map by now."
+  "End the run of WORLD and retire its robots, for REASON. It cannot be started again. True unless
+another world is resident in its map by now."
   (call-alone (ensure-timeline world)
               (lambda ()
                 (when (eq world (map-resident (world-map world)))
@@ -111,34 +111,33 @@ start it meanwhile, nor afterwards. True unless another world is resident in its
 
 (defun end-resident (map reason)
   "End the resident world of MAP, which another map has replaced, for REASON."
-  ;; A thread may rewind its run meanwhile, which makes another world resident.
+  ;; Another thread may rewind its run meanwhile, which makes another world resident.
   (loop until (end-world (map-resident map) reason)))
 
-;; If a time limit comes meanwhile, the old world must not be left live: nobody could find it.
-(defun end-in-any-case (map reason)
-  "Do what END-RESIDENT does, at once or, if this thread is interrupted, when the world stands
-still."
+;; A time limit must not leave the old world live: no name would lead to it.
+(defun end-resident-safely (map reason)
+  "Do what END-RESIDENT does, at once or, if this thread is interrupted, between two ticks."
   (let ((done-p nil))
     (deferring-interrupts
       (unwind-protect (allowing-interrupts
                         (end-resident map reason)
                         (setf done-p t))
         (unless done-p
-          (have-done (ensure-timeline (map-resident map))
+          (ask-later (ensure-timeline (map-resident map))
                      (lambda () (end-resident map reason))))))))
 
 (defmethod map-replaced ((old map) new)
   (let* ((world (map-resident old))
-         ;; Also where there was none: somebody may be asking for it at this moment.
+         ;; Make the run if there is none: another thread may be making it at this moment.
          (simulation (and world (world-simulation world)))
          (reason (if new "its map has been defined anew" "its map has been taken back")))
     (in-any-case
-      (when world (say-stopped old simulation new))
-      (when world (end-in-any-case old reason))
+      (when world (warn-of-ended-run old simulation new))
+      (when world (end-resident-safely old reason))
       (when new (move-robots new)))))
 
 (defmethod map-replaced ((old null) (new map))
-  ;; Robots may have been left over by a map that was undefined.
+  ;; There may be robots of a map that was undefined.
   (move-robots new))
 
 (defmethod reinstate ((map map))

@@ -1,55 +1,55 @@
-;;;; restoring.lisp -- objects put together from the lines of a saved run.
+;;;; restoring.lisp -- making objects from the lines of a saved run.
 
 (in-package :ars-magna.run)
 
-;;; Each line is read when those before it have been: first what the numbers stand for, so that
-;;; objects of the right shapes are there; then what is in them. A line that makes no sense is an
-;;; error, and so is all that would make more objects than there are lines for, or larger arrays
-;;; than there is room for. Nothing looks at an object before it is whole.
+;;; The first lines define the numbers, and empty objects of the right shapes are made. The other
+;;; lines fill them in order. A line that makes no sense is an error; so are more objects than the
+;;; file can have lines for, and arrays that exceed the memory. No code uses an object before it is
+;;; complete.
 
 (defstruct (loaded (:constructor make-loaded (most-objects)) (:copier nil))
-  "The objects of a saved run, as far as it has been read. SHAPES has for each number the shape and
-the fields, or NIL for what is beside the run."
+  "The objects of a saved run, as far as it has been read. SHAPES has the shape and fields for each
+number, or NIL for an outer object."
   (most-objects 0 :type integer :read-only t)
   (objects (make-array 64 :adjustable t :fill-pointer 0) :type vector :read-only t)
   (shapes (make-array 64 :adjustable t :fill-pointer 0) :type vector :read-only t)
   (elements-left (floor (heap-bytes) 64) :type integer)
-  ;; The number of the object that the next line is about; what is said of it so far: where in an
-  ;; array, or values, newest first, and how many.
+  ;; The number of the object of the next line; how many of its elements or values were read so far;
+  ;; and the values, newest first.
   (next 1 :type fixnum)
   (position 0 :type fixnum)
   (values '() :type list)
-  ;; What can be filled only when all else is there.
+  ;; Contents that are filled in when all other objects are complete.
   (agenda nil)
   (tables '() :type list))
 
 (defun begin-loading (octets)
-  "Return what is loaded, nothing as yet, from a file of so many OCTETS."
+  "Return an empty LOADED structure for a file of OCTETS."
   (let ((loaded (make-loaded (floor octets 12))))
     (add-loaded nil nil loaded)
     loaded))
 
 (defun add-loaded (object shape loaded)
   (when (< (loaded-most-objects loaded) (length (loaded-objects loaded)))
-    (error "it speaks of more objects than it can say something of"))
+    (error "it announces more objects than it has lines for"))
   (vector-push-extend object (loaded-objects loaded))
   (vector-push-extend shape (loaded-shapes loaded)))
 
-;;; What the numbers stand for.
+;;; Defining numbers.
 
 (defun add-outer (name loaded)
-  "Let the next number stand for what NAME, (kind argument [more]), finds."
+  "Define the next number as the outer object called NAME, (kind argument [more])."
   (unless (typep name '(cons keyword (cons t (or null (cons t null)))))
-    (error "it looks for what has no name"))
+    (error "one of its names makes no sense"))
   (unless (= (loaded-next loaded) (length (loaded-objects loaded)))
-    (error "it looks for what is beside the run too late"))
+    (error "it names a definition after its new objects"))
   (add-loaded (handler-case (apply #'outer-object name)
                 (unknown-name (trouble) (error trouble))
                 (error (trouble)
                   (error "~(~A~) ~A cannot be found: ~A" (first name)
                          (short-text (second name)) (one-line-text trouble))))
               nil loaded)
-  ;; No line follows.
+  ;; It has no contents in the file.
   (incf (loaded-next loaded)))
 
 (defun new-array (element-type dimensions growth loaded)
@@ -61,7 +61,7 @@ the fields, or NIL for what is beside the run."
                (or (not (eq :growing growth)) (null (rest dimensions))))
     (error "one of its arrays makes no sense"))
   (when (minusp (decf (loaded-elements-left loaded) (reduce #'* dimensions)))
-    (error "its arrays would take more room than there is"))
+    (error "its arrays would need more room than there is"))
   (let ((growing-p (eq :growing growth)))
     (apply #'make-array (if growing-p (max 4 (first dimensions)) dimensions)
            :element-type element-type
@@ -70,8 +70,8 @@ the fields, or NIL for what is beside the run."
            (if (eq t element-type) '(:initial-element nil) '()))))
 
 (defun new-object (shape fields loaded)
-  "Return a new object of SHAPE, (kind argument ...), perhaps with FIELDS, in which nothing is as it
-should be yet."
+  "Return a new object of SHAPE, (kind argument ...), without contents. FIELDS are the slots of a
+structure."
   (destructuring-bind (kind &optional first second third) shape
     (ecase kind
       (:object (blank-object first fields))
@@ -82,7 +82,7 @@ should be yet."
       (:agenda (make-agenda)))))
 
 (defun fields-called (type names)
-  "Return the fields of structures of TYPE. Signals an error unless those that are kept are called
+  "Return the slots of structures of TYPE. Signals an error unless those that are saved are called
 NAMES."
   (unless (and (symbolp type)
                type
@@ -97,7 +97,7 @@ NAMES."
     fields))
 
 (defun check-shape (shape)
-  "Signal an error unless SHAPE is one that objects can have."
+  "Signal an error unless SHAPE is valid."
   (unless (typep shape '(or (cons (eql :object) (cons symbol (cons list null)))
                          (cons (eql :array) (cons t (cons t (cons t null))))
                          (cons (eql :table) (cons symbol (cons unsigned-byte null)))
@@ -105,20 +105,20 @@ NAMES."
                          (cons (member :dice :list) null)))
     (error "it has objects without a shape"))
   (unless (or (not (eq :table (first shape))) (member (second shape) *table-tests*))
-    (error "one of its tables has a test of its own")))
+    (error "one of its tables has a user-defined test")))
 
 (defun add-batch (kind count shape loaded)
-  "Let the next COUNT numbers stand for new objects of KIND and SHAPE."
+  "Define the next COUNT numbers as new objects of KIND and SHAPE."
   (let ((shape (cons kind shape)))
     (check-shape shape)
     (unless (and (integerp count)
                  (<= 1 count (- (loaded-most-objects loaded) (length (loaded-objects loaded)))))
-      (error "it speaks of more objects than it can say something of"))
+      (error "it announces more objects than it has lines for"))
     (let ((fields (and (eq :object kind) (fields-called (second shape) (third shape)))))
       (loop repeat count
             do (add-loaded (new-object shape fields loaded) (cons shape fields) loaded)))))
 
-;;; What is in them.
+;;; Filling objects.
 
 (defun put-field (value field object type)
   (handler-case (funcall (kind-slot-writer field) value object)
@@ -126,19 +126,19 @@ NAMES."
       (error "the slot ~(~A~) of a ~(~A~) cannot be what it says" (kind-slot-name field) type))))
 
 (defun fill-object (object values fields type)
-  "Put VALUES into those FIELDS of OBJECT that are kept, and what they begin with into the others."
+  "Put VALUES into those FIELDS of OBJECT that are saved, and initial values into the others."
   (dolist (field fields)
     (put-field (cond ((not (slot-kept-p field)) (funcall (kind-slot-initial field)))
                      (values (pop values))
-                     (t (error "it says too little of a ~(~A~)" type)))
+                     (t (error "it has too few values for a ~(~A~)" type)))
                field object type))
-  (when values (error "it says too much of a ~(~A~)" type)))
+  (when values (error "it has too many values for a ~(~A~)" type)))
 
 (defun put-elements (array count element loaded)
-  "Put ELEMENT into ARRAY COUNT times, from where the last line ended."
+  "Put ELEMENT into ARRAY COUNT times, from the current position on."
   (let ((start (loaded-position loaded)))
     (unless (and (typep count '(integer 1)) (<= count (- (element-count array) start)))
-      (error "it says too much of an array"))
+      (error "it has too many elements for an array"))
     ;; ELEMENT may be an object that has not been filled, and so cannot be shown.
     (unless (typep element (array-element-type array))
       (error "an element of an array of ~(~S~) cannot be of type ~(~A~)"
@@ -149,29 +149,29 @@ NAMES."
 (defun fill-text (text values loaded)
   (let ((part (and (typep values '(cons string null)) (first values))))
     (unless (and part (<= (length part) (- (length text) (loaded-position loaded))))
-      (error "what it says of a text makes no sense"))
+      (error "the contents of a text make no sense"))
     (replace text part :start1 (loaded-position loaded))
     (incf (loaded-position loaded) (length part))))
 
 (defun fill-array (array values loaded)
-  "Put what VALUES say into ARRAY, from where the last line ended. True if it is full now."
+  "Put the elements in VALUES into ARRAY, from the current position on. True if it is full now."
   (cond ((stringp array) (fill-text array values loaded))
         ((proper-list-p values)
          (loop for (count . rest) on values by #'cddr
-               do (unless rest (error "it says how often, but not what, in an array"))
+               do (unless rest (error "it has a count without an element for an array"))
                   (put-elements array count (first rest) loaded))))
   (= (element-count array) (loaded-position loaded)))
 
 (defun collect-values (values count loaded)
-  "Note VALUES besides those of lines before. True if they are COUNT now."
-  (unless (proper-list-p values) (error "what it says of an object has no end"))
+  "Add VALUES to those of earlier lines. True if there are COUNT now."
+  (unless (proper-list-p values) (error "the contents of an object are no list"))
   (setf (loaded-values loaded) (revappend values (loaded-values loaded)))
   (incf (loaded-position loaded) (length values))
-  (when (< count (loaded-position loaded)) (error "it says too much of an object"))
+  (when (< count (loaded-position loaded)) (error "it has too many values for an object"))
   (= count (loaded-position loaded)))
 
 (defun fill-from (object shape fields values loaded)
-  "Put what a line says, VALUES, into OBJECT. True if it says all that was left to be said."
+  "Put VALUES, the contents of a line, into OBJECT. True if it is complete."
   (ecase (first shape)
     (:array (fill-array object values loaded))
     (:object (when (collect-values values (count-if #'slot-kept-p fields) loaded)
@@ -192,12 +192,12 @@ NAMES."
      t)))
 
 (defun fill-next (line loaded)
-  "Take in LINE, a list of an object and what is said of it. It must be the next of those LOADED."
+  "Process LINE, a list of an object and contents. The object must be the next of those LOADED."
   (let* ((number (loaded-next loaded))
          (object (and (< number (length (loaded-objects loaded)))
                       (aref (loaded-objects loaded) number))))
     (unless (and object (consp line) (eq object (first line)))
-      (error "it does not say what number ~D is" number))
+      (error "the contents of number ~D are missing" number))
     (destructuring-bind (shape . fields) (aref (loaded-shapes loaded) number)
       (when (fill-from object shape fields (rest line) loaded)
         (incf (loaded-next loaded))
@@ -205,11 +205,11 @@ NAMES."
               (loaded-values loaded) '())))))
 
 (defun all-said-p (loaded)
-  "True if all that is LOADED is whole."
+  "True if all objects of LOADED are complete."
   (= (loaded-next loaded) (length (loaded-objects loaded))))
 
 (defun fill-tables (loaded)
-  "Put into each table what belongs there: all its keys are whole by now."
+  "Fill the tables, as all objects that may be keys are complete."
   (loop for (table . values) in (loaded-tables loaded)
         do (loop for (key value) on values by #'cddr
                  do (setf (gethash key table) value))

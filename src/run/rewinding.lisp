@@ -1,4 +1,4 @@
-;;;; rewinding.lisp -- take a run back to an earlier tick, to continue from there in another way.
+;;;; rewinding.lisp -- take a run back to an earlier tick and continue from there.
 
 (in-package :ars-magna.run)
 
@@ -6,29 +6,30 @@
 
 ;;; Rewinding a run makes a fork of the newest kept fork not later than the wanted tick, passes
 ;;; ticks of the new fork up to that tick, and replaces the run by it. The old run is then over. The
-;;; fork becomes the current simulation and the value of the variables, has the run's observers and
-;;; messages, and is live if the run was.
+;;; fork becomes the current simulation and its robots the values of their variables. It has the
+;;; run's observers and messages, and is live if the run was.
 
 (define-event *rewind-hooks*
-  "Functions of a run that is being rewound and of the one that is to go on in its place.")
+  "Functions of a run that is being rewound and of its successor.")
 
-;;; What may be rewound, and how far.
+;;; Checks.
 
-;; Nor another run than its own: who rewinds waits for a clock, and perhaps for this one.
-(defun paced-here (simulation)
+;; The thread of a clock must not rewind other runs either: it would wait for their clocks, and
+;; these perhaps for it.
+(defun run-paced-here (simulation)
   "Return SIMULATION, or else the current one, if this is the thread of its clock; else NIL."
   (find-if (lambda (run) (and run (eq (current-thread) (simulation-thread run))))
            (list simulation *simulation*)))
 
 (defun check-place-to-rewind (simulation)
-  "Signal MISUSE where SIMULATION cannot be rewound because it is at work here, or not meant."
+  "Signal MISUSE if this code runs inside SIMULATION, or SIMULATION is headless and not current."
   (cond ((goes-on-in-forks-p)
          (reject-use "rewind: a plan is at work here, and would undo itself. PROJECT and TRY-BEST ~
                       look ahead instead."))
-        ((paced-here simulation)
+        ((run-paced-here simulation)
          (reject-use "rewind: ticks of ~A are passing here, in the thread of its clock. Rewind ~A ~
                       at the prompt or the REPL, or from a thread of your own."
-                     (simulation-name (paced-here simulation)) (simulation-name simulation)))
+                     (simulation-name (run-paced-here simulation)) (simulation-name simulation)))
         ((and (owner-p simulation)
               (or (timeline-passing-p (simulation-timeline simulation))
                   (plusp (timeline-phase (simulation-timeline simulation)))))
@@ -39,31 +40,31 @@
                      (simulation-name simulation)))))
 
 (defun earliest-tick (simulation)
-  "Return the tick that SIMULATION can go back to, or NIL if it keeps no forks."
+  "Return the earliest tick that SIMULATION can be rewound to, or NIL if it keeps no forks."
   (let ((past (simulation-past simulation)))
     (and past (past-forks past) (kept-tick (first (last (past-forks past)))))))
 
 (defun check-past (simulation)
   "Signal MISUSE if SIMULATION has no past to go back to."
   (unless (earliest-tick simulation)
-    (reject-use "rewind: nothing is kept of ~A that one could go back to. Ask for that at its ~
-                 beginning, (with-simulation (ROBOT :keep t) ...) or (simulator ROBOT :keep t), ~
-                 or from now on by (keep-forks)."
+    (reject-use "rewind: ~A keeps no forks to go back to. Ask for them at its beginning, ~
+                 (with-simulation (ROBOT :keep t) ...) or (simulator ROBOT :keep t), or from now ~
+                 on by (keep-forks)."
                 (simulation-name simulation))))
 
 (defun check-how-far (ticks simulation)
-  "Signal WRONG-ARGUMENT unless SIMULATION can go back TICKS."
+  "Signal WRONG-ARGUMENT unless SIMULATION can be rewound by TICKS."
   (let* ((first (earliest-tick simulation))
          (most (- (simulation-tick simulation) first)))
     (unless (<= ticks most)
       (reject-argument "rewind" "ticks" ticks
-                       (format nil "at most ~D: one can go back to tick ~D" most first)))))
+                       (format nil "at most ~D: you can go back to tick ~D" most first)))))
 
-;;; The run that goes on.
+;;; Making the successor.
 
 (defun past-until (tick simulation)
-  "Return what the past of SIMULATION was at the end of TICK; and in a list, the newest first, what
-had been asked of it by then and not yet been done."
+  "Return the past of SIMULATION at the end of TICK; and a list, the newest first, of the requests
+made but not performed by then."
   (let* ((past (simulation-past simulation))
          (acts (past-acts past)))
     (when (= tick (simulation-tick simulation))
@@ -76,30 +77,30 @@ had been asked of it by then and not yet been done."
                          :cost (past-cost past))
               asked))))
 
-(defun warn-of-straying (run tick)
+(defun warn-of-divergence (run tick)
   (let ((*message-queue* (simulation-messages run)))
-    (warn-notably (format nil "Not all is as it was: a plan goes another way than it went from ~
-                               tick ~D on, as it may if it depends on what is outside of its run."
+    (warn-notably (format nil "The rewound run differs from the original: from tick ~D on a plan ~
+                               acts differently, as it may if it depends on state outside its run."
                           tick))))
 
 (defun repeat-past (past asked tick)
-  "Return a run that is what the one of PAST was at the end of TICK, when ASKED had been asked of
-it, and the tick at which plans strayed on the way, or NIL."
+  "Return a copy of the run of PAST at the end of TICK, with the requests ASKED waiting; and the
+tick at which a plan diverged on the way, or NIL."
   (let* ((kept (first (past-forks past)))
          (run (await-fork (kept-fork kept) nil '()))
          (acts (reverse (ldiff (append asked (past-acts past)) (kept-acts kept))))
          (done-p nil))
     (unwind-protect
-         (let ((strayed (call-inside run (lambda () (redo run acts tick)))))
+         (let ((diverged (call-inside run (lambda () (redo run acts tick)))))
            (setf (simulation-past run) past
                  done-p t)
-           (values run strayed))
+           (values run diverged))
       (unless done-p (release-fork run)))))
 
-;;; Its place.
+;;; Replacing the run.
 
 (defun variable-setter (old)
-  "Return the function of a symbol and a value that sets what is bound, or global, for OLD."
+  "Return a function of a symbol and a value that sets the binding or global value for OLD."
   (cond ((headless-p old) #'set)
         ((not (eq old *simulation*)) (lambda (symbol value) (setf (global-value symbol) value)))
         ((eq old (global-value '*simulation*))
@@ -107,7 +108,7 @@ it, and the tick at which plans strayed on the way, or NIL."
         (t #'set)))
 
 (defun set-variables (new old)
-  "Let the variables be what they are for NEW, where they are bound, or global, for OLD."
+  "Set the variables of OLD to their values for NEW, in the bindings or globally."
   (let ((setter (variable-setter old)))
     (loop for (symbol . value) in (simulation-environment new)
           do (funcall setter symbol value))
@@ -117,16 +118,16 @@ it, and the tick at which plans strayed on the way, or NIL."
     (funcall setter '*simulation* new)
     (funcall setter '*world* (simulation-world new))))
 
-(defun settle-in-map (new)
-  "Let the world of NEW be the one that top-level code works in, and its robots be called by name."
+(defun make-resident (new)
+  "Make the world of NEW the one that top-level code works in, and set the variables of its robots."
   (let ((world (simulation-world new)))
     (setf (map-resident (world-map world)) world)
     (dolist (robot (world-robots world))
-      (set-robot (robot-blueprint robot) robot))))
+      (bind-robot-name (robot-blueprint robot) robot))))
 
-(defun hand-over-looks (new old)
-  "Let NEW have what OLD has of those outside: who looks on, the gate, the messages."
-  (succeed-in-line new old)
+(defun hand-over-observers (new old)
+  "Make NEW the successor of OLD, with its observers, gate and messages."
+  (link-successor new old)
   (setf (simulation-observers new) (simulation-observers old)
         (simulation-gate new) (simulation-gate old)
         (simulation-messages new) (simulation-messages old)
@@ -134,7 +135,7 @@ it, and the tick at which plans strayed on the way, or NIL."
   (tell-listeners *rewind-hooks* old new))
 
 (defun end-rewound (old new)
-  "Let OLD be over, as NEW goes on in its place."
+  "End OLD, as NEW replaces it."
   (let ((reason (format nil "it was rewound to tick ~D, and another run goes on from there: ~
                              *SIMULATION*, where it was rewound"
                         (simulation-tick new))))
@@ -143,18 +144,18 @@ it, and the tick at which plans strayed on the way, or NIL."
     (setf (simulation-past old) nil)))
 
 (defun hand-over-errors (new old)
-  "Let NEW tell of the errors that came up when OLD ended, in users' code that was told so."
+  "Move the errors of users' code at the end of OLD to the messages of NEW."
   (dolist (message (take-messages (simulation-messages old)))
     (when (eq :error (message-kind message))
       (queue-message message (simulation-messages new)))))
 
-(defun succeed-to (new old from)
-  "Let NEW be, in all respects, what OLD, which had come to the tick FROM, was."
+(defun take-over-state (new old from)
+  "Give NEW the variables, world and errors of OLD, which had come to the tick FROM."
   (let ((resident-p (not (headless-p old)))
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
     (note-rewound from new)
     (when current-p (set-variables new old))
-    (when resident-p (settle-in-map new))
+    (when resident-p (make-resident new))
     (unless (fork-p old)
       (setf (simulation-environment new) '()
             (simulation-variables new) (simulation-variables old)
@@ -162,29 +163,28 @@ it, and the tick at which plans strayed on the way, or NIL."
     (hand-over-errors new old)))
 
 (defun take-the-place (new old then)
-  "Let NEW go on in the place of OLD, which this thread has in custody; at last call THEN. Programs
-are told that OLD is over; wherever they throw, and whatever interrupts this thread, NEW goes on."
+  "Replace OLD, which this thread owns, by NEW; then call THEN. Continuations of OLD are called, as
+it is over. Neither their non-local exits nor interrupts of this thread stop the replacement."
   (check-not-over old 'rewind)
   (let ((from (simulation-tick old)))
     ;; A thread waiting for custody gets it once NEW has replaced OLD.
     (setf (timeline-custody (simulation-timeline new)) (timeline-custody (simulation-timeline old)))
     (deferring-interrupts
       (in-any-case
-        (hand-over-looks new old)
+        (hand-over-observers new old)
         (end-rewound old new)
-        (succeed-to new old from)
+        (take-over-state new old from)
         (funcall then)))))
 
 (defun start-in-place (new old rate paused-p)
-  "Let NEW, which has taken the place of OLD, be live at RATE as that was; unless somebody has
-stopped OLD meanwhile."
+  "Run NEW, which has replaced OLD, live at RATE, unless another thread has stopped OLD meanwhile."
   (when (claimed-p (simulation-timeline old))
     (start-clock new :rate rate :paused-p paused-p
                      :real (eq :real (simulation-thinking new)))))
 
 (defun replace-run (new old)
-  "Let NEW go on in the place of OLD, live if that is. Return NEW. Signals MISUSE if OLD is over,
-and releases NEW."
+  "Replace OLD by NEW, live if OLD is. Return NEW. Signals MISUSE, after releasing NEW, if OLD is
+over."
   (let* ((timeline (simulation-timeline old))
          (rate (simulation-rate old)) (paused-p (paused-p old))
          (live-p (claim-pacing timeline))
@@ -200,28 +200,28 @@ and releases NEW."
       (unless done-p (release-fork new)))
     new))
 
-;;; What the journal says of it.
+;;; The journal.
 
 (defun note-rewound (from &optional (simulation (current-simulation)))
-  "Let the journal of SIMULATION say that it had come to the tick FROM, and was rewound to now."
+  "Record in the journal of SIMULATION that it was rewound from the tick FROM to the current one."
   (note simulation 'rewound (list from)))
 
 (define-operator 'rewound '(integer) #'note-rewound)
 
 (defvar *rewinding-lock* (make-lock "rewinding")
-  "What whoever rewinds a run holds: one after the other.")
+  "Held by the thread that rewinds a run: only one at a time can.")
 
 (defun rewind-now (ticks simulation)
-  "Do what REWIND says, while nobody else rewinds anything."
+  "Do what REWIND does, with *REWINDING-LOCK* held."
   (multiple-value-bind (tick past asked)
       (asking (simulation)
         (check-past simulation)
         (check-how-far ticks simulation)
         (let ((tick (- (simulation-tick simulation) ticks)))
           (multiple-value-call #'values tick (past-until tick simulation))))
-    (multiple-value-bind (run strayed) (repeat-past past asked tick)
+    (multiple-value-bind (run diverged) (repeat-past past asked tick)
       (replace-run run simulation)
-      (when strayed (warn-of-straying run strayed))
+      (when diverged (warn-of-divergence run diverged))
       run)))
 
 (addition rewind)

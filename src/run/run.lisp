@@ -7,8 +7,7 @@
 
 (addition state-digest)
 
-;;; A run has no state of its own but the values of the parameters as it knows them: the rest is its
-;;; timeline's and its world's.
+;;; The state of a run is in its timeline and its world, except for the values of parameters.
 
 (addition simulation-p)
 (define-kind (simulation :constructor (%make-simulation (timeline world)))
@@ -17,7 +16,7 @@
    (timeline nil (or null timeline) "the timeline of the simulation" :part :export)
    (world nil (or null world) "the world that the simulation changes" :part :addition))
   (:memory
-   ;; It decides the future, but is digested in a way of its own, below.
+   ;; State as well, but digested by the method below.
    (known-parameters (parameter-values) simple-vector
                      "the values of the parameters as the journal knows them"))
   (:link
@@ -25,25 +24,25 @@
                 "what DIRTY-SIMULATION would restore, as the journal knows it")
    (journal nil t "the journal that the simulation keeps, or NIL" :addition)
    (variables '() list "the symbols that are bound for the headless simulation")
-   (environment '() list "what they are in a fork, a list (symbol . value), or else what they were
-when a thread at work in the simulation last said so")
+   (environment '() list "the values of variables, a list (symbol . value): in a fork the current
+ones, else those that a thread in the simulation has stored last")
    (dice nil (or null random-state)
-         "what its programs roll by CL:RANDOM, if it comes from a file that says that, or NIL")
-   (plans-dice-p nil boolean "its plans roll dice of their own by CL:RANDOM: a run that is or was
-live has no dice that all its threads roll" :export)
-   (past nil t "what is kept of the past, or NIL" :export)
-   (line nil list "the simulation that goes on, in a list that all share of which one was rewound
-to the next, or NIL if there was no rewinding")
+         "the state of CL:RANDOM of its programs, if it was loaded from a file that has it, or NIL")
+   (plans-dice-p nil boolean "its plans have their own CL:RANDOM state, as the threads of a run that
+is or was live do not share one" :export)
+   (past nil t "the forks and acts that it keeps for rewinding, or NIL" :export)
+   (line nil list "a list of the run that continues, shared by all runs that were rewound to it; or
+NIL if there was no rewinding")
    (output nil (or null stream) "where its threads write, if an editor wants that, or NIL")
    (messages *message-queue* message-queue
              "the message queue that the simulation reports to" :export)
-   (forked-p nil boolean "somebody has forked it, perhaps to look at what would come")
-   (gate nil (or null function) "a function of the simulation that says how many ticks may pass
-before it is asked again" :export)
+   (forked-p nil boolean "it was forked, perhaps to look ahead")
+   (gate nil (or null function) "a function of the simulation that returns how many ticks may pass
+before it is called again" :export)
    (observers '() list "the functions that are called after each tick" :export)
-   (trails '() list "what displays keep of where robots were; replaced, never altered, as forks
-share it" :export)
-   (participants '() list "what takes part in the simulation, see participant.lisp" :export)))
+   (trails '() list "where robots were, for displays; replaced, never altered, as forks share it"
+           :export)
+   (participants '() list "the participants of the simulation, see participant.lisp" :export)))
 
 (defmethod digest-state :after ((simulation simulation) digest)
   (digest-parameters (simulation-known-parameters simulation) digest))
@@ -53,13 +52,13 @@ share it" :export)
 
 (addition simulation-name)
 (defun simulation-name (simulation)
-  "Return what SIMULATION is called, the name of its map."
+  "Return the name of SIMULATION, which is that of its map."
   (timeline-name (simulation-timeline simulation)))
 
 (addition simulation-tick)
 (declaim (inline simulation-tick))
 (defun simulation-tick (&optional (simulation (current-simulation)))
-  "Return how many ticks of SIMULATION have passed; inside a tick, its number."
+  "Return the number of ticks of SIMULATION that have passed; inside a tick, its number."
   (timeline-tick (simulation-timeline simulation)))
 
 (defmethod print-object ((simulation simulation) stream)
@@ -68,7 +67,7 @@ share it" :export)
 
 (addition simulation-seed)
 (defun simulation-seed (simulation)
-  "Return the integer from which all chance in SIMULATION comes."
+  "Return the integer that seeds all randomness in SIMULATION."
   (world-seed (simulation-world simulation)))
 
 (addition simulation-rate)
@@ -90,7 +89,7 @@ steps). See SET-THINKING."
 
 (declaim (inline simulation-over))
 (defun simulation-over (simulation)
-  "Return why the run of SIMULATION is over, a string, or NIL as long as it is not."
+  "Return why the run of SIMULATION is over, a string, or NIL if it is not."
   (timeline-over (simulation-timeline simulation)))
 
 (declaim (inline simulation-thread))
@@ -105,7 +104,7 @@ steps). See SET-THINKING."
 
 (declaim (inline noting-p))
 (defun noting-p (simulation)
-  "True if somebody wants to know what is done to SIMULATION."
+  "True if requests to SIMULATION are recorded, in a journal or for rewinding."
   (or (simulation-journal simulation) (simulation-past simulation)))
 
 (defun simulation-agenda (simulation)
@@ -115,44 +114,43 @@ steps). See SET-THINKING."
 ;;; Making.
 
 (defun make-simulation (world &optional (prepare (constantly nil)))
-  "Return a new simulation of WORLD, which has a timeline, instead of any that it had before. No
-other thread can find it before PREPARE, a function, has been called with it."
+  "Return a new simulation of WORLD, which has a timeline. It replaces any earlier one. The function
+PREPARE is called with it before other threads can find it."
   (let* ((timeline (world-timeline world))
          (simulation (%make-simulation timeline world)))
     (funcall prepare simulation)
     (setf (timeline-run timeline) simulation)))
 
 (defun headless-p (simulation)
-  "True if SIMULATION is one of WITH-SIMULATION: not of the world that top-level code works in."
+  "True if SIMULATION is headless: its world is not the resident one that top-level code works in."
   (let ((world (simulation-world simulation)))
     (not (eq world (map-resident (world-map world))))))
 
 (defun latest (simulation)
-  "Return SIMULATION or, if it was rewound, the one that goes on instead."
+  "Return SIMULATION or, if it was rewound, its successor."
   (let ((line (simulation-line simulation)))
     (if line (first line) simulation)))
 
-(defun succeed-in-line (new old)
-  "Let NEW be what goes on in the place of OLD, and of what that went on in the place of. None of
-these leads to the next, so that all but the last can be forgotten."
+(defun link-successor (new old)
+  "Make NEW the successor of OLD and of its predecessors. These share one list and do not refer to
+each other, so all but the last can be garbage-collected."
   (let ((line (or (simulation-line old) (list old))))
     (setf (first line) new
           (simulation-line old) line
           (simulation-line new) line)))
 
-;;; The one run that each world has, made when it is first needed.
+;;; Each world has one run, made when it is first needed.
 
 (defvar *simulations-lock* (make-lock "simulations"))
 
 (defun residents-queue ()
-  "Return the message queue for the runs of resident worlds: not that of a headless run which may be
-the first to need one."
+  "Return the message queue for runs of resident worlds: the global one inside a headless run."
   (if (and *simulation* (headless-p *simulation*))
       (global-value '*message-queue*)
       *message-queue*))
 
 (defun world-simulation (world)
-  "Return the simulation of WORLD, made if there is none, with a journal."
+  "Return the simulation of WORLD; if there is none, make one that keeps a journal."
   (let ((timeline (ensure-timeline world)))
     (or (timeline-run timeline)
         (with-lock (*simulations-lock*)
@@ -162,8 +160,8 @@ the first to need one."
                                        (begin-journal simulation))))))))
 
 (defun simulation-meant (designator operator)
-  "Return the simulation DESIGNATOR, or that of the robot DESIGNATOR, for OPERATOR. Signals
-WRONG-ARGUMENT."
+  "Return DESIGNATOR if it is a simulation, or the simulation of the robot DESIGNATOR. Signals
+WRONG-ARGUMENT by OPERATOR."
   (cond ((simulation-p designator) designator)
         ((robot-p designator) (robot-simulation designator))
         (t (reject-argument operator 'simulation designator "a simulation, or a robot in one"))))
@@ -173,7 +171,7 @@ WRONG-ARGUMENT."
   "Return the simulation of the world that ROBOT is in."
   (world-simulation (robot-world robot)))
 
-;;; Who looks on, and who takes part.
+;;; Observers and participants.
 
 (addition add-observer)
 (defun add-observer (function &optional (simulation (current-simulation)))
@@ -194,27 +192,27 @@ WRONG-ARGUMENT."
   (values))
 
 (defun add-participant (participant simulation)
-  "Let PARTICIPANT take part in SIMULATION from now on."
+  "Add PARTICIPANT to SIMULATION. Return it."
   (asking (simulation)
     (setf (simulation-participants simulation)
           (append (simulation-participants simulation) (list participant))))
   participant)
 
 (defun remove-participant (participant simulation)
-  "Let PARTICIPANT take part in SIMULATION no more."
+  "Remove PARTICIPANT from SIMULATION. Return nothing."
   (asking (simulation)
     (removef (simulation-participants simulation) participant))
   (values))
 
 (defun unfinished-in-participants (simulation)
-  "Return in words, in a list, what those who take part in SIMULATION have begun and not finished."
+  "Return a list of texts about unfinished work of the participants of SIMULATION."
   (loop for participant in (simulation-participants simulation)
         append (participant-unfinished participant)))
 
 (addition idle-p)
 (defun settled-p (simulation)
-  "True if SIMULATION has nothing in progress or waiting to begin that ends. Kickers and tracks
-continue as long as the run does."
+  "True if SIMULATION has nothing in progress or waiting to begin, except kickers and tracks, which
+never end."
   (let ((timeline (simulation-timeline simulation)))
     (and (zerop (agenda-pending (timeline-agenda timeline)))
          (null (timeline-inbox timeline))
@@ -222,9 +220,8 @@ continue as long as the run does."
                  (simulation-participants simulation)))))
 
 (defun idle-p (&optional (simulation (current-simulation)))
-  "True if nothing can happen in SIMULATION until somebody asks for something. In a live one at the
-rate :FREE, things with kickers wait for that, too: else a million ticks, which nobody wants, would
-be over before anybody could ask."
+  "True if nothing can happen in SIMULATION until a request is made. In a live one at the rate
+:FREE, kickers wait for a request, too: otherwise millions of ticks would pass before one is made."
   (let ((world (simulation-world simulation)))
     (and (or (and (eq :free (pace simulation)) (live-p simulation))
              (not (or (world-has-kickers-p world) (tracks-busy-p world))))
@@ -234,8 +231,8 @@ be over before anybody could ask."
 
 (addition set-seed)
 (defun set-seed (seed &optional (simulation (current-simulation)))
-  "Make all chance in SIMULATION, that of plans too, depend on the integer SEED from now on. Return
-SEED. See reading 218."
+  "Seed all dice of SIMULATION and its plans with the integer SEED from now on. Return SEED. See
+reading 218."
   (check-argument set-seed seed (integerp seed) "an integer")
   (changing ((simulation-world simulation) set-seed seed)
     (seed-world (simulation-world simulation) seed)
@@ -256,7 +253,7 @@ SEED. See reading 218."
   :FREE                      no ticks: plans react after each tick, as long as it takes them
   :CHARGED                   the ticks that THINK and WITH-CHARGE say
   (:CHARGED :BUDGET steps)   these, and a tick for each STEPS of plans: the rest waits
-  :REAL                      no ticks: where a clock runs, plans have a thread and the clock goes on
+  :REAL                      no ticks: with a clock, plans have a thread and the clock goes on
 If a plan calls it, the mode applies from its next reaction on, mostly in the next tick. Free and
 charged runs are the same on every machine. Without a clock :REAL is the same as :FREE. The journal
 records it. Signals WRONG-ARGUMENT."
@@ -270,9 +267,9 @@ records it. Signals WRONG-ARGUMENT."
 
 ;;; The end.
 
-;; A time limit may come at any moment: that must not keep plans from hearing of the end.
+;; A time limit may come at any moment. It must not keep plans from being told of the end.
 (defun tell-of-end (simulation)
-  "Let the robots and participants of SIMULATION, which is over, know that. Interrupts wait."
+  "Tell the robots and participants of SIMULATION that it is over, with interrupts deferred."
   (in-any-case
     (call-each #'close-robot (simulation-robots simulation))
     (call-each (lambda (participant)
@@ -280,8 +277,8 @@ records it. Signals WRONG-ARGUMENT."
                (simulation-participants simulation))))
 
 (defun end-simulation (simulation reason)
-  "End the run of SIMULATION for good, for REASON, a sentence without its full stop. All requests to
-its robots, begun or not, are interrupted; further ones are refused."
+  "End the run of SIMULATION, for REASON, a sentence without its full stop. Requests to its robots,
+in progress or waiting, are interrupted; further ones are refused."
   (let ((timeline (simulation-timeline simulation))
         (robots (simulation-robots simulation)))
     (call-alone
@@ -298,7 +295,7 @@ its robots, begun or not, are interrupted; further ones are refused."
                                  (take-requests timeline))
                       (abandon timeline (mapcan #'robot-resources robots)))))))))))
 
-;;; One number for its state.
+;;; The digest.
 
 (defun state-digest (&optional (simulation (current-simulation)) participants)
   "Return a 64-bit number computed from the exact state of SIMULATION. Two runs with the same digest

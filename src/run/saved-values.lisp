@@ -1,19 +1,19 @@
-;;;; saved-values.lisp -- the objects of an inventory as lines of text.
+;;;; saved-values.lisp -- writing the objects of an inventory as lines of text.
 
 (in-package :ars-magna.run)
 
-;;; First there are lines that say what the numbers stand for, in order:
+;;; The first lines define the numbers, in order:
 ;;;
-;;;   (found map "ARS-WORLDS::OFFICE")         what is beside the run, by its name
-;;;   (new object 31 |...::THING| ("NAME" ...))  how many there are of a shape; of which slots
-;;;   (new array 2 |...::T| (75) nil)            it will be said what is in them
+;;;   (found map "ARS-WORLDS::OFFICE")           an outer object, by its name
+;;;   (new object 31 |...::THING| ("NAME" ...))  how many objects of a shape there are, and the
+;;;   (new array 2 |...::T| (75) nil)            slots whose values follow
 ;;;
-;;; then at least one line for each that is new: its number, and what is in it. Of arrays that is
-;;; how often an element stands there, the element, and so on.
+;;; Then comes at least one line for each new object: its number and its contents. The contents of
+;;; an array are a repeat count, an element, and so on.
 
 (defun write-elements (list inventory out &optional (beginning #\Space))
-  "Write the elements of LIST, BEGINNING before the first and a space before each other, up to where
-it has a number or ends."
+  "Write the elements of LIST up to its end or a cons with a number. BEGINNING is written before the
+first, a space before each other one."
   (loop for tail = list then (cdr tail)
         for separator = beginning then #\Space
         while (and (consp tail)
@@ -25,7 +25,7 @@ it has a number or ends."
                   (write-value tail inventory out))))
 
 (defun write-value (value inventory out)
-  "Write VALUE to OUT: its number in INVENTORY, if it has one."
+  "Write VALUE to OUT, or its number in INVENTORY, if it has one."
   (let ((number (and (not (typep value '(or symbol fixnum))) (number-of value inventory))))
     (cond (number (format out "@~D" number))
           ((consp value) (write-elements value inventory out #\()
@@ -38,8 +38,8 @@ it has a number or ends."
   (if (array-has-fill-pointer-p array) (fill-pointer array) (array-total-size array)))
 
 (defun write-run (array start inventory out)
-  "Write how often the element of ARRAY at START is repeated there, and it. Return where others
-begin."
+  "Write how often the element of ARRAY at START is repeated there, and the element. Return the
+index of the next different one."
   (let* ((element (row-major-aref array start))
          (end (or (loop for index from (1+ start) below (element-count array)
                         unless (eql element (row-major-aref array index)) return index)
@@ -49,8 +49,7 @@ begin."
     end))
 
 (defun write-part (array start inventory out)
-  "Write what is in ARRAY from START on, as much as there is room for in a line. Return where that
-ends."
+  "Write the elements of ARRAY from START on that fit into a line. Return the end index."
   (cond ((stringp array)
          (let ((end (min (length array) (+ start (* 10 +longest-row+)))))
            (write-char #\Space out)
@@ -62,7 +61,7 @@ ends."
            start)))
 
 (defun values-in (object fields)
-  "Return a list of what is in OBJECT, no array or cons, as LOADED-VALUES takes it."
+  "Return the contents of OBJECT, no array or cons, as a list for LOADED-VALUES."
   (typecase object
     (dice (list (dice-state object)))
     (agenda (cons (agenda-tick object) (pending-events object)))
@@ -72,7 +71,7 @@ ends."
     (t (loop for field in fields collect (funcall (kind-slot-reader field) object)))))
 
 (defun write-row (values inventory out)
-  "Write the first of VALUES, as many as there is room for in a line. Return the others."
+  "Write the first of VALUES, as many as fit into a line. Return the others."
   (loop repeat +longest-row+
         while values
         do (write-char #\Space out)
@@ -80,8 +79,8 @@ ends."
   values)
 
 (defun write-line-of (object more inventory out)
-  "Write to OUT what a line says of OBJECT, and return what is left to be said, or NIL. MORE is what
-was left before: values, or where in an array."
+  "Write the next line for OBJECT to OUT. Return what is left to write, or NIL. MORE is what was
+left before: values, or an index of an array."
   (typecase object
     (cons (write-elements object inventory out) nil)
     (array (let ((end (write-part object more inventory out)))
@@ -89,7 +88,7 @@ was left before: values, or where in an array."
     (t (write-row more inventory out))))
 
 (defun object-lines (object fields inventory seal)
-  "Call SEAL with each line that says what is in OBJECT, which has FIELDS if it is a structure."
+  "Call SEAL with each line for the contents of OBJECT. FIELDS are the slots of a structure."
   (let ((more (typecase object
                 (cons nil)
                 (array 0)
@@ -104,13 +103,13 @@ was left before: values, or where in an array."
   (mapcar (lambda (field) (symbol-name (kind-slot-name field))) fields))
 
 (defun batch-line (batch)
-  "Return what says how many objects BATCH has, and what they are."
+  "Return the line that defines the numbers of BATCH."
   (destructuring-bind (kind . more) (batch-shape batch)
     (datum-text `(:new ,kind ,(length (batch-members batch)) ,@more
                        ,@(and (eq :object kind) (list (field-names (batch-fields batch))))))))
 
 (defun inventory-lines (inventory seal)
-  "Call SEAL, a function, with each line, a string, of what INVENTORY is."
+  "Call the function SEAL with each line, a string, for INVENTORY."
   (loop for (nil . name) in (inventory-outer inventory)
         do (funcall seal (datum-text (cons :found name))))
   (let ((batches (batches-in-order inventory)))

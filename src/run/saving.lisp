@@ -1,10 +1,10 @@
-;;;; saving.lisp -- save the state of a run in a file, from which it continues exactly.
+;;;; saving.lisp -- saving the state of a run in a file.
 
 (in-package :ars-magna.run)
 
-;;; A saved run is lines of plain data like a journal's, each with a check sum of it and all before
-;;; it: a head; the objects, see saved-values.lisp; the requests that wait; the journal, if the run
-;;; keeps one; and the end.
+;;; A saved run consists of lines of plain data like those of a journal, with check sums: a head;
+;;; the objects, see saved-values.lisp; the waiting requests; the journal, if the run keeps one; and
+;;; the end.
 
 (defconstant +saved-version+ 1)
 (define-constant +saved-title+ ";;;; A run of ARS MAGNA, saved." :test #'string=
@@ -13,11 +13,11 @@
                    (format nil "it is a saved run; (load-simulation FILE) and ~
                                 (with-loaded-simulation (FILE) ...) read it"))
 
-;;; What cannot be saved, and may be left out.
+;;; Contents that cannot be saved, and may be left out.
 
 (addition unsavable unsavable-parts save-without)
 (document-restarts
- 'save-without "Save the run without what no file can hold; the error says what that is.")
+ 'save-without "Save the run without the parts that cannot be saved; the error names them.")
 (define-condition unsavable (ars-magna-error)
   ((name  :initarg :name  :reader unsavable-name)
    (parts :initarg :parts :reader unsavable-parts))
@@ -27,13 +27,13 @@
                              restart SAVE-WITHOUT; a journal that cannot be saved is left out ~
                              whole."
                      (unsavable-name condition) (unsavable-parts condition))))
-  (:documentation "A run is to be saved in which something goes on that no file can hold."))
+  (:documentation "A run to be saved has parts that cannot be saved, such as plans in progress."))
 
 (setf (documentation 'unsavable-parts 'function)
-      "Return a list of strings: what an UNSAVABLE condition says that no file can hold.")
+      "Return the parts that an UNSAVABLE condition names, a list of strings.")
 
 (defun functional-p (request)
-  "True if REQUEST holds a function of a user's."
+  "True if REQUEST contains a function of the user's."
   (typecase request
     (scheduled t)
     (withdrawal (withdrawal-continuation request))))
@@ -46,8 +46,7 @@
   (pending-events (simulation-agenda simulation)))
 
 (defun unsavable-texts (simulation journal)
-  "Return in words, in a list, what goes on in SIMULATION, or stands in JOURNAL, that no file can
-hold."
+  "Return a list of texts about what in SIMULATION or JOURNAL cannot be saved."
   (append (loop for text in (unfinished-in-participants simulation)
                 collect (format nil "~A is under way" text))
           (loop for event in (events-waiting simulation)
@@ -63,16 +62,16 @@ hold."
                (list "its journal has entries with functions in them, as those of PUT-KICKER"))))
 
 (defun stripped-copy (simulation)
-  "Return a copy of SIMULATION without what no file can hold."
-  (let* ((copy (copy-alone simulation)) (timeline (simulation-timeline copy)))
+  "Return a copy of SIMULATION without what cannot be saved."
+  (let* ((copy (copy-without-participants simulation)) (timeline (simulation-timeline copy)))
     (dolist (event (events-waiting copy))
       (when (functional-p event) (cancel-event (timeline-agenda timeline) event)))
     (setf (timeline-inbox timeline) (remove-if #'functional-p (timeline-inbox timeline)))
     copy))
 
 (defun call-with-savable (function simulation without-p)
-  "Call FUNCTION with SIMULATION and its journal or, where these have what no file can hold, if
-WITHOUT-P with a copy of SIMULATION without that. Signals UNSAVABLE otherwise."
+  "Call FUNCTION with SIMULATION and its journal. If these have parts that cannot be saved, leave
+these out if WITHOUT-P is true, or else signal UNSAVABLE."
   (let* ((journal (and (simulation-journal simulation) (end-of-journal simulation)))
          (texts (unsavable-texts simulation journal)))
     (cond ((null texts) (funcall function simulation journal))
@@ -90,7 +89,7 @@ WITHOUT-P with a copy of SIMULATION without that. Signals UNSAVABLE otherwise."
         collect (list (parameter-name parameter) value)))
 
 (defun commands-under-way (simulation)
-  "Return, as definitions, the users' commands that are under way or wait in SIMULATION."
+  "Return, as definitions, the users' commands that are in progress or wait in SIMULATION."
   (loop for request in (append (events-waiting simulation) (requests-waiting simulation))
         for command = (request-operator request)
         for entry = (and (command-p command) (lookup-entry (command-name command) *commands*))
@@ -98,17 +97,17 @@ WITHOUT-P with a copy of SIMULATION without that. Signals UNSAVABLE otherwise."
           collect (definition-of :command entry)))
 
 (defun programs-head (simulation)
-  "Return, as a part of the head, what programs of SIMULATION go on with: the noise that
-DIRTY-SIMULATION would restore there, and their dice. A live run has none: each of its threads has
-its own."
+  "Return the part of the head for programs of SIMULATION: the noise that DIRTY-SIMULATION would
+restore there, and their dice. A live run has none, as each of its threads has its own."
   (let ((dice (and (headless-p simulation)
                    (cdr (assoc *lisps-dice* (environment-of simulation))))))
     (list* :noise (and (eq simulation *simulation*) (settings-by-name *noise-before-cleaning*))
            (and dice (list :dice (lisps-dice-numbers dice))))))
 
 (defun head-of (simulation programs journal)
-  "Return the head of the file in which SIMULATION is saved, with PROGRAMS, see PROGRAMS-HEAD."
-  (let ((used (append (definitions-of simulation) (at-hand (commands-under-way simulation)))))
+  "Return the head of the file of SIMULATION. PROGRAMS is a value of PROGRAMS-HEAD."
+  (let ((used (append (definitions-of simulation)
+                      (current-definitions (commands-under-way simulation)))))
     (list* :map (qualified-name (map-name (world-map (simulation-world simulation))))
            :robots (robot-names simulation)
            :tick (simulation-tick simulation)
@@ -121,7 +120,7 @@ its own."
            programs)))
 
 (defun write-saved (simulation journal programs out)
-  "Write to OUT what SIMULATION is and its JOURNAL, or NIL. PROGRAMS is for the head."
+  "Write SIMULATION and its JOURNAL, or NIL, to OUT. PROGRAMS is for the head."
   (let* ((requests (requests-waiting simulation))
          (inventory (take-inventory simulation requests))
          (sum 0))
@@ -140,13 +139,11 @@ its own."
         (dolist (entry (journal-entries journal)) (seal (datum-text (entry-datum entry)))))
       (seal (datum-text (list :end (simulation-tick simulation)))))))
 
-;;; Files, none of which LOAD-SIMULATION would refuse.
-
-;;; One is loaded before it takes the place of what was there: so saving refuses what loading would
-;;; refuse, by the same checks.
+;;; Files. The new file is loaded on trial before it replaces another, so saving refuses what
+;;; loading would refuse.
 
 (defun check-loadable (path name)
-  "Signal MISUSE unless the saved run in the file PATH, that of the run called NAME, can be loaded."
+  "Signal MISUSE unless the run called NAME that is saved in the file PATH can be loaded."
   (handler-case (read-simulation path)
     ((or damaged-simulation unknown-name) (trouble)
       (reject-use "The run in ~(~A~) cannot be saved, since it could not be loaded again: ~A. What ~
@@ -154,8 +151,8 @@ its own."
                   name (reason-of-refusal trouble)))))
 
 (defun write-simulation (simulation file without-p)
-  "Write SIMULATION, which stands still, to FILE; if WITHOUT-P, without what no file can hold.
-Return the truename of FILE."
+  "Write SIMULATION, which is between ticks, to FILE; if WITHOUT-P is true, without what cannot be
+saved. Return the truename of FILE."
   (when (simulation-ticking-p simulation)
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)

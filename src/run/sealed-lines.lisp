@@ -1,13 +1,13 @@
-;;;; sealed-lines.lisp -- lines of text with check sums, in files that are read with suspicion.
+;;;; sealed-lines.lisp -- lines of text with check sums, in files that may be damaged or forged.
 
 (in-package :ars-magna.run)
 
-;;; Behind each line a comment has a check sum of it and all before it, so that damage is found, and
-;;; where. Comments of people's own, empty lines and the line ends of others do no harm. Files are
-;;; read as octets, since some are no text in UTF-8.
+;;; A comment after each line has a check sum of the file up to there, which shows where damage is.
+;;; Other comments, empty lines and line ends of other systems are accepted. Files are read as
+;;; octets, since damaged ones may be no valid UTF-8.
 
-(defconstant +longest-line+ 1000000 "How many characters a line of a saved file has at most.")
-(defconstant +longest-file+ (expt 2 28) "How many bytes a saved file has at most.")
+(defconstant +longest-line+ 1000000 "The most characters of a line of a saved file.")
+(defconstant +longest-file+ (expt 2 28) "The most bytes of a saved file.")
 
 (addition damaged-file)
 (define-condition damaged-file (ars-magna-error)
@@ -16,10 +16,10 @@
   (:report (lambda (condition stream)
              (format stream "~A cannot be used: ~A." (shown-name (damaged-file-name condition))
                      (damaged-file-reason condition))))
-  (:documentation "A file that should hold what the simulator has saved cannot be used."))
+  (:documentation "A file that should have been saved by the simulator cannot be used."))
 
-(defun tell-of-damage (condition stream kind operator)
-  "Write to STREAM that the file of CONDITION is no KIND of file, and that OPERATOR saves one."
+(defun report-damage (condition stream kind operator)
+  "Write to STREAM that the file of CONDITION is not of KIND, and that OPERATOR saves one."
   (format stream "~A is no usable ~A: ~A. Save one with ~A; nothing was changed."
           (shown-name (damaged-file-name condition)) kind (damaged-file-reason condition) operator))
 
@@ -27,21 +27,20 @@
 (define-condition damaged-journal (damaged-file)
   ()
   (:report (lambda (condition stream)
-             (tell-of-damage condition stream "journal" "SAVE-JOURNAL")))
+             (report-damage condition stream "journal" "SAVE-JOURNAL")))
   (:documentation "A file that should hold a journal cannot be used."))
 
 (addition damaged-simulation)
 (define-condition damaged-simulation (damaged-file)
   ()
   (:report (lambda (condition stream)
-             (tell-of-damage condition stream "saved run" "SAVE-SIMULATION")))
+             (report-damage condition stream "saved run" "SAVE-SIMULATION")))
   (:documentation "A file that should hold a saved run cannot be used."))
 
 ;;; Writing.
 
 (defun write-sealed (text sum out)
-  "Write TEXT to OUT as a line with its check sum, which is returned. SUM is that of what comes
-before."
+  "Write TEXT to OUT as a line with its check sum. Return that. SUM is the one of the line before."
   (when (<= (- +longest-line+ 10) (length text))
     (error "one of its entries takes ~D characters" (length text)))
   (let ((sum (text-checksum text sum)))
@@ -53,7 +52,7 @@ before."
 ;;; Reading.
 
 (defun read-short-line (in)
-  "Return the next line of IN, or NIL; of one that is too long, no more than its beginning."
+  "Return the next line of IN, or NIL; only the beginning of a line that is too long."
   (let* ((last nil)
          (line (with-output-to-string (out)
                  (loop repeat +longest-line+
@@ -71,13 +70,13 @@ before."
     (or (string= "" text) (char= #\; (char text 0)))))
 
 (defun line-checksum (line start)
-  "Return the check sum that stands in LINE from START on, or NIL."
+  "Return the check sum in LINE from START on, or NIL."
   (and (<= 0 start)
        (string= " ;" line :start2 start :end2 (+ 2 start))
        (parse-integer line :start (+ 2 start) :radix 16 :junk-allowed t)))
 
 (defun checked-datum (line sum)
-  "Return the datum in LINE and its check sum. SUM is that of what comes before."
+  "Return the datum in LINE and its check sum. SUM is the one of the line before."
   (when (= +longest-line+ (length line)) (error "it has ~D characters or more" +longest-line+))
   (let* ((start (- (length line) 10))
          (text (subseq line 0 (max 0 start)))
@@ -96,18 +95,18 @@ before."
 
 (defun call-with-saved-text (function file)
   "Call FUNCTION with a stream of the octets of FILE, for NEXT-LINE. Signals an error if that is no
-file of bytes, or too long."
+regular file, or too long."
   (let ((trouble (unusable-file-text file)))
     (when trouble (error "~A" trouble)))
   (with-open-file (in file :external-format :latin-1)
     (when (< +longest-file+ (file-length in))
       (error "it has ~D bytes, more than such files have" (file-length in)))
-    (let ((*homeless* (make-hash-table :test 'equal)))
+    (let ((*uninterned* (make-hash-table :test 'equal)))
       (funcall function in))))
 
 (defun call-reading-file (function file kind damage)
-  "Do as CALL-WITH-SAVED-TEXT does; if that signals an error other than UNKNOWN-NAME, signal one of
-the class DAMAGE, which says that FILE, to be of KIND, is to blame."
+  "Do what CALL-WITH-SAVED-TEXT does. For an error other than UNKNOWN-NAME, signal one of the class
+DAMAGE, which names FILE. The file should be of KIND."
   (handler-case (call-with-saved-text function file)
     (unknown-name (trouble) (error trouble))
     (stream-error ()
@@ -117,17 +116,17 @@ the class DAMAGE, which says that FILE, to be of KIND, is to blame."
                                            (one-line-text trouble))))))
 
 (defun reason-of-refusal (trouble)
-  "Return why READING-FILE has refused a file, by the condition TROUBLE, as a part of a sentence."
+  "Return the reason why READING-FILE has signalled TROUBLE, as a part of a sentence."
   (if (typep trouble 'damaged-file)
       (damaged-file-reason trouble)
       (string-right-trim "." (one-line-text trouble))))
 
 (defmacro reading-file ((in file kind damage) &body body)
-  "Run BODY, in which IN is a stream of FILE, as CALL-READING-FILE would a function."
+  "Run BODY with IN bound to a stream of FILE, as CALL-READING-FILE calls a function."
   `(call-reading-file (lambda (,in) ,@body) ,file ,kind ,damage))
 
 (defun check-format (found expected)
-  "Signal an error unless FOUND, the number of a file's format, is EXPECTED."
+  "Signal an error unless FOUND, the format number of a file, is EXPECTED."
   (unless (eql expected found)
     (error "another version of the simulator wrote it, in format ~A; this one reads format ~D"
            (safe-text found) expected)))

@@ -1,15 +1,15 @@
-;;;; status.lisp -- how a robot is, as data: what the prompt's STATUS shows.
+;;;; status.lisp -- the state of a robot as data, as the prompt's STATUS shows it.
 
 (in-package :ars-magna.run)
 
 (export '(designator-status robot-meant))
 
-;;; All is plain data: numbers, symbols, strings and lists of these. Things and places appear as
-;;; they print. Property lists allow for more entries in the future.
+;;; The result is plain data: numbers, symbols, strings and lists of these. Things and places are
+;;; strings, as they print. Property lists can get more entries in the future.
 
-(defun glance (camera)
-  "Return what CAMERA sees now. The run does not notice: dice and last view stay as they
-were (reading 201)."
+(defun view-without-effect (camera)
+  "Return what CAMERA sees now, without an effect on the run: dice and last view are
+restored (reading 201)."
   (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
          (state (dice-state dice))
          (last-view (camera-last-view camera))
@@ -20,16 +20,16 @@ were (reading 201)."
             (camera-last-view-tick camera) tick))))
 
 (defun inside-name (part)
-  "Return what PART is inside of, a string, or NIL."
+  "Return the name of what PART is inside of, a string, or NIL."
   (and (part-location part) (location-name (part-location part))))
 
 (defun own-slots (part)
-  "Return what is known of the slots that the kind of PART has besides those that all parts have."
+  "Return the slot descriptions of the kind of PART, without the slots that all parts have."
   (set-difference (kind-slots (kind-of part))
                   (kind-slots (find 'part (all-kinds) :key #'kind-name))))
 
 (defgeneric part-status (part)
-  (:documentation "Return what STATUS tells of PART: of a kind of a user's, its state and memory."))
+  (:documentation "Return the plist of PART for STATUS; for a user's kind, its state and memory."))
 
 (defmethod part-status ((part part))
   (list :name (princ-to-string part)
@@ -41,7 +41,7 @@ were (reading 201)."
 (defmethod part-status ((camera camera))
   (let ((designator (camera-tracks camera)))
     (list :number (camera-index camera)
-          :view (glance camera)
+          :view (view-without-effect camera)
           :asked-tick (and (camera-last-view camera) (camera-last-view-tick camera))
           :tracks (and designator (designator-number designator))
           :angle (camera-angle camera)
@@ -63,7 +63,7 @@ were (reading 201)."
         :contents (mapcar #'princ-to-string (storage-bin-contents bin))))
 
 (defun designator-status (designator)
-  "Return what STATUS tells of DESIGNATOR."
+  "Return the plist of DESIGNATOR for STATUS."
   (let ((data (designator-data designator)))
     (list :number (designator-number designator)
           :type (designator-type designator)
@@ -72,19 +72,19 @@ were (reading 201)."
           :angle (designator-angle designator)
           :data data)))
 
-;;; Whose commands are carried out.
+;;; Commands in progress, and who issued them.
 
 (defun part-name (resource)
-  "Return what RESOURCE is called, a string; NIL if it is the robot itself."
+  "Return the name of RESOURCE, a string; NIL if it is the robot itself."
   (if (robot-p resource) nil (princ-to-string resource)))
 
 (defun under-way-status (resource)
-  "Return in a list what RESOURCE carries out, and for whom."
+  "Return a list of the command in progress on RESOURCE and its asker, as a plist; or NIL."
   (multiple-value-bind (name asker) (under-way resource)
     (when name (list (list :part (part-name resource) :command name :for asker)))))
 
 (defun interrupted-status (resource)
-  "Return in a list what was interrupted last on RESOURCE, and by whose command."
+  "Return a list of the last interruption on RESOURCE, as a plist; or NIL."
   (let ((interruption (last-interruption resource)))
     (when interruption
       (destructuring-bind (what asker by by-asker tick) interruption
@@ -94,7 +94,7 @@ were (reading 201)."
 ;;; All of it.
 
 (defun robot-status (robot)
-  "Return what STATUS does of ROBOT, whose world stands still."
+  "Return the value of STATUS for ROBOT, whose world is between ticks."
   (let ((resources (cons robot (robot-parts robot))))
     (append
      (list :robot (robot-name robot)

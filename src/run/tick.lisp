@@ -4,15 +4,15 @@
 
 (export '(tick))
 
-;;; TICK is the order of a tick. While the world changes, no program runs but users' kickers,
-;;; manipulations and events; then come continuations, then observers. So everything else that a
-;;; program does happens between ticks, and a journal can repeat it. User code may leave a tick by a
-;;; non-local exit such as THROW; the timeline records which phases have begun, and the others are
-;;; done first.
+;;; The function TICK lists the phases of a tick in order. While the world changes, the only users'
+;;; code that runs is kickers, manipulations and events; then come continuations, then observers.
+;;; Everything else that a program does happens between ticks, so a journal can repeat it. User code
+;;; may leave a tick by a non-local exit such as THROW. The timeline records which phases have
+;;; begun, and the others are run first.
 
 (defmacro in-phases ((place) &body phases)
-  "Run PHASES, (name form...), in order, but for those that the number in PLACE, which is 0 before
-and after, says have been begun."
+  "Run PHASES, (name form...), in order. PLACE holds the number of the last one that has begun; skip
+phases up to that. It is 0 before and after."
   `(progn
      ,@(loop for (name . forms) in phases
              collect `(when (< ,place (phase-number ,name))
@@ -22,7 +22,7 @@ and after, says have been begun."
 
 (declaim (inline begin-changing end-changing))
 (defun begin-changing (timeline world)
-  "Let this thread change WORLD in a tick of TIMELINE."
+  "Allow this thread to change WORLD in a tick of TIMELINE."
   (setf (timeline-ticking-p timeline) t
         (timeline-moments timeline) 0
         (world-writer world) (current-thread))
@@ -34,22 +34,22 @@ and after, says have been begun."
 
 (declaim (inline notice-parameters))
 (defun notice-parameters (simulation timeline)
-  "Look after the parameters of SIMULATION, at least when there is a command that may read them."
+  "Check and record the parameters of SIMULATION, at least if a command may read them in this tick."
   (when (or (timeline-pacing timeline)
             (timeline-inbox timeline)
             (noting-p simulation))
     (follow-settings simulation)))
 
 (defun set-parameter (name value)
-  "Give the parameter NAME the VALUE, as somebody did in the current run, which is repeated. Its
-journal has that in the same place."
+  "Set the parameter NAME to VALUE, as the journal of the current run says, which is repeated, and
+record it in the same place of the new journal."
   (setf (parameter-value name) value)
   (follow-settings *simulation*))
 
 (define-operator 'parameter '(name datum) #'set-parameter)
 
 (defun set-cleaning (settings)
-  "Let DIRTY-SIMULATION restore SETTINGS, lists (name value), as in the run that is repeated."
+  "Make DIRTY-SIMULATION restore SETTINGS, lists (name value), as in the run that is repeated."
   (setf *noise-before-cleaning* (settings-by-symbol settings))
   (follow-settings *simulation*))
 
@@ -74,7 +74,7 @@ journal has that in the same place."
              (some #'unsettled-hand-p (robot-hands robot))))))
 
 (defun settle (world)
-  "Settle what is inside of what in WORLD, tracks and grips."
+  "Update which parts are inside of things in WORLD, tracks and grips."
   (settle-robots world)
   (tend-tracks world)
   (check-grips world)
@@ -82,7 +82,7 @@ journal has that in the same place."
 
 (declaim (inline prolong-journal))
 (defun prolong-journal (simulation)
-  "Let the journal of SIMULATION, if it keeps one that is not full, reach to now."
+  "Extend the journal of SIMULATION to the current tick, if it keeps one that is not full."
   (let ((journal (simulation-journal simulation)))
     (when (and journal (not (journal-full-p journal)))
       (setf (journal-end journal) (simulation-tick simulation)))))
@@ -102,16 +102,16 @@ journal has that in the same place."
 
 (declaim (inline keep-fork-if-due))
 (defun keep-fork-if-due (simulation)
-  "Let SIMULATION, whose tick has ended, keep a fork of itself if it is to, and it is time."
+  "Keep a fork of SIMULATION, whose tick has ended, if it keeps forks and one is due."
   (let ((past (simulation-past simulation)))
     (when past
-      ;; What plans have rolled they will roll again.
-      (look-at-dice simulation past)
+      ;; Forks repeat what plans have rolled, so this is not recorded.
+      (update-rolled-dice simulation past)
       (when (>= (simulation-tick simulation) (past-next past))
-        (keep-fork-in-time simulation past)))))
+        (keep-fork-if-affordable simulation past)))))
 
 (defun tick (simulation)
-  "Pass one tick of SIMULATION, or what is left of one. To be called by its owner only."
+  "Pass one tick of SIMULATION, or the rest of one that was left. Called by the owner."
   (declare #.*hot* (type simulation simulation))
   (let ((timeline (simulation-timeline simulation))
         (world (simulation-world simulation)))
@@ -119,7 +119,7 @@ journal has that in the same place."
     (let ((*tick-dice* (timeline-tick-dice timeline)))
       (unwind-protect
            (in-phases ((timeline-phase timeline))
-             (:requests (when (simulation-past simulation) (note-dice simulation))
+             (:requests (when (simulation-past simulation) (remember-dice simulation))
                         (begin-changing timeline world)
                         (notice-parameters simulation timeline)
                         (when (timeline-inbox timeline) (perform-requests simulation timeline)))
@@ -130,7 +130,7 @@ journal has that in the same place."
                              (prolong-journal simulation)
                              (deliver-notifications timeline))
              (:observers (when (simulation-observers simulation) (tell-observers simulation))
-                         (when (simulation-past simulation) (note-dice simulation)))
+                         (when (simulation-past simulation) (remember-dice simulation)))
              (:participants (when (simulation-participants simulation)
                               (let-participants-act simulation)))
              (:keeping (keep-fork-if-due simulation)))

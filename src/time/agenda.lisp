@@ -21,7 +21,7 @@
 (defconstant +page-mask+ (1- +page-size+))
 
 (define-kind (event :include request :constructor (%make-event (function)))
-    "Something that FUNCTION, called with the event, will do in the tick TIME."
+    "A call of FUNCTION, with the event as its argument, in the tick TIME."
   (:fixed
    (function #'identity function "the function of the event that is called in its tick" :export)
    (interrupt nil (or null function)
@@ -31,7 +31,6 @@
    (time 0 tick-count "the tick that the event waits for" :export)
    (priority 0 fixnum "the event's priority; higher ones come first")
    (pending-p nil boolean "the event waits for its tick" :export))
-  ;; True while a bucket holds the event, pending or cancelled; and the next event in the bucket.
   (:link
    (queued-p nil boolean "a bucket holds the event, pending or cancelled")
    (next nil (or null event) "the event behind it in its bucket; the first behind the last")))
@@ -49,28 +48,28 @@
   "The events of one simulation."
   (tick 0 tick-count "the tick that the agenda has reached" :writable :export)
   (near (make-wheel) wheel "the events of the current page")
-  (far nil (or null wheel) "the events beyond that page; NIL as long as there were none, as in
-short runs" :writable)
+  (far nil (or null wheel) "the events of the later pages of the volume; NIL before the first"
+       :writable)
   (beyond nil bucket :writable)
   (pending 0 fixnum "how many events are pending" :writable :export)
   (unequal 0 fixnum "how many of those have a priority other than 0" :writable)
   (claims (make-hash-table :test 'equal) hash-table "the pending event of each resource that is not
 a RESOURCE structure; lists and strings are the same resource if they look the same"))
 
-(declaim (inline behind first-of))
-(defun behind (last event)
-  "Put EVENT behind LAST, which a bucket holds; return EVENT, which the bucket is to hold now."
+(declaim (inline add-behind detach-ring))
+(defun add-behind (last event)
+  "Add EVENT to the ring whose last event is LAST, or NIL; return EVENT, the new last one."
   (setf (event-queued-p event) t
         (event-next event) (if last (shiftf (event-next last) event) event))
   event)
 
-(define-modify-macro append-event (event) behind)
+(define-modify-macro append-event (event) add-behind)
 
-(defun first-of (last)
-  "Return the first of the events in the ring of LAST, or NIL, and cut the ring before it."
+(defun detach-ring (last)
+  "Cut the ring whose last event is LAST; return its first event. NIL if LAST is NIL."
   (and last (shiftf (event-next last) nil)))
 
-(defun shelve (agenda event)
+(defun put-in-bucket (agenda event)
   (declare #.*hot* (type agenda agenda) (type event event))
   (let* ((time (event-time event))
          (page (ash time (- +page-bits+)))
@@ -82,22 +81,22 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
              (append-event (svref far (logand page +page-mask+)) event)))
           (t (append-event (agenda-beyond agenda) event)))))
 
-(defun shelve-all (agenda event)
-  "Shelve EVENT and those that follow it anew, dropping the cancelled."
+(defun put-all-in-buckets (agenda event)
+  "Put EVENT and those that follow it into the buckets for their ticks; drop cancelled events."
   (loop while event
         do (let ((next (event-next event)))
              (if (event-pending-p event)
-                 (shelve agenda event)
+                 (put-in-bucket agenda event)
                  (setf (event-queued-p event) nil))
              (setf event next))))
 
 (defun turn-page (agenda)
   (let ((page (ash (agenda-tick agenda) (- +page-bits+))))
     (when (zerop (logand page +page-mask+))
-      (shelve-all agenda (first-of (shiftf (agenda-beyond agenda) nil))))
+      (put-all-in-buckets agenda (detach-ring (shiftf (agenda-beyond agenda) nil))))
     (when (agenda-far agenda)
-      (shelve-all agenda (first-of (shiftf (svref (agenda-far agenda) (logand page +page-mask+))
-                                           nil))))))
+      (put-all-in-buckets
+       agenda (detach-ring (shiftf (svref (agenda-far agenda) (logand page +page-mask+)) nil))))))
 
 ;;; Resources.
 
@@ -108,9 +107,8 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
       (resource-event resource)
       (values (gethash resource (agenda-claims agenda)))))
 
-;; As reading 81 says.
-(defun claim (agenda event resource)
-  "Make EVENT, or none if it is NIL, the pending event of RESOURCE."
+(defun set-pending-event (agenda event resource)
+  "Make EVENT, or none if it is NIL, the pending event of RESOURCE. See reading 81."
   (cond ((null resource))
         ((resource-p resource) (setf (resource-event resource) event))
         (event (setf (gethash resource (agenda-claims agenda)) event))
@@ -129,7 +127,7 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
   (decf (agenda-pending agenda))
   (unless (zerop (event-priority event)) (decf (agenda-unequal agenda))))
 
-(defconstant +longest-delay+ (ash 1 59) "For how many ticks an event waits at most.")
+(defconstant +longest-delay+ (ash 1 59) "The largest delay of an event, in ticks.")
 
 (defun queue-again (agenda event delay)
   "Queue EVENT, which is not pending, to run DELAY ticks from now (at least 1). See reading 79."
@@ -138,8 +136,8 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
     (reject-use "An event that still waits in its bucket cannot be queued again."))
   (setf (event-time event) (the tick-count (+ (agenda-tick agenda) (max 1 delay))))
   (activate agenda event)
-  (when (event-resource event) (claim agenda event (event-resource event)))
-  (shelve agenda event))
+  (when (event-resource event) (set-pending-event agenda event (event-resource event)))
+  (put-in-bucket agenda event))
 
 (defun queue-event (agenda delay function &key resource (priority 0) interrupt)
   "Queue a new event that calls FUNCTION with itself DELAY ticks from now (at least 1) and
@@ -153,10 +151,10 @@ interrupted."
     event))
 
 (defun cancel-event (agenda event)
-  "Make sure that EVENT, if pending, never runs. No handler is called."
+  "Remove EVENT from AGENDA if it is pending. No handler is called."
   (when (event-pending-p event)
     (deactivate agenda event)
-    (claim agenda nil (event-resource event))))
+    (set-pending-event agenda nil (event-resource event))))
 
 (defun interrupt-event (agenda event)
   "Cancel EVENT and call its interrupt handler."
@@ -172,11 +170,11 @@ interrupted."
   (setf (event-queued-p event) nil)
   (when (event-pending-p event)
     (deactivate agenda event)
-    (when (event-resource event) (claim agenda nil (event-resource event)))
+    (when (event-resource event) (set-pending-event agenda nil (event-resource event)))
     (funcall (event-function event) event)))
 
 (defun run-in-order (agenda event)
-  "Run EVENT and those that follow it, the rest also if one is left."
+  "Run EVENT and those that follow it, also after a non-local exit from one of them."
   (declare #.*hot* (type agenda agenda))
   (unwind-protect
        (loop while event
@@ -185,7 +183,7 @@ interrupted."
 
 (defun run-bucket (agenda last)
   (declare #.*hot* (type agenda agenda))
-  (let ((first (first-of last)))
+  (let ((first (detach-ring last)))
     (cond ((eq first last) (run-if-pending agenda first))
           ((zerop (agenda-unequal agenda)) (run-in-order agenda first))
           (t (call-each (lambda (event) (run-if-pending agenda event))
@@ -194,7 +192,7 @@ interrupted."
                                      #'> :key #'event-priority))))))
 
 (defun advance-agenda (agenda)
-  "Go on to the next tick and run the events due in it."
+  "Advance AGENDA to the next tick and run the events due in it."
   (declare #.*hot* (type agenda agenda))
   (let ((tick (incf (agenda-tick agenda))))
     (when (zerop (logand tick +page-mask+)) (turn-page agenda))
@@ -203,7 +201,7 @@ interrupted."
         (setf (svref (agenda-near agenda) (logand tick +page-mask+)) nil)
         (run-bucket agenda last)))))
 
-;;; Looking at it whole.
+;;; Listing and copying.
 
 (defun pending-events (agenda)
   "Return a list of the events pending in AGENDA: by time, then by priority, then as queued."
@@ -225,32 +223,32 @@ interrupted."
     (digest-state event digest)
     (digest-add digest (event-resource event))))
 
-;; Resources that know their events are copied with these.
+;; RESOURCE structures hold their pending events, so copying these copies that too.
 (defmethod copy-plan-value ((agenda agenda) fork)
   (let ((copy (note-copy agenda (make-agenda) fork)))
     (setf (agenda-tick copy) (agenda-tick agenda))
     (dolist (event (pending-events agenda) copy)
       (let ((twin (forked event fork)) (resource (event-resource event)))
         (activate copy twin)
-        (unless (resource-p resource) (claim copy twin (forked resource fork)))
-        (shelve copy twin)))))
+        (unless (resource-p resource) (set-pending-event copy twin (forked resource fork)))
+        (put-in-bucket copy twin)))))
 
-;;; Whose request was interrupted last on a resource, and by whose.
+;;; The last interruption on a resource.
 
 (defgeneric request-name (request)
-  (:documentation "Return what REQUEST asks for, as people call it.")
+  (:documentation "Return the name of what REQUEST asks for, as shown to users.")
   (:method ((request request)) (request-operator request)))
 
 (define-record (interruption (:constructor make-interruption (tick what asker by by-asker)))
-  "That WHAT, asked for by ASKER, was interrupted in TICK by BY, which BY-ASKER asked for."
-  (tick 0 tick-count "the tick in which it was" :export)
+  "A request of ASKER named WHAT was interrupted in TICK by one of BY-ASKER named BY."
+  (tick 0 tick-count "the tick of the interruption" :export)
   (what nil t "the name of what was interrupted" :export)
   (asker nil t "a note of who had asked for that" :export)
   (by nil t "the name of what interrupted it" :export)
   (by-asker nil t "a note of who had asked for that" :export))
 
 (defun note-interruption (request rival tick)
-  "Remember, for people to read, that RIVAL interrupts REQUEST on the resource of that in TICK."
+  "Record for users that RIVAL interrupts REQUEST on its resource in TICK."
   (let ((resource (event-resource request)))
     (when (resource-p resource)
       (setf (resource-interruption resource)

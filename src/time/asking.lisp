@@ -1,8 +1,8 @@
-;;;; asking.lisp -- having something done where a world stands still.
+;;;; asking.lisp -- calling a function between two ticks of a world, from any thread.
 
 (in-package :ars-magna.time)
 
-(export '(have-done))
+(export '(ask-later))
 
 (addition ask)
 (defun ask (object function)
@@ -15,30 +15,30 @@ another world, and if FUNCTION is aborted."
 
 (addition asking)
 (defmacro asking ((object) &body body)
-  "Run BODY as ASK would a function."
+  "Run BODY as ASK calls a function."
   `(ask ,object (lambda () ,@body)))
 
-;;; Of another thread.
+;;; Questions of other threads.
 
 (defstruct (question (:constructor make-question (function)) (:copier nil))
-  "A question of another thread, and the answer."
+  "A function that another thread wants called, and the result."
   (function nil :type function :read-only t)
   (answered (make-semaphore "answer") :type t :read-only t)
   (values '() :type list)
   (trouble nil :type t)
-  ;; The asking thread has left.
+  ;; True if the asking thread no longer waits.
   (given-up-p nil :type t))
 
 (defun note-trouble (question condition)
   (setf (question-trouble question)
         (if (typep condition 'serious-condition) condition :aborted)))
 
-;; The answering user thread may itself be under a time limit, which must not apply to the question.
+;; An answering user thread may itself have a time limit, which does not apply to the question.
 (defun for-asker-p (condition)
   "True if CONDITION, signalled while this thread answers a question, belongs to the asking thread."
   (or (own-thread-p) (not (typep condition 'time-limit))))
 
-(defun call-for-other (question)
+(defun compute-answer (question)
   (setf (question-trouble question) :aborted)
   (restart-case
       (handler-case
@@ -53,23 +53,23 @@ another world, and if FUNCTION is aborted."
                     (question-trouble question) nil)))
         ((and serious-condition (satisfies for-asker-p)) (condition)
           (note-trouble question condition)))
-    (abort () :report "Tell who asked that it was aborted.")))
+    (abort () :report "Tell the asking thread that it was aborted.")))
 
 (defun answer (question)
   (unless (question-given-up-p question)
     (in-any-case
-      (call-for-other question)
+      (compute-answer question)
       (signal-semaphore (question-answered question)))))
 
-(defun result-of (question)
+(defun answer-values (question)
   (let ((trouble (question-trouble question)))
     (cond ((null trouble) (values-list (question-values question)))
           ((eq trouble :aborted)
-           (reject-use "What was to be done in the simulator's thread was aborted."))
+           (reject-use "The function called in the simulator's thread was aborted."))
           (t (error trouble)))))
 
 (defun check-outside-ticks ()
-  "Signal MISUSE inside a tick: a thread in a tick answers no questions, so it may ask none."
+  "Signal MISUSE inside a tick: a thread there answers no questions, so it must not ask any."
   (when (and *simulation* (timeline-ticking-p (timeline-of *simulation*))
              (owner-p *simulation*))
     (reject-use "A tick of ~A is under way here. Another world that is live can be asked or ~
@@ -77,13 +77,13 @@ another world, and if FUNCTION is aborted."
                 (timeline-name (timeline-of *simulation*)))))
 
 (defun await-answer (question custody)
-  (loop until (wait-for-other (question-answered question))
+  (loop until (wait-while-answering (question-answered question))
         do (release-if-dead custody)
-           ;; A thread that gives up the world leaves pending questions to a waiting thread.
+           ;; If no thread owns the world any more, this one answers the pending questions.
            (call-with-custody custody (constantly nil) (constantly nil))))
 
 (defun keeping-seclusion (function)
-  "Return a function that calls FUNCTION as secluded as this code is, in whichever thread."
+  "Return a function that calls FUNCTION, in any thread, as secluded as this code is."
   (let ((seclusion *seclusion*))
     (lambda () (let ((*seclusion* seclusion)) (funcall function)))))
 
@@ -95,16 +95,16 @@ another world, and if FUNCTION is aborted."
     (in-any-case
       (await-answer question custody)
       (setf (question-given-up-p question) t))
-    (result-of question)))
+    (answer-values question)))
 
-(defun have-done (object function)
-  "Have FUNCTION called where the world of OBJECT stands still, as ASK does, but do not wait for
-that. Interrupts wait, but for the extent of ALLOWING-INTERRUPTS. Return nothing."
+(defun ask-later (object function)
+  "Have FUNCTION called between two ticks of the world of OBJECT, as by ASK, without waiting for it.
+It is called with interrupts deferred, except within ALLOWING-INTERRUPTS. Return nothing."
   (let ((custody (timeline-custody (timeline-of object)))
         (question (make-question (keeping-seclusion function))))
     (deferring-interrupts
       (atomic-push (lambda () (deferring-interrupts (answer question)))
                    (custody-questions custody))
-      ;; A thread that has custody answers before it gives that up.
+      ;; If this thread gets custody, it answers when it gives that up.
       (call-with-custody custody (constantly nil) (lambda () (wake-holder custody))))
     (values)))

@@ -4,14 +4,14 @@
 
 (export '(stands-still-p start-pacing))
 
-;;; While all is idle the thread sleeps, and simulated time stands still. Between ticks it answers
-;;; questions. It has the world in custody until it ends, in whatever way. What a tick is, and
-;;; whether there is anything to do, is said by functions.
+;;; While the run is idle the thread sleeps, and simulated time stands still. Between ticks it
+;;; answers questions. It owns the world until it ends, for any reason. Functions given to it pass a
+;;; tick, and tell whether there is anything to do.
 
 ;;; Resting.
 
 (defun sleep-until-woken (custody seconds &optional (may-p (constantly t)))
-  "Sleep for SECONDS if the function MAY-P allows it, but wake up when another thread asks."
+  "Sleep for SECONDS, or until another thread asks a question, if the function MAY-P returns true."
   (setf (custody-asleep-p custody) t)
   (memory-barrier)
   (when (and (funcall may-p) (null (custody-questions custody)))
@@ -19,7 +19,7 @@
   (setf (custody-asleep-p custody) nil))
 
 (defun held-p (pacing)
-  "True if no tick is to pass, since PACING is paused."
+  "True if PACING is paused and has no ticks left to pass by request."
   (and (pacing-paused-p pacing) (zerop (pacing-steps pacing))))
 
 (defun stands-still-p (simulation)
@@ -27,7 +27,7 @@
   (if-paced (pacing simulation) (held-p pacing)))
 
 (defun clock-standing-still-p (pacing)
-  "True if no tick may pass, because PACING was paused or stopped."
+  "True if no tick may pass because PACING was paused or stopped."
   (or (pacing-stopping-p pacing) (held-p pacing)))
 
 (defun nothing-to-do-p (pacing)
@@ -50,8 +50,8 @@
 
 ;;; Passing ticks.
 
-(defun pause-for (pacing trouble)
-  "Pause the clock of PACING, as TROUBLE has come up that no user code answers for."
+(defun pause-after-failure (pacing trouble)
+  "Pause the clock of PACING because of TROUBLE, a condition that does not come from user code."
   (let ((text (format nil "The simulator failed and is paused; RESUME goes on: ~A"
                       (brief-text trouble))))
     (trouble-set trouble text text))
@@ -59,18 +59,18 @@
         (pacing-trouble pacing) (brief-text trouble)))
 
 (defun pass-tick (pacing)
-  "Pass a tick. Trouble that no user code answers for is reported and pauses the clock."
+  "Pass a tick. An error that does not come from user code is reported and pauses the clock."
   (handler-case (funcall (pacing-tick pacing))
-    ((or error storage-condition) (trouble) (pause-for pacing trouble)))
+    ((or error storage-condition) (trouble) (pause-after-failure pacing trouble)))
   (when (plusp (pacing-steps pacing)) (decf (pacing-steps pacing))))
 
 (defun run-paced (custody pacing)
-  "Pass ticks as PACING says, until it is to stop or another thread has been handed CUSTODY."
+  "Pass ticks at the pace of PACING until that is stopped or another thread has CUSTODY."
   (loop with due = (seconds-now)
         until (or (pacing-stopping-p pacing) (not (mine-p custody)))
         do (answer-questions custody)
            (cond ((nothing-to-do-p pacing)
-                  ;; The timeout covers tests that come true without anybody posting (reading 88).
+                  ;; The timeout covers tests that come true without a request (reading 88).
                   (sleep-until-woken custody 1 (lambda ()
                                                  (and (nothing-to-do-p pacing)
                                                       (not (pacing-stopping-p pacing)))))
@@ -80,8 +80,8 @@
                     (unless (clock-standing-still-p pacing)
                       (pass-tick pacing))))))
 
-(defun let-go (custody pacing)
-  "Give back what the thread of PACING has, which ends, perhaps unasked."
+(defun release-pacing (custody pacing)
+  "Release what the thread of PACING holds. That thread ends, perhaps because it was killed."
   (in-any-case
     (unless (pacing-stopping-p pacing)
       (setf (pacing-stopping-p pacing) t)
@@ -96,8 +96,8 @@
     (signal-semaphore (pacing-ended pacing))))
 
 (defun run-thread (pacing ready start)
-  "Signal READY as soon as whatever ends this thread finds it prepared; run PACING after START, if
-the custody has been handed over by then."
+  "Signal READY once this thread can be ended at any moment. After START, run PACING, if custody has
+been handed over by then."
   (let* ((custody (pacing-custody pacing))
          (*held* (list custody))
          (*user-calls* (pacing-calls pacing)))
@@ -105,7 +105,7 @@ the custody has been handed over by then."
       (progn (signal-semaphore ready)
              (wait-on-semaphore start)
              (run-paced custody pacing))
-      (let-go custody pacing))))
+      (release-pacing custody pacing))))
 
 ;;; Starting.
 
@@ -118,8 +118,8 @@ the custody has been handed over by then."
     (start-thread (lambda () (funcall caller (lambda () (watch-for-hogs pacing))))
                   (format nil "watcher of the ~A" name))))
 
-;; A time limit may come at any moment: then the threads end, or the world is live as if it had come
-;; a moment later. START is signalled in any case, so that no thread waits for it for ever.
+;; A time limit may interrupt this at any moment: then the threads end, or the world is live. START
+;; is signalled in any case, so that no thread waits for it for ever.
 (defun start-threads (pacing caller)
   (let ((ready (make-semaphore "ready"))
         (start (make-semaphore "start"))
@@ -139,11 +139,11 @@ the custody has been handed over by then."
         (signal-semaphore start)))))
 
 (defun start-pacing (timeline tick idle-p rate caller &key paused-p)
-  "Start a thread that passes ticks of TIMELINE at RATE by calling TICK while IDLE-P is false, both
-functions without arguments; if PAUSED-P, not before RESUME. The thread works inside CALLER, a
-function of a function that calls it, and takes over the custody of TIMELINE from this thread.
-Return TIMELINE. Signals MISUSE if it is live already, WRONG-ARGUMENT for a rate that is neither a
-number from 0.001 to 1000000 nor :FREE."
+  "Start a thread that passes ticks of TIMELINE at RATE by calling TICK while IDLE-P returns false;
+if PAUSED-P is true, only after RESUME. The thread does its work in a function that it passes to
+CALLER, which calls that. It takes over custody of TIMELINE from this one. Return TIMELINE. Signals
+MISUSE if it is live already, WRONG-ARGUMENT for a rate that is neither a number from 0.001 to
+1000000 nor :FREE."
   (check-rate rate)
   (when (live-p timeline) (reject-use "~A runs live already." (timeline-name timeline)))
   (let ((pacing (make-pacing timeline rate tick idle-p

@@ -1,27 +1,26 @@
-;;;; custody.lisp -- which thread may touch a world, and how others have it do so.
+;;;; custody.lisp -- which thread owns a world, and how other threads send it functions to call.
 
 (in-package :ars-magna.time)
 
-(export '(answer-questions call-with-custody mine-p answer-meanwhile))
+(export '(answer-questions call-with-custody mine-p answer-own-questions))
 
-;;; A world and the successive timelines of its runs are in the custody of one thread at a time: the
-;;; one that paces the world, or one that passes ticks or changes the world, while it does. A thread
-;;; takes custody if no other has it, and gives it up; it may hand it over to another thread. A
-;;; thread that cannot get custody leaves a question, a function. The thread in custody calls that
-;;; between two ticks, or before it gives custody up.
+;;; One thread at a time owns a world and the successive timelines of its runs: it has custody. It
+;;; paces the world, or has custody while it passes ticks or changes the world. A thread takes
+;;; custody if no other has it, and gives it up or hands it over to another thread. A thread that
+;;; cannot get custody leaves a question, a function. The owner calls that between two ticks, or
+;;; before it gives custody up.
 
 (define-record (custody (:constructor make-custody ()))
-  "Which thread may touch a world."
+  "Which thread owns a world."
   (thread nil t :writable)
-  (questions '() t
-             "questions of other threads to the one in custody, newest first" :writable :export)
+  (questions '() t "questions of other threads to the owner, newest first" :writable :export)
   (wake-up (make-semaphore "custody") t)
   (asleep-p nil t :writable)
-  (pacing nil t "how the thread that has it paces the world, or NIL if it does not" :writable)
+  (pacing nil t "how the owner paces the world, or NIL if it does not" :writable)
   (starter nil t "the thread that is starting the world, or NIL. Can be set" :writable :export))
 
 (defvar *held* '()
-  "The custodies that this thread has and has not handed over.")
+  "The custodies that this thread has taken and not given up.")
 
 (declaim (inline mine-p))
 (defun mine-p (custody)
@@ -29,11 +28,11 @@
   (eq (custody-thread custody) (current-thread)))
 
 (defun take-custody (custody)
-  "Take CUSTODY for this thread, if no other has it. True if it was taken."
+  "Take CUSTODY for this thread, if no thread has it. True if it was taken."
   (swap-if (custody-thread custody) nil (current-thread)))
 
 (defun answer-questions (custody)
-  "Call the functions that other threads have left for CUSTODY, in order."
+  "Call the functions that other threads have left for the owner of CUSTODY, in order."
   (loop for questions = (custody-questions custody)
         while questions
         when (swap-if (custody-questions custody) questions '())
@@ -50,8 +49,8 @@
              (give-up-custody custody)))))
 
 (defun call-with-custody (custody function otherwise)
-  "Call FUNCTION with CUSTODY, OTHERWISE if another thread has it. Return the values. These can be
-interrupted if this thread could before."
+  "Call FUNCTION with CUSTODY, or OTHERWISE if another thread has it. Return the values. Both calls
+can be interrupted if this thread could be before."
   (if (mine-p custody)
       (funcall function)
       (let ((open-p (not (interrupts-deferred-p))))
@@ -70,7 +69,7 @@ interrupted if this thread could before."
 ;;; Waiting.
 
 (defun wake-holder (custody)
-  "Wake the thread that has CUSTODY if it sleeps: there may be something to do."
+  "Wake the thread that has CUSTODY if it sleeps, as there may be work for it."
   (when (custody-asleep-p custody)
     (signal-semaphore (custody-wake-up custody))))
 
@@ -80,15 +79,15 @@ interrupted if this thread could before."
     (when (and thread (not (thread-alive-p thread)))
       (swap-if (custody-thread custody) thread nil))))
 
-(defun answer-meanwhile ()
-  "Answer what others have asked of the worlds that this thread has in custody: they may be waiting
-for it while it waits for them."
+(defun answer-own-questions ()
+  "Answer the questions about worlds that this thread owns. This prevents a deadlock with threads
+that wait for it while it waits for them."
   (dolist (custody *held*)
     (when (mine-p custody) (answer-questions custody))))
 
-(defun wait-for-other (semaphore &optional (seconds 0.2))
-  "Wait for SEMAPHORE for a moment, of SECONDS at most. True if it came."
-  (answer-meanwhile)
+(defun wait-while-answering (semaphore &optional (seconds 0.2))
+  "Wait for SEMAPHORE for at most SECONDS, after answering questions. True if it was signalled."
+  (answer-own-questions)
   (yield-foreground)
-  ;; A thread in custody must check for questions often.
+  ;; A thread that owns a world must check for questions often.
   (wait-on-semaphore semaphore (if *held* (min seconds 0.002) seconds)))

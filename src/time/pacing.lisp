@@ -6,8 +6,8 @@
           hog-seconds seconds-now stop-pacing claim-pacing claimed-p unclaim-pacing call-alone
           users-code-under-way users-code-broken-p abort-hog))
 
-;;; A thread passes ticks at the pace RATE, a number of ticks per second or :FREE, while there is
-;;; anything to do (clock.lisp). Other threads control it by setting its fields and waking it.
+;;; A thread passes ticks at the pace RATE, in ticks per second or :FREE, while there is anything to
+;;; do (clock.lisp). Other threads control it: they set slots of the PACING structure and wake it.
 
 (addition *default-rate*)
 (defparameter *default-rate* 20
@@ -24,23 +24,23 @@ before a warning names it; also how long STOP-SIMULATOR waits before it interrup
   (if (typep *hog-seconds* '(real 0.05 1000000)) *hog-seconds* 0.05))
 
 (defstruct (pacing (:constructor make-pacing (timeline rate tick idle-p calls)) (:copier nil))
-  "How a timeline is paced. TICK passes one tick, IDLE-P says whether none is needed, CALLS tells
-what users' code the thread is in."
+  "How a timeline is paced. The function TICK passes one tick; IDLE-P returns true if none is
+needed. CALLS records which users' code the thread is in."
   (timeline nil :type timeline :read-only t)
   (rate nil)
   (tick nil :type function :read-only t)
   (idle-p nil :type function :read-only t)
   (calls nil :type user-calls :read-only t)
   (thread nil)
-  ;; True when the thread has ended; and the condition that wakes those waiting for it.
+  ;; True when the thread has ended; and the semaphore that wakes those waiting for it.
   (over-p nil)
   (ended (make-semaphore "ended") :read-only t)
   (paused-p nil)
   ;; True when it should end; :REPLACED if another run follows and no thread has stopped this one.
   (stopping-p nil)
-  ;; The failure, in words, that it is paused for, or NIL.
+  ;; A text about the failure that has paused it, or NIL.
   (trouble nil :type (or null string))
-  ;; The number of the call of users' code that was named last for keeping the thread waiting.
+  ;; The number of the call of users' code that a warning about slow code has named last.
   (hog nil)
   ;; How many ticks to pass although it is paused.
   (steps 0 :type fixnum))
@@ -52,11 +52,11 @@ what users' code the thread is in."
   (signal-semaphore (custody-wake-up (pacing-custody pacing))))
 
 (defun seconds-now ()
-  "Return the real time, in seconds since some moment. No result may depend on it."
+  "Return the real time, in seconds since an arbitrary moment. No result may depend on it."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
 (defmacro if-paced ((pacing object) &body body)
-  "Run BODY with PACING bound to how the run of OBJECT is paced. NIL if it never was."
+  "Run BODY with PACING bound to the pacing of the run of OBJECT. Return NIL if it never ran live."
   `(let ((,pacing (timeline-pacing (timeline-of ,object))))
      (when ,pacing ,@body)))
 
@@ -83,25 +83,25 @@ what users' code the thread is in."
   "True if an interactive user, where this thread waits, can resume a paused run.")
 
 (defun clock-trouble (simulation)
-  "Return in words what the live SIMULATION has failed by, if it is paused for that; else NIL."
+  "Return a text about the failure that has paused the live SIMULATION, or NIL."
   (if-paced (pacing simulation) (pacing-trouble pacing)))
 
 (defun pace (simulation)
   "Return the pace of SIMULATION: ticks per second, or :FREE; NIL if it never ran live."
   (if-paced (pacing simulation) (pacing-rate pacing)))
 
-;;; Steering.
+;;; Pausing and resuming.
 
 (define-argument-type 'rate
   (lambda (value) (or (eq value :free) (and (finite-p value) (<= 1/1000 value 1000000))))
   "a number of ticks per second, from 0.001 to 1000000, or :free")
 
 (defun check-rate (rate)
-  "Signal WRONG-ARGUMENT unless RATE can be the pace of a clock."
+  "Signal WRONG-ARGUMENT unless RATE is a valid pace."
   (check-of-type 'set-rate 'rate rate 'rate))
 
-(defun steer (simulation paused-p steps)
-  "Pause SIMULATION, if live, if PAUSED-P, after STEPS more ticks; else resume it."
+(defun set-paused (simulation paused-p steps)
+  "If SIMULATION is live, pause it after STEPS more ticks if PAUSED-P is true, else resume it."
   (if-paced (pacing simulation)
     (setf (pacing-steps pacing) steps
           (pacing-paused-p pacing) paused-p
@@ -112,16 +112,16 @@ what users' code the thread is in."
 (addition pause)
 (defun pause (&optional (simulation (current-simulation)))
   "Pause the live SIMULATION after its current tick, until RESUME. Returns nothing."
-  (steer simulation t 0))
+  (set-paused simulation t 0))
 
 (addition resume)
 (defun resume (&optional (simulation (current-simulation)))
   "Resume the live SIMULATION after PAUSE. Returns nothing."
-  (steer simulation nil 0))
+  (set-paused simulation nil 0))
 
 (defun let-pass (count simulation)
   "Pass COUNT ticks of the live SIMULATION, at its pace, then pause it. Returns nothing."
-  (steer simulation t count))
+  (set-paused simulation t count))
 
 (addition set-rate)
 (defun set-rate (rate &optional (simulation (current-simulation)))
@@ -133,30 +133,29 @@ RATE. Signals WRONG-ARGUMENT."
     (wake-clock pacing))
   rate)
 
-;;; The thread ends after its tick. User code that keeps it from ending is aborted only if the
-;;; caller that stops the run says so.
+;;; The thread ends after its tick. User code that does not return is aborted only when somebody
+;;; stops the run.
 
 (defun ended-p (pacing seconds)
   "Wait for the thread of PACING to end, for SECONDS. True if it has."
   (loop with due = (+ (seconds-now) seconds)
         ;; A thread that was woken may have been interrupted before it could wake the next one.
         when (or (pacing-over-p pacing)
-                 (wait-for-other (pacing-ended pacing) (min seconds 0.2)))
-          ;; Others may be waiting too.
-          do (signal-semaphore (pacing-ended pacing))
+                 (wait-while-answering (pacing-ended pacing) (min seconds 0.2)))
+          do (signal-semaphore (pacing-ended pacing)) ; for other waiting threads
              (return t)
         until (> (seconds-now) due)))
 
 (defun interrupt-hog (pacing)
-  "Abort the users' code that the thread of PACING is in, if it is in any. True if so."
+  "Abort the users' code that the thread of PACING is in. True if there is any."
   (let* ((calls (pacing-calls pacing)) (count (user-calls-count calls)))
     (when (user-calls-origin calls)
       (interrupt-thread (pacing-thread pacing) (lambda () (abort-user-code count)))
       t)))
 
 (defun await-end (pacing)
-  "Wait for the thread of PACING to end. Users' code that keeps it from that is interrupted, and
-again if it does not go. Signals MISUSE if that does not help either."
+  "Wait for the thread of PACING to end. Interrupt users' code that does not return, repeatedly.
+Signals MISUSE if that does not help."
   (loop repeat 10
         when (ended-p pacing (hog-seconds))
           return t
@@ -168,7 +167,7 @@ again if it does not go. Signals MISUSE if that does not help either."
                               (and origin (text-of-origin origin))))))
 
 (defun stop (pacing)
-  "End the thread of PACING after its current tick, and wait for that if it is another than this."
+  "End the thread of PACING after its current tick. Wait until it has ended, unless it is this one."
   (swap-if (pacing-stopping-p pacing) nil t)
   (wake-clock pacing)
   (unless (eq (pacing-thread pacing) (current-thread))
@@ -176,7 +175,7 @@ again if it does not go. Signals MISUSE if that does not help either."
 
 (defun claim-pacing (timeline)
   "Ask the thread that paces TIMELINE to end after its current tick, because this thread will
-replace the run. True if it was live and not yet asked to end."
+replace the run. True if the run was live and had not been stopped."
   (if-paced (pacing timeline) (swap-if (pacing-stopping-p pacing) nil :replaced)))
 
 (defun claimed-p (timeline)
@@ -184,18 +183,17 @@ replace the run. True if it was live and not yet asked to end."
   (if-paced (pacing timeline) (eq :replaced (pacing-stopping-p pacing))))
 
 (defun unclaim-pacing (timeline)
-  "Make the run that may be about to replace that of TIMELINE not live, since it was stopped."
+  "Keep a run that is about to replace that of TIMELINE from becoming live, as this was stopped."
   (if-paced (pacing timeline) (swap-if (pacing-stopping-p pacing) :replaced t)))
 
 (defun stop-pacing (timeline)
-  "End the thread that paces TIMELINE after its current tick, and wait for that if it is another
-than this. Return TIMELINE. Signals MISUSE if it is in users' code that does not let itself be
-interrupted."
+  "End the thread that paces TIMELINE after its current tick. Wait until it has ended, unless it is
+this one. Return TIMELINE. Signals MISUSE if it is in users' code that cannot be interrupted."
   (if-paced (pacing timeline) (stop pacing))
   timeline)
 
 (defun call-alone (timeline function)
-  "Stop the thread that paces the world of TIMELINE; call FUNCTION in custody and return its value."
+  "Stop the thread that paces the world of TIMELINE; call FUNCTION with custody, return its value."
   (let ((custody (timeline-custody timeline)))
     (loop
       (block busy
@@ -207,13 +205,11 @@ interrupted."
                                            (ask-holder custody (constantly nil))))
                                      (return-from busy))))))))
 
-;;; Users' code that keeps a live simulation waiting is named while it does.
-
-;;; A second thread checks twice in *HOG-SECONDS* where the simulation's thread is. A function seen
-;;; three times in a row has run for that long.
+;;; Warnings about slow users' code. A second thread checks twice in *HOG-SECONDS* where the
+;;; simulation's thread is. A call seen three times in a row has lasted for that long.
 
 (defun watch-for-hogs (pacing)
-  "Warn of what users' code the thread of PACING does not get out of, until that ends."
+  "Warn about users' code that does not return to the thread of PACING, until that thread ends."
   (loop with calls = (pacing-calls pacing) and seen = nil and looks = 0
         until (ended-p pacing (/ (hog-seconds) 2))
         do (let ((origin (user-calls-origin calls)) (count (user-calls-count calls)))
@@ -226,8 +222,8 @@ interrupted."
                                           (text-of-origin origin) (hog-seconds))))))))
 
 (defun users-code-under-way (simulation)
-  "Return in words whose code the thread of the live SIMULATION is in, and how many calls of such
-code it has begun; NIL if it is in none, or one that waits in a debugger."
+  "Return a text that names the users' code that the thread of the live SIMULATION is in, and how
+many calls of users' code it has begun. NIL if there is none, or if it waits in a debugger."
   (if-paced (pacing simulation)
     (let* ((calls (pacing-calls pacing))
            (origin (and (not (user-calls-waiting-p calls)) (user-calls-origin calls))))
@@ -240,7 +236,7 @@ code it has begun; NIL if it is in none, or one that waits in a debugger."
       (and (user-calls-origin calls) (user-calls-waiting-p calls) t))))
 
 (defun abort-hog (simulation)
-  "Abort the users' code that was named for keeping the live SIMULATION waiting. True if any."
+  "Abort the users' code of the live SIMULATION that a warning has named as slow. True if any."
   (if-paced (pacing simulation)
     (and (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
          (interrupt-hog pacing))))

@@ -1,6 +1,6 @@
 ;;;; package.lisp -- the time layer: when events happen, and which thread may run them.
 
 (ars-magna.host:define-package :ars-magna.time
-  (:documentation "Events, resources and priorities; requests from any thread and the timeline that
-they wait in; the pace of a live one. Knows nothing of worlds, robots and journals.")
+  (:documentation "Events, resources and priorities; requests from any thread, and the timeline in
+which they wait; the pace of a live run. Independent of worlds, robots and journals.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying))

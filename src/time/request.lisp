@@ -1,32 +1,32 @@
-;;;; request.lisp -- something asked of a run, as data, and how it is carried out.
+;;;; request.lisp -- requests to a run, as data, and how they are performed.
 
 (in-package :ars-magna.time)
 
 (export '(request request-entry perform resource note-asked phase-number changing-phase-p
           telling-phase-p))
 
-;;; A request has the name of an operator and its arguments. It waits in a timeline (see
-;;; timeline.lisp) until a tick begins, and is then performed, in the order of asking. Layers above
-;;; include the structure, add slots and methods.
+;;; A request is the name of an operator and its arguments. It waits in a timeline (timeline.lisp)
+;;; until the next tick begins. Requests are performed in the order in which they were made. Layers
+;;; above include the structure, and add slots and methods.
 
 (define-kind (request :constructor (make-request (operator arguments)))
-    "Something asked of a run."
+    "A request to a run."
   (:fixed
-   (operator nil t "what is asked for: an operator's name, or what has one" :export)
-   (arguments '() list "what it is asked for with" :export)
+   (operator nil t "the requested operator: its name, or an object that has one" :export)
+   (arguments '() list "the arguments of the operator" :export)
    (forked-p (goes-on-in-forks-p) boolean
              "true if the asker is copied to forks of the run" :export)
-   (phase 0 fixnum "the phase of the tick in which it was asked for, 0 between ticks" :export))
+   (phase 0 fixnum "the phase of the tick in which it was made, 0 between ticks" :export))
   (:memory
-   (asker nil t "a note of who asked for it" :export)))
+   (asker nil t "a note of who made it" :export)))
 
 (defgeneric perform (request timeline)
   (:documentation
-   "Carry REQUEST out, at the start of a tick of TIMELINE, or when that ends for good. Called by
-the owner."))
+   "Perform REQUEST, at the start of a tick of TIMELINE or at the end of its run. Called by the
+owner."))
 
 (defgeneric request-entry (request)
-  (:documentation "Return what a journal notes of REQUEST: a list (operator argument ...).")
+  (:documentation "Return the journal entry of REQUEST: a list (operator argument ...).")
   (:method ((request request))
     (cons (request-operator request) (request-arguments request))))
 
@@ -36,21 +36,21 @@ the owner."))
 ;;; Resources: parts that do one thing at a time (manual 3.1.2).
 
 (define-kind (resource :constructor nil)
-    "What commands and events compete for: a robot or one of its parts. Anything else may serve as
-a resource of SCHEDULE too; these carry their pending event themselves, which is faster."
+    "A robot or one of its parts: commands and events compete for it. SCHEDULE takes any object as
+a resource; these are faster, as they hold their pending event."
   (:state
    (event nil t "the event or command that is pending on the resource, or NIL" :export))
   (:memory
    (interruption nil t "what was interrupted last on the resource, or NIL" :export)
-   (asked 0 atomic-count "how often the resource was asked for: whoever gives it one command after
-the other can tell by that whether somebody else came between" :export)))
+   (asked 0 atomic-count "how many requests for the resource were made: a program that issues a
+sequence of commands detects by it that others came between" :export)))
 
 (defun note-asked (resource)
-  "Note that RESOURCE is asked for, if it is one that can tell."
+  "Count a request for RESOURCE, if that is a RESOURCE structure."
   (when (resource-p resource) (atomic-incf (resource-asked resource))))
 
-;;; Phases are counted from 1; 0 is between ticks. The run's tick defines what happens in each. In
-;;; phases that change the world, a fork repeats by itself whatever user code does there.
+;;; Phases are counted from 1; 0 is between ticks. The run's tick defines what happens in each. User
+;;; code that runs while the world changes runs again in forks, so these repeat what it does.
 
 (define-constant +phases+
     '(:requests :events :kickers :settling :continuations :observers :participants :keeping)
@@ -58,7 +58,7 @@ the other can tell by that whether somebody else came between" :export)))
   :documentation "The names of the phases of a tick, in order.")
 
 (defmacro phase-number (name)
-  "Return the number of the phase of a tick that is called NAME, a keyword, not evaluated."
+  "Return the number of the phase of a tick called NAME, a keyword that is not evaluated."
   (1+ (or (position name +phases+)
           (reject-name "phase" name +phases+))))
 

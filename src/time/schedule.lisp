@@ -4,10 +4,10 @@
 
 (export '(call-scheduled abandon release-resource scheduled))
 
-;;; All that is asked of a resource, by SCHEDULE, GRAB-RESOURCE or a command, is taken in the order
-;;; of asking, at the start of the next tick. Events of SCHEDULE meet on a resource by priority: the
-;;; higher stays, of equals the one that was there. Whichever loses is interrupted. A command takes
-;;; over whatever is there; it has the priority 0 itself.
+;;; Requests for a resource, by SCHEDULE, GRAB-RESOURCE or a command, are performed in the order in
+;;; which they were made, at the start of the next tick. Of two events of SCHEDULE, the one with the
+;;; higher priority stays, of equals the earlier; the other is interrupted. A command interrupts any
+;;; event. It has the priority 0.
 
 (define-kind (scheduled :include event
                         :constructor (make-scheduled
@@ -16,18 +16,18 @@
                                          (interrupt #'interrupt-scheduled))))
     "An event of SCHEDULE."
   (:fixed
-   (body nil function "what the event does, a function")
-   (on-interrupt nil (or null function) "what to call if the event loses, or NIL")
-   (test nil (or null function) "what must be true for the event to happen, or NIL")
-   (timeout nil (or null integer) "after how many ticks it is given up, or NIL")
-   (timer 1 integer "in how many ticks it may happen, at the earliest")
+   (body nil function "the function of the event")
+   (on-interrupt nil (or null function) "the function to call if the event loses, or NIL")
+   (test nil (or null function) "a function that must return true for the event to happen, or NIL")
+   (timeout nil (or null integer) "after how many ticks the event is dropped, or NIL")
+   (timer 1 integer "in how many ticks it may happen at the earliest")
    (agenda nil (or null agenda) "the agenda that it waits in"))
   (:state
    (deadline nil (or null integer) "the last tick in which it may happen, or NIL")))
 
-;; Requests are performed in a tick, before its number counts.
+;; Requests are performed in a tick before the agenda has advanced to it.
 (defun call-in-tick (function timeline)
-  "Call FUNCTION with the current tick of TIMELINE in effect, as for all its user code."
+  "Call FUNCTION with the agenda of TIMELINE at the current tick, as for other user code."
   (let ((agenda (timeline-agenda timeline)))
     (cond ((= (phase-number :requests) (timeline-phase timeline))
            (incf (agenda-tick agenda))
@@ -40,16 +40,16 @@
       (call-in-tick (lambda () (call-user-code handler "an event's interrupt handler"))
                     (timeline-of *simulation*)))))
 
-(defun hopeless-p (event)
-  "True if EVENT evaporates before it may happen."
+(defun expires-first-p (event)
+  "True if the timeout of EVENT is over before its timer."
   (and (scheduled-deadline event)
        (< (scheduled-timeout event) (scheduled-timer event))))
 
 (defun run-scheduled (event)
-  "Do what EVENT is to do if its test is true; if not, try again in the next tick (reading 80)."
+  "Call the body of EVENT if its test is true; if not, try again in the next tick (reading 80)."
   (let* ((test (scheduled-test event)) (deadline (scheduled-deadline event))
          (left (if deadline (- deadline (event-time event)) 1)))
-    (cond ((or (minusp left) (hopeless-p event)))
+    (cond ((or (minusp left) (expires-first-p event)))
           ((or (null test) (call-user-code test "a scheduled event's :when"))
            (call-user-code (scheduled-body event) "a scheduled event"))
           ((plusp left) (queue-again (scheduled-agenda event) event 1)))))
@@ -58,7 +58,7 @@
   (setf (scheduled-agenda event) agenda
         (scheduled-deadline event) (and (scheduled-test event) (scheduled-timeout event)
                                         (+ (agenda-tick agenda) (scheduled-timeout event))))
-  (queue-again agenda event (if (hopeless-p event)
+  (queue-again agenda event (if (expires-first-p event)
                                 (scheduled-timeout event)
                                 (scheduled-timer event))))
 
@@ -76,8 +76,8 @@
 (defun call-scheduled (function resource
                        &key (priority 0) interrupt when timeout (timer 1)
                             (simulation (current-simulation)))
-  "Ask for an event that calls FUNCTION. See SCHEDULE, of which this is the function. Returns
-nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
+  "Request an event that calls FUNCTION, as SCHEDULE does. Returns nothing. Signals WRONG-ARGUMENT
+for a priority, timer or timeout that is not an integer."
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
   (check-of-type 'schedule 'timer timer 'tick-span)
   (when timeout (check-of-type 'schedule 'timeout timeout 'tick-span))
@@ -97,7 +97,7 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
                                       :timeout timeout :timer timer)))
 
 (defun doubtful-delay (head body)
-  "Return the number in HEAD or BODY, of a call of SCHEDULE, that is meant as a delay, or NIL."
+  "Return the number in HEAD or BODY of a form (schedule ...) that is meant as a delay, or NIL."
   (find-if #'integerp (list* head (and (consp head) (ignore-errors (second head)))
                              (and (typep body '(cons t null)) body))))
 
@@ -168,7 +168,7 @@ start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
 (define-operator 'grab '(datum) #'grab-resource)
 
 (defun abandon (timeline resources)
-  "Interrupt everything on RESOURCES, in order, and inform the askers. Called by the owner of
+  "Interrupt everything on RESOURCES, in order, and call the continuations. Called by the owner of
 TIMELINE, between ticks."
   (dolist (resource resources) (release-resource resource timeline))
   (deliver-notifications timeline))

@@ -1,4 +1,4 @@
-;;;; timeline.lisp -- the events of a run, what waits to be done, and what thinking costs.
+;;;; timeline.lisp -- the events of a run, the requests to it, and what thinking costs.
 
 (in-package :ars-magna.time)
 
@@ -8,59 +8,59 @@
           deliver-notifications check-thinking thinking-modes-text thinking-mode-p
           timeline-thinking set-timeline-thinking give-threads thinking-charged-p thinking-budget))
 
-;;; The thread in custody of the timeline passes its ticks. Other threads use it in two ways. POST
-;;; leaves a request, performed at the start of the next tick, and returns at once; all commands are
-;;; issued by it. ASK, in asking.lisp, calls a function between two ticks and waits for its values.
-;;; A timeline that is not running yet keeps what was posted.
+;;; The thread that owns the timeline passes its ticks. Other threads use it in two ways. POST
+;;; leaves a request, performed at the start of the next tick, and returns at once; all commands use
+;;; it. ASK, in asking.lisp, calls a function between two ticks and waits for its values. A timeline
+;;; that is not running yet keeps posted requests.
 
-;;; Code may be secluded: kept to runs that begin where it works, so that it can change no other.
+;;; Secluded code can change only the runs that it has begun itself.
 
 (defvar *seclusion* nil
-  "A symbol that the timelines made by secluded code have, or NIL.")
+  "A symbol that marks timelines made by secluded code, or NIL.")
 
 (defmacro secluded (&body body)
-  "Run BODY, which can change and command only runs that have begun in it."
+  "Run BODY so that it can change and command only runs that have begun in it."
   `(let ((*seclusion* (gensym "SECLUSION"))) ,@body))
 
 (define-kind (timeline :constructor (make-timeline (name &optional (custody (make-custody)))))
     "The events of a run, and the requests to it."
   (:fixed
-   (name "" (or symbol string) "what the timeline is called, for messages" :export)
-   (real-p nil boolean "plans think in a thread of their own while the clock goes on" :export))
+   (name "" (or symbol string) "the name of the timeline, for messages" :export)
+   (real-p nil boolean "plans think in a separate thread while the clock runs" :export))
   (:state
    (agenda (make-agenda) agenda "the events that wait for their ticks" :part :export)
    (charge '() list "what thinking costs: NIL for no ticks, or a plist; see THINKING-CHARGE"))
   ;; Requests are not part of a run's state before they are taken.
   (:scratch
    (inbox '() t "the requests that wait for the next tick, newest first" :export)
-   (notifications '() list "what to call at the end of the tick: lists (function argument...), the
+   (notifications '() list "the calls due at the end of the tick: lists (function argument...), the
 newest first")
-   (untold '() list "those of them whose turn has come, the oldest first"))
+   (untold '() list "the calls that are being made at the end of the tick, the oldest first"))
   (:link
    (phase 0 fixnum
-          "how many phases of the tick that is under way have begun; 0 between ticks" :export)
+          "how many phases of the current tick have begun; 0 between ticks" :export)
    (moments 0 fixnum
-            "how often in the tick what goes on in forks too was told something or acted" :export)
-   (on-moment nil (or null function) "what is to be called before that, or NIL" :export)
+            "how often in the tick code that forks repeat was called or has acted" :export)
+   (on-moment nil (or null function) "a function to call before each of these, or NIL" :export)
    (ticking-p nil boolean "a tick is under way, and the world changes" :export)
-   (passing-p nil boolean "somebody passes ticks without a clock" :export)
+   (passing-p nil boolean "a thread passes ticks without a clock" :export)
    (fork-p nil boolean "the timeline is that of a fork" :export)
-   (seclusion *seclusion* symbol "what kept the code that made it apart from other runs, or NIL")
-   (run nil t "the run that the timeline is of, NIL as long as there is none" :export)
+   (seclusion *seclusion* symbol "the mark of the secluded code that made it, or NIL")
+   (run nil t "the run that the timeline belongs to, or NIL" :export)
    (over nil (or null string)
          "why the run is over, a sentence without its full stop, or NIL" :export)
    (tick-dice (make-tick-dice) tick-dice
               "Lisp's dice for users' code that changes the world" :export)
-   (custody (make-custody) custody "which thread may touch the timeline and its world" :export)
+   (custody (make-custody) custody "which thread owns the timeline and its world" :export)
    (pacing nil t "how the timeline is paced, or NIL if it never was" :export)))
 
 (setf (documentation 'make-timeline 'function)
       "Return a timeline called NAME, at tick 0, without events and requests. With CUSTODY
-it follows another in the same world.")
+it succeeds another timeline of the same world.")
 
 (declaim (inline timeline-tick))
 (defun timeline-tick (timeline)
-  "Return how many ticks of TIMELINE have passed; inside a tick, its number."
+  "Return the number of ticks of TIMELINE that have passed; inside a tick, its number."
   (agenda-tick (timeline-agenda timeline)))
 
 (defmethod print-object ((timeline timeline) stream)
@@ -68,8 +68,8 @@ it follows another in the same world.")
     (format stream "~A at tick ~D" (timeline-name timeline) (timeline-tick timeline))))
 
 (defgeneric timeline-of (object)
-  (:documentation "Return the timeline of OBJECT: a run, a world with robots in it, a robot or a
-part of one. A timeline is its own. Signals WRONG-ARGUMENT for what has none.")
+  (:documentation "Return the timeline of OBJECT: a timeline, a run, a world with robots, a robot or
+a part of one. Signals WRONG-ARGUMENT for any other object.")
   (:method ((timeline timeline)) timeline)
   (:method (object)
     (error 'wrong-argument :operator "ask" :name "simulation" :value object
@@ -77,8 +77,8 @@ part of one. A timeline is its own. Signals WRONG-ARGUMENT for what has none.")
 
 (addition *simulation*)
 (defvar *simulation* nil
-  "The simulation that code runs for: the one of WITH-SIMULATION, of the thread, or the one last
-given to SIMULATOR.")
+  "The current simulation: that of WITH-SIMULATION, of the simulator's thread, or the last one
+started by SIMULATOR.")
 
 (setf *run-that-reports* (lambda () *simulation*))
 
@@ -91,7 +91,7 @@ given to SIMULATOR.")
                       "Use (simulator ROBOT) or (with-simulation (ROBOT) ...)."))))
 
 (defun check-not-over (object &optional operator)
-  "Signal MISUSE, by OPERATOR if that is one that users call, if the run of OBJECT is over."
+  "Signal MISUSE if the run of OBJECT is over. OPERATOR, if given, is what the user has called."
   (let ((timeline (timeline-of object)))
     (when (timeline-over timeline)
       (reject-outlived "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. (simulator ROBOT) ~
@@ -100,81 +100,82 @@ given to SIMULATOR.")
                        (timeline-over timeline)))))
 
 (defun wake-owner (timeline)
-  "Wake the thread that paces TIMELINE if it sleeps: there may be something to do."
+  "Wake the thread that paces TIMELINE if it sleeps, as there may be work for it."
   (wake-holder (timeline-custody timeline)))
 
 (defun owner-p (object)
-  "True if the calling thread may touch what the timeline of OBJECT owns."
+  "True if this thread owns the world of OBJECT."
   (mine-p (timeline-custody (timeline-of object))))
 
 (defun phase-here (timeline)
-  "Return the number of the phase of the tick of TIMELINE that this thread is in, 0 if in none."
+  "Return the number of the phase of a tick of TIMELINE in which this thread is, or 0."
   (if (owner-p timeline) (timeline-phase timeline) 0))
 
-;;; Plans copied to forks act there by themselves; other askers do not. To repeat the acts of the
-;;; latter at the right moment, their order among the acts of the former must be known.
+;;; Plans are copied to forks and act there by themselves; other askers do not. To repeat acts of
+;;; others at the right moment, their order among the acts of plans must be known.
 
 (defun begin-moment (timeline)
-  "Note that something copied to forks is about to be called, or to act, in a tick of TIMELINE after
-its world has changed."
+  "Note that code copied to forks is about to be called or to act in a tick of TIMELINE, after the
+world has changed."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
 
 ;;; When a run is repeated, all requests to it are repeated, including those of continuations. So
-;;; continuations of commands that events and kickers issue, inside ticks, must not be called in
-;;; addition.
+;;; continuations of commands that events and kickers issue inside ticks must not be called: their
+;;; requests would be made twice.
 
-(defvar *repeated* nil "The timeline of the run that is being repeated here, or NIL.")
+(defvar *repeated* nil "The timeline of the run that this code repeats, or NIL.")
 
 (defun untold-p (timeline)
-  "True if the continuation of a request to TIMELINE made here must not be called, because the
-repeated run repeats its requests anyway."
+  "True if the continuation of a request made here to TIMELINE must not be called, because the
+requests of the continuation are repeated anyway."
   (and (eq timeline *repeated*)
        (changing-phase-p (phase-here timeline))
        (not (goes-on-in-forks-p))))
 
-;;; Forks look very much like the runs that they are of.
+;;; Objects of a fork look like those of its original, and are easily confused with them.
 
 (defun check-not-secluded (object)
-  "Signal MISUSE if this code is secluded, and OBJECT of a run that has not begun in there."
+  "Signal MISUSE if this code is secluded and the run of OBJECT has not begun in it."
   (when (and *seclusion* (not (eq *seclusion* (timeline-seclusion (timeline-of object)))))
-    (reject-use "That is of another run than the one that was made for this code, and cannot be ~
-                 commanded or changed here. Robots' names and FIND-THING lead to those that are ~
-                 here.")))
+    (reject-use "That belongs to another run than the one that was made for this code, and cannot ~
+                 be commanded or changed here. Robots' names and FIND-THING return those of this ~
+                 run.")))
 
 (defun check-own-run (timeline)
-  "Signal MISUSE if TIMELINE is of another run than this code may change: if that which this thread
-works in is a fork, or code is secluded."
+  "Signal MISUSE if this code must not change the run of TIMELINE: it is secluded from that run, or
+works in a fork and TIMELINE is that of another run in the same map."
   (check-not-secluded timeline)
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own
                (timeline-fork-p own)
                (not (eq own timeline))
                (eq (timeline-name own) (timeline-name timeline)))
-      (reject-use "That is of another run than the fork that this code works in, at tick ~D. ~
-                   (counterpart OBJECT *SIMULATION*) is what a robot or thing is here; robots' ~
-                   names and FIND-THING lead to those of the fork."
+      (reject-use "That belongs to another run than the fork that this code works in, at tick ~D. ~
+                   (counterpart OBJECT *SIMULATION*) returns the copy of a robot or thing here; ~
+                   robots' names and FIND-THING return those of the fork."
                   (timeline-tick own)))))
 
 ;;; Requests.
 
 (defun post (request object)
-  "Have REQUEST performed at the start of the next tick of the timeline of OBJECT, after those
-posted before. Any thread may post. Return nothing. Signals MISUSE if it is over (reading 219)."
+  "Have REQUEST performed at the start of the next tick of the run of OBJECT, after those posted
+before. Any thread may post. Return nothing. Signals MISUSE if the run is over (reading 219)."
   (let ((timeline (timeline-of object)))
     (check-own-run timeline)
     (check-not-over timeline)
     (setf (request-asker request) (note-of-asker)
           (request-phase request) (phase-here timeline))
     (atomic-push request (timeline-inbox timeline))
-    ;; It may have ended just now, and its inbox may have been emptied for the last time.
+    ;; The run may have ended just now, and the inbox may have been emptied for the last time.
     (when (and (timeline-over timeline) (withdraw-request request timeline))
       (check-not-over timeline))
     (wake-owner timeline))
   (values))
 
 (defun post-again (request timeline)
-  "Have REQUEST, taken from TIMELINE, performed after those posted before. Called by the owner."
+  "Put REQUEST, which was taken from the inbox of TIMELINE, back there, behind the others. Called by
+the owner."
   (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw-request (request timeline)
@@ -185,13 +186,14 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
           return t))
 
 (defun asked-inside-p (request)
-  "True if REQUEST was asked for while a tick changed the world: the tick asks again if repeated."
+  "True if REQUEST was made while a tick changed the world: if repeated, the tick makes it again."
   (changing-phase-p (request-phase request)))
 
-;; Another thread may ask for something in the midst of a tick. Its place among what the tick asks
-;; for must not matter, as that is not in the journal.
+;; Requests made by a tick are not in the journal. Other threads may post during that tick, so the
+;; order between the two sorts must not matter.
 (defun take-requests (timeline)
-  "Empty TIMELINE's inbox; return its requests, the oldest first, but the tick's before others."
+  "Empty the inbox of TIMELINE. Return its requests, the oldest first, but those made by the tick
+before the others."
   (loop for inbox = (timeline-inbox timeline)
         when (swap-if (timeline-inbox timeline) inbox '())
           return (let ((requests (reverse inbox)))
@@ -201,7 +203,7 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
 ;;; Notifications.
 
 (defun notify-later (timeline function &rest arguments)
-  "Call FUNCTION, a name, with ARGUMENTS at the end of this tick, after those called then already."
+  "Call the function named FUNCTION with ARGUMENTS at the end of this tick, after earlier ones."
   (push (cons function arguments) (timeline-notifications timeline)))
 
 (defun next-notification (timeline)
@@ -214,7 +216,7 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
 (defun notifications-left-p (timeline)
   (or (timeline-notifications timeline) (timeline-untold timeline)))
 
-;; While one is called, a fork made there copies the rest.
+;; A notification may fork the run. The fork then gets the remaining ones.
 (defun deliver-all (timeline)
   (let ((*tick-dice* nil))
     (unwind-protect (loop for notification = (next-notification timeline)
@@ -223,20 +225,20 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
       (when (notifications-left-p timeline) (deliver-all timeline)))))
 
 (defun deliver-notifications (timeline)
-  "Call all that is due at the end of this tick, in order, the rest also after a non-local exit."
+  "Make the calls due at the end of this tick in order, the rest also after a non-local exit."
   (when (notifications-left-p timeline) (deliver-all timeline)))
 
-;;; The manual (1.2) separates simulated time from thinking time. To measure the value of thinking
-;;; they must be connected, in the same way on every machine. So a run has a thinking mode:
+;;; The manual (1.2) separates simulated time from thinking time. To measure the value of thinking,
+;;; they must be connected in the same way on every machine. So a run has a thinking mode:
 ;;; - :FREE: the world waits
 ;;; - :CHARGED: thinking with a stated cost takes that many ticks
 ;;; - (:CHARGED :BUDGET steps): the steps of plans take ticks, too
-;;; - :REAL: plans think in a thread of their own while a clock runs
-;;; The cost of thinking affects the run. Whether there is a separate thread only affects the
-;;; requests to the run, and these are in the journal.
+;;; - :REAL: plans think in a separate thread while a clock runs
+;;; The cost of thinking is part of the run's state. A separate thread only affects the requests to
+;;; the run, and these are in the journal.
 
 (defun thinking-charge (mode)
-  "Return what thinking costs in MODE: NIL for no ticks, or a plist; and whether MODE is one."
+  "Return what thinking costs in MODE: NIL for no ticks, or a plist; and true if MODE is valid."
   (cond ((member mode '(:free :real)) (values nil t))
         ((member mode '(:charged (:charged)) :test #'cl:equal) (values '(:charged t) t))
         ((and (typep mode '(cons (eql :charged) (cons (eql :budget) (cons t null))))
@@ -244,11 +246,11 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
          (values (list :charged t :budget (third mode)) t))))
 
 (defun thinking-mode-p (mode)
-  "True if MODE says how much time thinking costs."
+  "True if MODE is a thinking mode, as SET-THINKING takes it."
   (nth-value 1 (thinking-charge mode)))
 
 (defun thinking-modes-text ()
-  "Return in words which thinking modes there are."
+  "Return a text that lists the thinking modes."
   (format nil ":FREE, :REAL, :CHARGED, or (:CHARGED :BUDGET steps) with the steps of plans in a ~
                tick, a whole number from 1 to 1e9"))
 
@@ -266,7 +268,7 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
           (t :free))))
 
 (defun set-timeline-thinking (timeline mode)
-  "Set the cost of thinking in TIMELINE from now on to that of MODE, a thinking mode."
+  "Set the thinking mode of TIMELINE to MODE."
   (setf (timeline-charge timeline) (thinking-charge mode)
         (timeline-real-p timeline) (eq mode :real)))
 
@@ -279,5 +281,5 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if it is over
   (and (timeline-charge timeline) t))
 
 (defun thinking-budget (timeline)
-  "Return how many steps plans in TIMELINE may take in a tick, or NIL for as many as they need."
+  "Return how many steps plans in TIMELINE may take in a tick, or NIL if there is no limit."
   (getf (timeline-charge timeline) :budget))
